@@ -1,0 +1,74 @@
+"""Make .venv: the locked dependencies, hashes checked, and this project, editable.
+
+`make` runs it; it needs nothing but the standard library. Where Python came without
+pip (Debian's python3 does), the pip that the lock names is fetched from the index.
+A set-up that was interrupted starts over; of two at once, one waits for the other.
+"""
+
+import fcntl
+import hashlib
+import html
+import os
+import re
+import subprocess
+import sys
+import urllib.parse
+import urllib.request
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+LOCK, PROJECT, VENV = ROOT / "requirements.lock", ROOT / "pyproject.toml", ROOT / ".venv"
+PYTHON, STAMP, UNFINISHED = VENV / "bin/python", VENV / ".installed", VENV / ".unfinished"
+
+
+def works(*command: object) -> bool:
+    """Whether a command can be run, and ends well."""
+    try:
+        return subprocess.run(list(map(str, command)), capture_output=True).returncode == 0
+    except OSError:
+        return False
+
+
+def make_venv() -> None:
+    """An empty environment, with pip where this Python can."""
+    command = [sys.executable, "-m", "venv", "--clear"]
+    if not works(*command, VENV):
+        subprocess.run([*command, "--without-pip", str(VENV)], check=True)
+
+
+def fetch_pip() -> Path:
+    """The locked pip, as a wheel; it runs without being installed."""
+    pin = re.search(r"^pip==(\S+).*\\\n((?: +--hash=.*\n)+)", LOCK.read_text(), re.MULTILINE)
+    wheel = VENV / f"pip-{pin[1]}-py3-none-any.whl"
+    index = os.environ.get("PIP_INDEX_URL", "https://pypi.org/simple").rstrip("/") + "/pip/"
+    page = urllib.request.urlopen(index).read().decode()
+    link = re.search(rf'href="([^"]*{re.escape(wheel.name)})[#"]', page)[1]
+    data = urllib.request.urlopen(urllib.parse.urljoin(index, html.unescape(link))).read()
+    if hashlib.sha256(data).hexdigest() not in pin[2]:
+        sys.exit(f"{wheel.name} from {index} is not the one that {LOCK.name} names")
+    wheel.write_bytes(data)
+    return wheel
+
+
+def main() -> None:
+    """Bring .venv up to date with the lock."""
+    guard = ROOT.joinpath(".venv.lock").open("w")
+    fcntl.flock(guard, fcntl.LOCK_EX)
+    newest = max(path.stat().st_mtime for path in (LOCK, PROJECT, Path(__file__)))
+    if STAMP.exists() and STAMP.stat().st_mtime >= newest:
+        return
+    print("Setting up .venv from requirements.lock ...", flush=True)
+    supported = "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))"
+    if UNFINISHED.exists() or not works(PYTHON, "-c", supported):
+        make_venv()
+    UNFINISHED.touch()
+    pip = ["-m", "pip"] if works(PYTHON, "-m", "pip", "--version") else [f"{fetch_pip()}/pip"]
+    install = [str(PYTHON), *pip, "install", "--quiet", "--disable-pip-version-check"]
+    subprocess.run([*install, "--require-hashes", "-r", str(LOCK)], check=True)
+    subprocess.run([*install, "--no-deps", "--no-build-isolation", "-e", str(ROOT)], check=True)
+    STAMP.touch()
+    UNFINISHED.unlink()
+
+
+if __name__ == "__main__":
+    main()
