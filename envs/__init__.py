@@ -1,0 +1,1 @@
+"""Worlds: each file is one task, and `physics` steps those that MuJoCo simulates."""

@@ -1,0 +1,94 @@
+"""Half-cheetah: run forward in the x-z plane.
+
+    gymnasium   r = dx/dt - 0.1 |a|^2                           never terminates
+    pybullet    r as in `locomotion`; alive: |pitch| < 1 rad and no shin or thigh
+                touches the floor                               never terminates
+
+o = (qpos without x, qvel) [17]; a: six torques, as fractions of the greatest;
+start: qpos U(-0.1, 0.1), qvel 0.1 N(0, 1); a decision is 5 steps of 0.01 s.
+
+Source: P. Wawrzynski 2009; figures of Gymnasium's HalfCheetah-v5; pybullet_envs.
+"""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.locomotion import pybullet_reward
+from hybrid_rl.envs.options import one_of
+from hybrid_rl.envs.physics import Physics, PhysicsState, check
+from hybrid_rl.types import EnvState, Spec
+
+ASSETS = {"gymnasium": "halfcheetah.xml", "pybullet": "halfcheetah_contact.xml"}  # by reward
+STEPS = 5  # of physics per decision
+DT = 0.05  # [s] of a decision
+LEGS = ("back_thigh", "back_shin", "front_thigh", "front_shin")
+
+
+@dataclass(frozen=True)
+class HalfCheetah:
+    """Runs; `physics` is native, mjx, warp or auto."""
+
+    physics: str = "auto"
+    reward: str = "gymnasium"  # or pybullet
+
+    def __post_init__(self) -> None:
+        one_of("reward", self.reward, tuple(ASSETS))
+        check(self.physics)
+
+    @property
+    def spec(self) -> Spec:
+        return Spec(obs=17, act=6, dt=DT)
+
+    @property
+    def _body(self) -> Physics:
+        return Physics(ASSETS[self.reward], self.physics)
+
+    def reset(self, key: Array) -> EnvState:
+        key_pos, key_vel = jax.random.split(key)
+        qpos = jax.random.uniform(key_pos, (9,), jnp.float32, -0.1, 0.1)
+        qvel = 0.1 * jax.random.normal(key_vel, (9,), jnp.float32)
+        return _state(self._body.reset(qpos, qvel), jnp.float32(0.0), jnp.float32(0.0))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        action = jnp.clip(action, -1.0, 1.0)
+        data = self._body.step(state.data, action, STEPS)
+        speed = (data.qpos[0] - state.data.qpos[0]) / DT
+        if self.reward == "gymnasium":
+            reward = speed - 0.1 * (action**2).sum()
+        else:
+            reward = self._pybullet(data, action, speed)
+        return _state(data, reward, speed)
+
+    def _pybullet(self, data: PhysicsState, action: Array, speed: Array) -> Array:
+        model = self._body.model
+        upright = jnp.abs(data.qpos[2]) < 1.0
+        alive = upright & ~_kneels(self._body, data)
+        limits = jnp.asarray(model.jnt_range[3:], jnp.float32)
+        return pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
+
+    def scene(self) -> str:
+        return mjcf.text("halfcheetah.xml")
+
+    def pose(self, state: EnvState) -> Array:
+        return state.data.qpos
+
+
+def _kneels(body: Physics, data: PhysicsState) -> Array:
+    """[] bool: the lowest point of a shin or thigh is below the floor."""
+    touches = []
+    for leg in LEGS:
+        radius, half, _ = body.model.geom(leg).size
+        height = body.sensor(data, f"{leg}_centre")[2]
+        slope = jnp.abs(body.sensor(data, f"{leg}_axis")[2])
+        touches.append(height - half * slope < radius)
+    return jnp.stack(touches).any()
+
+
+def _state(data: PhysicsState, reward: Array, speed: Array) -> EnvState:
+    no = jnp.zeros((), bool)
+    obs = jnp.concatenate((data.qpos[1:], data.qvel))
+    return EnvState(data, obs, reward, no, no, {"speed": speed}, {})

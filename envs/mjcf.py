@@ -1,0 +1,38 @@
+"""MuJoCo models by name: XML text and compiled model, each read once.
+
+Source: the MJCF reference of MuJoCo, "XML Reference".
+"""
+
+from functools import cache
+from pathlib import Path
+
+import mujoco
+
+FOLDER = Path(__file__).parent / "assets"
+
+
+def path(asset: str) -> Path:
+    """File of `asset`: a name in `assets`, or an absolute path of your own."""
+    file = FOLDER / asset
+    if not file.is_file():
+        known = ", ".join(sorted(p.name for p in FOLDER.glob("*.xml")))
+        raise ValueError(f"no model {str(file)!r}; assets are {known}")
+    return file
+
+
+@cache
+def text(asset: str) -> str:
+    """The MJCF text of `asset`."""
+    return path(asset).read_text(encoding="utf-8")
+
+
+@cache
+def load(asset: str) -> mujoco.MjModel:
+    """The compiled model of `asset`. Shared: read it, never write to it."""
+    model = mujoco.MjModel.from_xml_path(str(path(asset)))
+    if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
+        raise ValueError(
+            f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '
+            "reset a world that diverged in silence"
+        )
+    return model

@@ -1,0 +1,103 @@
+"""MuJoCo C on the threads of the CPU, called from inside a compiled JAX program.
+
+    [qpos, qvel, act, warmstart, ctrl] -> n mj_steps in float64 -> [qpos, qvel, act, warmstart, sensors]
+
+Stateless: whatever a step depends on goes in and comes out with the call, so that
+one pool of simulations serves all seeds and worlds, at any thread count, with the
+same bits. A world that is not finite comes out as NaN.
+
+Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
+"""
+
+import os
+import threading
+from collections.abc import Callable
+from functools import cache, partial
+from typing import NamedTuple
+
+import jax
+import mujoco
+import numpy as np
+from mujoco.batch import Batch
+
+from hybrid_rl.envs import foreign, mjcf
+
+_MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
+_LATE = mujoco.mjtStage.mjSTAGE_ACC.value
+
+
+class _Pool(NamedTuple):
+    """N simulations of one model, and live views into them."""
+
+    batch: Batch
+    inputs: np.ndarray  # [N, D] float64: qpos, qvel, act, warmstart, ctrl
+    sensors: np.ndarray  # [N, nsensordata] float64
+    late: np.ndarray  # [nsensordata] bool: needs accelerations
+    lock: threading.Lock
+
+
+@cache
+def _pool(asset: str, worlds: int, threads: int) -> _Pool:
+    model = mjcf.load(asset)
+    batch = Batch(model, worlds, min(worlds, threads or os.cpu_count() or 1))
+    sizes = (model.nq, model.nv, model.na, model.nv, model.nu)
+    first = 1  # column 0 is the time
+    inputs = batch.state[:, first : first + sum(sizes)]
+    if model.nhistory or not np.shares_memory(inputs[:, -1], batch.bind("ctrl")):
+        raise ValueError(f"{asset}: actuators or sensors with delay have no place in the state")
+    late = np.repeat(model.sensor_needstage == _LATE, model.sensor_dim)
+    return _Pool(batch, inputs, batch.bind("sensordata"), late, threading.Lock())
+
+
+def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> None:
+    """Fill y [N, D'] with what becomes of x [N, D] after `n` steps of physics."""
+    pool = _pool(asset, len(x), threads)
+    moved = y.shape[1] - pool.sensors.shape[1]
+    stage = _MOVED if pool.sensors.shape[1] else 0
+    finite = np.isfinite(x.sum(1))
+    ids = None if finite.all() else np.flatnonzero(finite)
+    with pool.lock:
+        pool.inputs[:] = x
+        if n:
+            pool.batch.step(ids, n, stage)
+        else:
+            pool.batch.forward(ids, stage)
+        y[:, :moved] = pool.inputs[:, :moved]
+        y[:, moved:] = pool.sensors
+    if not n:
+        y[:, moved:][:, pool.late] = 0.0
+    if ids is not None:
+        y[~finite] = np.nan
+
+
+@cache
+def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
+    """x [D] -> y [D'], on the CPU by a foreign call, elsewhere by a JAX callback."""
+    model = mjcf.load(asset)
+    width = model.nq + 2 * model.nv + model.na + model.nsensordata
+    out = jax.ShapeDtypeStruct((width,), np.float32)
+    advance = partial(_advance, asset, threads, n)
+    name = f"hybrid_rl.native:{asset}:{threads}:{n}"
+    foreign.register(name, advance)
+
+    def callback(x: jax.Array) -> np.ndarray:
+        rows = np.asarray(x)
+        y = np.empty((*rows.shape[:-1], width), np.float32)
+        advance(rows.reshape(-1, rows.shape[-1]), y.reshape(-1, width))
+        return y
+
+    def elsewhere(x: jax.Array) -> jax.Array:
+        return jax.pure_callback(callback, out, x, vmap_method="broadcast_all")
+
+    def here(x: jax.Array) -> jax.Array:
+        return jax.ffi.ffi_call(name, out, vmap_method="broadcast_all")(x)
+
+    return lambda x: jax.lax.platform_dependent(x, cpu=here, default=elsewhere)
+
+
+def step(asset: str, threads: int, n: int, x: jax.Array) -> jax.Array:
+    """[qpos, qvel, act, warmstart, sensors] after `n` steps from [qpos, qvel, act, warmstart, ctrl].
+
+    n = 0 moves nothing and reads the sensors of positions and velocities.
+    """
+    return _call(asset, threads, n)(x)

@@ -1,0 +1,130 @@
+"""One MuJoCo stepper, three implementations of the same step.
+
+    s' = step^n(s, ctrl),   s = (qpos, qvel, act, warmstart)
+
+    native   MuJoCo C on CPU threads, float64 inside      one world or few, any CPU
+    mjx      MuJoCo XLA, pure JAX, float32                many worlds on an accelerator
+    warp     MuJoCo Warp through MJX, float32             many worlds on an NVIDIA GPU
+    auto     warp on an NVIDIA GPU that has warp-lang, mjx on other accelerators, else native
+
+The state is the same few numbers for all three: a checkpoint is small, a reset is a
+`where`, and a run that continues continues bit for bit.
+
+Source: MuJoCo's documentation, "Computation: the state" (mjSTATE_INTEGRATION).
+"""
+
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+import jax
+import jax.numpy as jnp
+import mujoco
+from flax import struct
+from jax import Array
+
+from hybrid_rl.envs import mjcf, native
+from hybrid_rl.envs.options import one_of
+
+IMPLEMENTATIONS = ("auto", "native", "mjx", "warp")
+
+
+@struct.dataclass
+class PhysicsState:
+    """All that a step depends on, float32, and the sensors it left."""
+
+    qpos: Array  # [nq] positions [m, rad]
+    qvel: Array  # [nv] velocities [m/s, rad/s]
+    act: Array  # [na] actuator activations
+    warmstart: Array  # [nv] accelerations, where the solver starts [m/s^2, rad/s^2]
+    ctrl: Array  # [nu] controls held during the last step
+    sensors: Array  # [nsensordata]; positions and velocities are those of this state
+
+
+def check(implementation: str) -> None:
+    """Raise ValueError if `implementation` is unknown, or cannot run here."""
+    one_of("physics", implementation, IMPLEMENTATIONS)
+    if implementation != "warp":
+        return
+    if find_spec("warp") is None:
+        raise ValueError("physics='warp' needs the package warp-lang: install it, or use mjx")
+    if jax.default_backend() != "gpu":
+        raise ValueError(
+            f"physics='warp' needs an NVIDIA GPU, and JAX runs on {jax.default_backend()}: "
+            "use native on a CPU, mjx on other accelerators"
+        )
+
+
+def resolve(implementation: str) -> str:
+    """What `implementation` means on this machine: native, mjx or warp."""
+    if implementation != "auto":
+        return implementation
+    if jax.default_backend() == "cpu":
+        return "native"
+    nvidia = "nvidia" in jax.devices()[0].device_kind.lower()
+    return "warp" if nvidia and find_spec("warp") is not None else "mjx"
+
+
+@dataclass(frozen=True)
+class Physics:
+    """Steps the model `asset`. Hashable, equal by value; models are cached elsewhere."""
+
+    asset: str  # file in assets/, or an absolute path
+    implementation: str = "auto"
+    threads: int = 0  # of native; 0 = one per core
+
+    def __post_init__(self) -> None:
+        check(self.implementation)
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The compiled model; read it, never write to it."""
+        return mjcf.load(self.asset)
+
+    def reset(self, qpos: Array, qvel: Array) -> PhysicsState:
+        """The state at qpos [nq], qvel [nv], at rest otherwise."""
+        model = self.model
+        zeros = [jnp.zeros(k, jnp.float32) for k in (model.na, model.nv, model.nu)]
+        sensors = jnp.zeros(model.nsensordata, jnp.float32)
+        state = PhysicsState(
+            jnp.asarray(qpos, jnp.float32), jnp.asarray(qvel, jnp.float32), *zeros, sensors
+        )
+        return self._advance(state, 0) if model.nsensordata else state
+
+    def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:
+        """The state `n` steps of physics later, with ctrl [nu] held."""
+        return self._advance(state.replace(ctrl=jnp.asarray(ctrl, jnp.float32)), n)
+
+    def sensor(self, state: PhysicsState, name: str) -> Array:
+        """[dim] what sensor `name` reads at `state`."""
+        sensor = self.model.sensor(name)
+        return state.sensors[sensor.adr[0] : sensor.adr[0] + sensor.dim[0]]
+
+    def _advance(self, state: PhysicsState, n: int) -> PhysicsState:
+        implementation = resolve(self.implementation)
+        if implementation == "native":
+            return self._native(state, n)
+        return self._accelerated(state, n, "jax" if implementation == "mjx" else "warp")
+
+    def _native(self, state: PhysicsState, n: int) -> PhysicsState:
+        model = self.model
+        parts = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
+        out = native.step(self.asset, self.threads, n, jnp.concatenate(parts))
+        ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
+        qpos, qvel, act, rest = jnp.split(out, ends)
+        warmstart, sensors = jnp.split(rest, (model.nv,))
+        return PhysicsState(qpos, qvel, act, warmstart, state.ctrl, sensors)
+
+    def _accelerated(self, state: PhysicsState, n: int, impl: str) -> PhysicsState:
+        from hybrid_rl.envs import accelerated  # MJX takes 2 s to import
+
+        fields = {
+            "qpos": state.qpos,
+            "qvel": state.qvel,
+            "act": state.act,
+            "qacc_warmstart": state.warmstart,
+            "ctrl": state.ctrl,
+        }
+        data = accelerated.step(self.asset, impl, n, fields)
+        return PhysicsState(
+            data.qpos, data.qvel, data.act, data.qacc_warmstart, state.ctrl, data.sensordata
+        )
