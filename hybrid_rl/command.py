@@ -1,0 +1,116 @@
+"""What the commands share: arguments, settings of JAX, one line for what goes wrong.
+
+Exit codes: 0 done; 2 bad usage; 130 and 143 after Ctrl-C and SIGTERM; 1 any other failure.
+"""
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NoReturn
+
+from omegaconf import DictConfig
+from omegaconf.errors import OmegaConfBaseException
+
+from hybrid_rl.config import CONF, UsageError
+
+
+def hydra_main(job: Callable[[DictConfig], None]) -> None:
+    """Run `job` on the configuration that the command line composes, once or in a sweep."""
+    import hydra
+    from hydra.errors import HydraException
+
+    os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
+    try:
+        hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(job)()
+    except (HydraException, OmegaConfBaseException) as error:
+        _fail(2, explain(error))
+    except Exception as error:
+        report(error)
+    except KeyboardInterrupt:
+        _fail(130, "interrupted")
+
+
+def report(error: Exception) -> NoReturn:
+    """End the process with one line and the right code, or with a traceback for a fault of ours."""
+    from hybrid_rl.training.checkpoint import CheckpointError
+    from hybrid_rl.training.rows import Diverged
+
+    if isinstance(error, UsageError):
+        _fail(2, str(error))
+    if isinstance(error, (CheckpointError, Diverged)):
+        _fail(1, str(error))
+    if isinstance(error, OSError):
+        _fail(1, f"{error.filename or 'the system'}: {error.strerror or error}")
+    raise error
+
+
+def _fail(code: int, line: str) -> NoReturn:
+    print(f"hybrid_rl: {' '.join(line.split())}", file=sys.stderr, flush=True)
+    sys.exit(code)
+
+
+def explain(error: Exception) -> str:
+    """One line that names the key, the value and what is allowed, from an error of Hydra."""
+    from hydra.errors import MissingConfigException
+
+    text = str(error)
+    if isinstance(error, MissingConfigException) and "Could not find" in text:
+        group, _, value = text.split("Could not find '")[1].split("'")[0].rpartition("/")
+        known = options(group)
+        return f"{group}={value}: unknown; choose one of {', '.join(known)}"
+    cause = error.__cause__
+    if cause is not None and "is not in struct" in str(cause):
+        key = str(cause).split("full_key: ")[1].splitlines()[0].strip()
+        return f"{key}: unknown key; `python -m hybrid_rl.train --cfg job` shows all of them"
+    return f"{text} {cause or ''}"
+
+
+def options(group: str) -> list[str]:
+    """Names that a configuration group offers, with their folders."""
+    return sorted(
+        str(path.relative_to(CONF / group).with_suffix("")) for path in (CONF / group).rglob("*.yaml")
+    )
+
+
+def prepare(config: DictConfig) -> None:
+    """Settings of JAX for this process: compilation cache and matrix precision."""
+    import jax
+
+    jax.config.update("jax_default_matmul_precision", config.matmul_precision)
+    if config.compile_cache is not None:
+        cache = Path(config.compile_cache).expanduser()
+        jax.config.update("jax_compilation_cache_dir", str(cache))
+        jax.config.update("jax_compilation_cache_max_size", 4 * 2**30)
+        jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.5)
+
+
+def asked(config_overrides: list[str]) -> dict[str, str]:
+    """Overrides as key -> value, as they were written."""
+    pairs = (text.lstrip("+~").partition("=") for text in config_overrides)
+    return {key: value for key, _, value in pairs}
+
+
+def arguments(known: dict[str, Any]) -> dict[str, str]:
+    """`key=value` arguments of a command that is no training; `known` names the keys.
+
+    Raises:
+        UsageError: for an argument of another form or an unknown key.
+    """
+    given = {}
+    for text in sys.argv[1:]:
+        key, equals, value = text.partition("=")
+        if not equals or key not in known:
+            raise UsageError(f"{text}: unknown argument; give key=value with {', '.join(known)}")
+        given[key] = value
+    return given
+
+
+def guarded(job: Callable[[], None]) -> None:
+    """Run `job`; what goes wrong becomes one line and an exit code."""
+    try:
+        job()
+    except Exception as error:
+        report(error)
+    except KeyboardInterrupt:
+        _fail(130, "interrupted")

@@ -1,0 +1,103 @@
+"""Receding-horizon control by sampling: plan with the core, execute, shift.
+
+Stochastic hybrid learning (thesis Algorithm 3) with proposals from the policy; MPPI on a
+learned model with proposals from noise. `execute` says what is done with the weighted
+candidates: `mean` is sum_k w_k v_k (the thesis); `sample` draws one of them, which leaves the
+policy's exploration in the data.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import sampling
+from hybrid_rl.types import Model, Objective, Params, Policy, Proposal, Spec
+
+EXECUTE = ("mean", "sample")
+
+
+@dataclass(frozen=True)
+class SamplingController:
+    """A planner over K candidates and T decisions.
+
+    Raises:
+        ValueError: for a horizon, a number of samples or a temperature that is not positive,
+            or an unknown way to execute.
+    """
+
+    model: Model
+    objective: Objective
+    proposal: Proposal
+    policy: Policy | None = None  # only to log the policy's share
+    horizon: int = 5  # T [decisions]
+    samples: int = 20  # K
+    temperature: float = 0.1  # lambda [return], or [deviations] with normalise
+    normalise: bool = False
+    log_density: bool = False  # the thesis' p(v) in the weight
+    execute: str = "mean"
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("horizon", "samples"):
+            value = getattr(self, name)
+            if not isinstance(value, int) or value < 1:
+                raise ValueError(f"planner.{name}={value}: must be a whole number, 1 or more")
+        if not self.temperature > 0:
+            raise ValueError(f"planner.temperature={self.temperature}: must be above 0")
+        if self.execute not in EXECUTE:
+            raise ValueError(f"planner.execute={self.execute}: choose {' or '.join(EXECUTE)}")
+
+    def init(self, spec: Spec) -> tuple[Array, Any]:
+        """The plan [T, m] at rest, and the first carry of the proposals."""
+        return jnp.zeros((self.horizon, spec.act)), self.proposal.init(spec)
+
+    def act(
+        self, params: Params, state: tuple[Array, Any], obs: Array, key: Array
+    ) -> tuple[Array, tuple[Array, Any], dict[str, Array]]:
+        """Action [m], next state, metrics. The key is consumed."""
+        plan, carry = state
+        rolling, choosing = jax.random.split(key)
+        x = self.model.lift(params.model, obs)
+        samples = sampling.imagine(
+            lambda x, u: self.model.step(params.model, x, u),
+            lambda *a: self.proposal(params, *a),
+            carry,
+            x,
+            plan,
+            self.samples,
+            rolling,
+        )
+        returns = jax.vmap(lambda path: self.objective.reward_to_go(params, path))(samples.path)
+        w = sampling.weights(
+            returns[:, :-1],
+            self.temperature,
+            self.normalise,
+            samples.log_prob if self.log_density else None,
+        )
+        plan = jnp.einsum("kt,ktm->tm", w, samples.path.u)
+        action = plan[0]
+        if self.execute == "sample":
+            action = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
+        metrics = {
+            "planner/effective_samples": sampling.effective_samples(w)[0],
+            "planner/planned_return": w[:, 0] @ returns[:, 0],
+            "planner/planned_reward": w[:, 0]
+            @ (returns[:, 0] - self.objective.discount * returns[:, 1]),
+            **self._share(params, x, action),
+        }
+        return action, (sampling.shift(plan), carry), metrics
+
+    def _share(self, params: Params, x: Array, action: Array) -> dict[str, Array]:
+        """|mu| / (|mu| + |u - mu|): 1 where the policy alone acts, 0 where the model does."""
+        if self.policy is None:
+            return {}
+        mean = self.policy.mean(params.policy, x)
+        own, correction = jnp.linalg.norm(mean), jnp.linalg.norm(action - mean)
+        return {"planner/policy_share": own / (own + correction + 1e-6)}
+
+    def greedy(self) -> "SamplingController":
+        """The weighted mean."""
+        return replace(self, execute="mean")

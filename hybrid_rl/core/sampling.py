@@ -1,0 +1,88 @@
+"""Sampling core: path-integral planning over K imagined paths.
+
+    x_0^k = x,   v_t^k ~ propose(x_t^k, a_t),   x_{t+1}^k = f(x_t^k, v_t^k)
+    S_t^k = return from t on along path k
+    w_t^k = softmax_k( S_t^k / lambda  [+ log p(v_t^k)] ),   a_t <- sum_k w_t^k v_t^k
+
+Thesis Algorithm 3 and eq. (3.8), with its p(v) as a switch: where v is drawn from p itself
+the importance ratio cancels it (Williams et al. 2017, eq. 20-27, with proposal = prior).
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Path
+
+
+class Samples(NamedTuple):
+    """K imagined paths."""
+
+    path: Path  # x [K, T+1, n]; u [K, T, m]
+    log_prob: Array  # [K, T] of u under the proposal
+
+
+def imagine(
+    step: Callable[[Array, Array], Array],
+    propose: Callable[[Any, Array, Array, Array], tuple[Array, Array, Any]],
+    carry: Any,
+    x: Array,
+    plan: Array,
+    samples: int,
+    key: Array,
+) -> Samples:
+    """Roll `samples` paths of the model `step` from x [n] beside plan [T, m].
+
+    `propose(carry, x, a_t, key) -> (v, log_prob, carry)` draws the candidates; `carry` starts
+    each path. The key is consumed.
+    """
+    rows = jax.random.split(key, (samples, plan.shape[0]))
+    start = jnp.broadcast_to(x, (samples, *x.shape))
+    carries = jax.tree.map(lambda c: jnp.broadcast_to(c, (samples, *jnp.shape(c))), carry)
+    propose_all = jax.vmap(propose, in_axes=(0, 0, None, 0))
+
+    def forward(state: tuple[Array, Any], inputs: tuple[Array, Array]) -> tuple:
+        x, carry = state
+        a, keys = inputs
+        v, log_prob, carry = propose_all(carry, x, a, keys)
+        x = jax.vmap(step)(x, v)
+        return (x, carry), (x, v, log_prob)
+
+    _, (xs, vs, log_probs) = jax.lax.scan(
+        forward, (start, carries), (plan, rows.swapaxes(0, 1)), unroll=True
+    )
+    xs = jnp.concatenate([start[None], xs]).swapaxes(0, 1)
+    return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)
+
+
+def weights(
+    reward_to_go: Array,
+    temperature: float,
+    normalise: bool = False,
+    log_prob: Array | None = None,
+) -> Array:
+    """Weights [K, T] that sum to one over K, from reward_to_go S [K, T].
+
+    `normalise` divides S by its standard deviation over K, so that `temperature` is a pure
+    number; else it has the unit of a return. `log_prob` [K, T] joins the exponent if given.
+    """
+    if normalise:
+        spread = jnp.std(reward_to_go, axis=0, keepdims=True)
+        reward_to_go = reward_to_go / (spread + 1e-6)
+    exponent = reward_to_go / temperature
+    if log_prob is not None:
+        exponent = exponent + log_prob
+    return jax.nn.softmax(exponent, axis=0)
+
+
+def effective_samples(w: Array) -> Array:
+    """1 / sum_k w_k^2 for w [K, T] -> [T]: K where all count the same, 1 where one takes all."""
+    return 1.0 / jnp.sum(w**2, axis=0)
+
+
+def shift(plan: Array) -> Array:
+    """The plan [T, m] one decision later: its first row gone, zeros at the end."""
+    return jnp.concatenate([plan[1:], jnp.zeros_like(plan[:1])])

@@ -1,0 +1,44 @@
+"""Q(x, u): an ensemble of action values, read by its minimum (Fujimoto et al. 2018, eq. 10)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
+from hybrid_rl.types import Spec
+
+
+@dataclass(frozen=True)
+class EnsembleQ:
+    """`members` independent action-value networks.
+
+    Raises:
+        ValueError: for widths, activations or counts that make no network.
+    """
+
+    hidden: tuple[int, ...] = (256, 256)
+    activation: str = "relu"
+    members: int = 2
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "hidden", tuple(self.hidden))
+        check("critic", self.hidden, self.activation)
+        if self.members < 1:
+            raise ValueError(f"critic.members={self.members}: must be at least 1")
+
+    def init(self, key: Array, spec: Spec) -> Any:
+        """First parameters, members on axis 0. The key is consumed."""
+        net = MLP(self.hidden, 1, self.activation)
+        return ensemble_init(net, key, self.members, jnp.zeros(spec.obs + spec.act))
+
+    def all(self, params: Any, x: Array, u: Array) -> Array:
+        """Q of every member [members, ...] at x [..., n] and u [..., m]."""
+        net = MLP(self.hidden, 1, self.activation)
+        return ensemble_apply(net, params, jnp.concatenate([x, u], -1))[..., 0]
+
+    def value(self, params: Any, x: Array, u: Array) -> Array:
+        """The smallest member's Q [...]."""
+        return self.all(params, x, u).min(0)

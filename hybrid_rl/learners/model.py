@@ -1,0 +1,95 @@
+"""Learn f and r from experience, jointly (thesis appendix B).
+
+    loss = -log N(x'; x + f(x, u), s^2) + 0.5 (r + c (1 - end) r(x', u') - r(x, u))^2
+
+with u' the action that was executed at x' and no gradient through the target; one Adam for both.
+`reward_discount` c is 0.95 in the thesis, 0 makes r the reward itself.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import optax
+from flax import struct
+from jax import Array
+
+from hybrid_rl.types import Batch, Params, Spec
+
+
+@struct.dataclass
+class ModelState:
+    """What the model learner carries."""
+
+    model: Any
+    reward: Any
+    optimiser: Any
+
+
+@dataclass(frozen=True)
+class ModelLearner:
+    """Gradient steps on a model and a reward that offer `observe`, `loss` and "weights".
+
+    Raises:
+        ValueError: for counts, rates or a discount out of range.
+    """
+
+    model: Any
+    reward: Any
+    learning_rate: float = 3e-3
+    batch_size: int = 128
+    updates: float = 2  # per decision
+    reward_discount: float = 0.0
+    max_grad_norm: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 <= self.reward_discount < 1:
+            raise ValueError(
+                f"model_learner.reward_discount={self.reward_discount}: must lie in [0, 1)"
+            )
+        if self.learning_rate <= 0:
+            raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
+
+    def _optimiser(self) -> optax.GradientTransformation:
+        clip = optax.clip_by_global_norm(self.max_grad_norm or jnp.inf)
+        return optax.chain(clip, optax.adam(self.learning_rate))
+
+    def init(self, key: Array, spec: Spec) -> ModelState:
+        """First parameters and optimiser. The key is consumed."""
+        of_model, of_reward = jax.random.split(key)
+        model, reward = self.model.init(of_model, spec), self.reward.init(of_reward, spec)
+        weights = (model["weights"], reward["weights"])
+        return ModelState(model, reward, self._optimiser().init(weights))
+
+    def params(self, state: ModelState) -> dict[str, Any]:
+        """The model and the reward."""
+        return {"model": state.model, "reward": state.reward}
+
+    def update(
+        self, state: ModelState, params: Params, batch: Batch, key: Array
+    ) -> tuple[ModelState, dict[str, Array]]:
+        """One Adam step on both losses."""
+        model = self.model.observe(state.model, batch.obs, batch.next_obs)
+        reward = self.reward.observe(state.reward, batch.obs)
+        target = batch.reward
+        if self.reward_discount > 0:
+            after = self.reward.reward(reward, batch.next_obs, batch.next_action)
+            goes_on = self.reward_discount * (1 - batch.terminated) * (1 - batch.truncated)
+            target = target + goes_on * after
+
+        def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array]]:
+            f, r = weights
+            of_model = self.model.loss(
+                {**model, "weights": f}, batch.obs, batch.action, batch.next_obs
+            )
+            of_reward = self.reward.loss({**reward, "weights": r}, batch.obs, batch.action, target)
+            return of_model + of_reward, (of_model, of_reward)
+
+        weights = (model["weights"], reward["weights"])
+        grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
+        change, optimiser = self._optimiser().update(grads, state.optimiser, weights)
+        f, r = optax.apply_updates(weights, change)
+        state = ModelState({**model, "weights": f}, {**reward, "weights": r}, optimiser)
+        return state, {"model/loss": of_model, "model/reward_loss": of_reward}

@@ -1,0 +1,137 @@
+"""Soft actor-critic (Haarnoja et al. 2018b): twin Q, minimum, reparameterised, own temperature.
+
+    y      = r + gamma (1 - terminated) (min_i Q'_i(x', u') - alpha log pi(u'|x')),  u' ~ pi(x')
+    L_Q    = 0.5 sum_i mean (Q_i(x, u) - y)^2
+    L_pi   = mean (alpha log pi(v|x) - min_i Q_i(x, v)),                             v ~ pi(x)
+    L_a    = -log(alpha) mean (log pi(v|x) + target),     Q' <- (1 - tau) Q' + tau Q
+
+A time limit is no end of the task: `truncated` does not enter.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import optax
+from flax import struct
+from jax import Array
+
+from hybrid_rl.types import Batch, Params, Policy, Spec
+
+
+@struct.dataclass
+class SACState:
+    """What soft actor-critic carries."""
+
+    policy: Any
+    critic: Any
+    target: Any
+    log_alpha: Array  # []
+    policy_optimiser: Any
+    critic_optimiser: Any
+    alpha_optimiser: Any
+
+
+@dataclass(frozen=True)
+class SAC:
+    """Soft actor-critic over a `policy` and an ensemble `critic`.
+
+    Raises:
+        ValueError: for rates, a discount or a smoothing out of range.
+    """
+
+    policy: Policy
+    critic: Any
+    policy_learning_rate: float = 3e-4
+    critic_learning_rate: float = 3e-4
+    alpha_learning_rate: float = 3e-4
+    alpha: float = 1.0  # first temperature
+    target_entropy: float | None = None  # [nat]; None: -m
+    discount: float = 0.99
+    tau: float = 0.005
+    batch_size: int = 256
+    updates: float = 1  # per decision
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 <= self.discount < 1:
+            raise ValueError(f"policy_learner.discount={self.discount}: must lie in [0, 1)")
+        if not 0 < self.tau <= 1:
+            raise ValueError(f"policy_learner.tau={self.tau}: must lie in (0, 1]")
+        for name in ("policy_learning_rate", "critic_learning_rate", "alpha"):
+            if getattr(self, name) <= 0:
+                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
+
+    def init(self, key: Array, spec: Spec) -> SACState:
+        """First parameters, optimisers and target. The key is consumed."""
+        of_policy, of_critic = jax.random.split(key)
+        policy, critic = self.policy.init(of_policy, spec), self.critic.init(of_critic, spec)
+        log_alpha = jnp.log(jnp.float32(self.alpha))
+        return SACState(
+            policy,
+            critic,
+            jax.tree.map(jnp.copy, critic),
+            log_alpha,
+            optax.adam(self.policy_learning_rate).init(policy),
+            optax.adam(self.critic_learning_rate).init(critic),
+            optax.adam(self.alpha_learning_rate).init(log_alpha),
+        )
+
+    def params(self, state: SACState) -> dict[str, Any]:
+        """The policy and the critic."""
+        return {"policy": state.policy, "critic": state.critic}
+
+    def update(
+        self, state: SACState, params: Params, batch: Batch, key: Array
+    ) -> tuple[SACState, dict[str, Array]]:
+        """One step of critic, policy, temperature and target. The key is consumed."""
+        for_target, for_policy = jax.random.split(key)
+        alpha = jnp.exp(state.log_alpha)
+        y = self._target(state, alpha, batch, for_target)
+
+        def critic_loss(critic: Any) -> tuple[Array, Array]:
+            q = self.critic.all(critic, batch.obs, batch.action)
+            return 0.5 * jnp.sum(jnp.mean((q - y) ** 2, axis=-1)), q.mean()
+
+        (of_critic, q), grads = jax.value_and_grad(critic_loss, has_aux=True)(state.critic)
+        critic, critic_optimiser = _adam(
+            self.critic_learning_rate, grads, state.critic_optimiser, state.critic
+        )
+
+        def policy_loss(policy: Any) -> tuple[Array, Array]:
+            v, log_prob = self.policy.sample(policy, batch.obs, for_policy)
+            return jnp.mean(alpha * log_prob - self.critic.value(critic, batch.obs, v)), log_prob
+
+        (of_policy, log_prob), grads = jax.value_and_grad(policy_loss, has_aux=True)(state.policy)
+        policy, policy_optimiser = _adam(
+            self.policy_learning_rate, grads, state.policy_optimiser, state.policy
+        )
+        entropy = -log_prob.mean()
+        wanted = -batch.action.shape[-1] if self.target_entropy is None else self.target_entropy
+        log_alpha, alpha_optimiser = _adam(
+            self.alpha_learning_rate, entropy - wanted, state.alpha_optimiser, state.log_alpha
+        )
+        target = optax.incremental_update(critic, state.target, self.tau)
+        metrics = {
+            "sac/critic_loss": of_critic,
+            "sac/policy_loss": of_policy,
+            "sac/alpha": alpha,
+            "sac/entropy": entropy,
+            "sac/q": q,
+        }
+        return SACState(
+            policy, critic, target, log_alpha, policy_optimiser, critic_optimiser, alpha_optimiser
+        ), metrics
+
+    def _target(self, state: SACState, alpha: Array, batch: Batch, key: Array) -> Array:
+        """y [B], without gradient. The key is consumed."""
+        v, log_prob = self.policy.sample(state.policy, batch.next_obs, key)
+        after = self.critic.value(state.target, batch.next_obs, v) - alpha * log_prob
+        return batch.reward + self.discount * (1 - batch.terminated) * after
+
+
+def _adam(rate: float, grads: Any, optimiser: Any, params: Any) -> tuple[Any, Any]:
+    """One Adam step: new parameters, new optimiser state."""
+    change, optimiser = optax.adam(rate).update(grads, optimiser, params)
+    return optax.apply_updates(params, change), optimiser

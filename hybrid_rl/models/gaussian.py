@@ -1,0 +1,78 @@
+"""x' ~ N(x + f(x, u), diag(s^2)): a learned one-step model (thesis appendix B).
+
+f = W_2 a(W_1 [x, u] + b_1) + b_2 by default; s does not depend on the state. With
+`normalise`, the network sees states and predicts changes in units of their running deviation.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import statistics
+from hybrid_rl.networks import MLP, check
+from hybrid_rl.types import Spec
+
+
+@dataclass(frozen=True)
+class Gaussian:
+    """A one-step Gaussian model; the planning state is the observation.
+
+    Raises:
+        ValueError: for widths or activations that make no network.
+    """
+
+    hidden: tuple[int, ...] = (200,)
+    activation: str = "relu"
+    normalise: bool = True
+    log_std_min: float = -10.0
+    log_std_max: float = 2.0
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "hidden", tuple(self.hidden))
+        check("model", self.hidden, self.activation)
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """Weights, and the statistics that they are relative to. The key is consumed."""
+        net = MLP(self.hidden, spec.obs, self.activation)
+        return {
+            "weights": {
+                "net": net.init(key, jnp.zeros(spec.obs + spec.act)),
+                "log_std": jnp.zeros(spec.obs),
+            },
+            "state": statistics.init(spec.obs),
+            "change": statistics.init(spec.obs),
+        }
+
+    def observe(self, params: dict[str, Any], x: Array, next_x: Array) -> dict[str, Any]:
+        """Parameters whose statistics have seen x and next_x [B, n]."""
+        if not self.normalise:
+            return params
+        return {
+            **params,
+            "state": statistics.update(params["state"], x),
+            "change": statistics.update(params["change"], next_x - x),
+        }
+
+    def lift(self, params: dict[str, Any], obs: Array) -> Array:
+        """The observation [o] itself."""
+        return obs
+
+    def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """Predicted change [..., n] of x [..., n] under u [..., m], in running deviations."""
+        net = MLP(self.hidden, x.shape[-1], self.activation)
+        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u], -1)
+        return net.apply(params["weights"]["net"], inputs)
+
+    def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """Mean of the next planning state [..., n]."""
+        return x + statistics.colour(params["change"], self.change(params, x, u))
+
+    def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
+        """Negative log-likelihood [] of next_x [B, n], mean over batch and dimensions."""
+        log_std = jnp.clip(params["weights"]["log_std"], self.log_std_min, self.log_std_max)
+        target = statistics.whiten(params["change"], next_x - x)
+        error = (target - self.change(params, x, u)) * jnp.exp(-log_std)
+        return jnp.mean(0.5 * error**2 + log_std + 0.5 * jnp.log(2 * jnp.pi))

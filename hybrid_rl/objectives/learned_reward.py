@@ -1,0 +1,80 @@
+"""J(path) = sum_t r(x_t, u_t) [+ min_i Q_i(x_T, pi(x_T))]: the return that was learned.
+
+r is a network (thesis appendix B: two layers of 200). Its loss is
+0.5 (r + c (1 - end) r(x', u') - r(x, u))^2 with u' from the policy; c = 0 makes r a reward,
+c = 0.95 makes it the thesis' value-like utility, which the planner then sums once more.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import statistics
+from hybrid_rl.networks import MLP, check
+from hybrid_rl.types import Params, Path, Policy, Spec
+
+
+@dataclass(frozen=True)
+class LearnedReward:
+    """A reward network, and the return of a path under it.
+
+    Raises:
+        ValueError: for widths or activations that make no network, or a half-given terminal.
+    """
+
+    hidden: tuple[int, ...] = (200, 200)
+    activation: str = "relu"
+    normalise: bool = True
+    discount: float = 1.0  # of imagined rewards, per decision
+    critic: Any = None  # with `policy`: adds the critic's value of the last state
+    policy: Policy | None = None
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "hidden", tuple(self.hidden))
+        check("objective", self.hidden, self.activation)
+        if (self.critic is None) != (self.policy is None):
+            raise ValueError("objective.critic and objective.policy: give both or neither")
+        if not 0 < self.discount <= 1:
+            raise ValueError(f"objective.discount={self.discount}: must lie in (0, 1]")
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """Weights, and the statistics that they are relative to. The key is consumed."""
+        net = MLP(self.hidden, 1, self.activation)
+        return {
+            "weights": net.init(key, jnp.zeros(spec.obs + spec.act)),
+            "state": statistics.init(spec.obs),
+        }
+
+    def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
+        """Parameters whose statistics have seen x [B, n]."""
+        if not self.normalise:
+            return params
+        return {**params, "state": statistics.update(params["state"], x)}
+
+    def reward(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """r [...] at x [..., n] and u [..., m]."""
+        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u], -1)
+        return MLP(self.hidden, 1, self.activation).apply(params["weights"], inputs)[..., 0]
+
+    def loss(self, params: dict[str, Any], x: Array, u: Array, target: Array) -> Array:
+        """Half the mean squared error [] against target [B]."""
+        return 0.5 * jnp.mean((target - self.reward(params, x, u)) ** 2)
+
+    def reward_to_go(self, params: Params, path: Path) -> Array:
+        """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
+        rewards = self.reward(params.reward, path.x[:-1], path.u)
+        last = jnp.zeros(())
+        if self.critic is not None and self.policy is not None:
+            x = path.x[-1]
+            last = self.critic.value(params.critic, x, self.policy.mean(params.policy, x))
+
+        def back(after: Array, r: Array) -> tuple[Array, Array]:
+            now = r + self.discount * after
+            return now, now
+
+        to_go = jax.lax.scan(back, last, rewards, reverse=True, unroll=True)[1]
+        return jnp.append(to_go, last)

@@ -1,0 +1,79 @@
+"""u = tanh(z), z ~ N(mu(x), diag(sigma(x)^2)): the squashed Gaussian policy.
+
+log pi(u|x) = log N(z; mu, sigma) - sum_i log(1 - tanh(z_i)^2)      (Haarnoja et al. 2018, eq. 21)
+
+One trunk with two heads, or two networks (thesis appendix B: a sine layer for the mean, a
+rectified layer for the deviation) where `log_std_activation` is given.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.networks import MLP, check, outputs
+from hybrid_rl.types import Spec
+
+
+@dataclass(frozen=True)
+class TanhGaussian:
+    """A stochastic policy on [-1, 1]^m.
+
+    Raises:
+        ValueError: for widths, activations or bounds that make no network.
+    """
+
+    hidden: tuple[int, ...] = (256, 256)
+    activation: str = "relu"
+    log_std_activation: str | None = None  # None: mean and deviation share the trunk
+    log_std_min: float = -5.0
+    log_std_max: float = 2.0
+    output_scale: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "hidden", tuple(self.hidden))
+        check("policy", self.hidden, self.activation)
+        check("policy", self.hidden, self.log_std_activation or self.activation)
+        if self.log_std_min >= self.log_std_max:
+            raise ValueError(f"policy.log_std_min={self.log_std_min}: must lie below log_std_max")
+
+    def _net(self, out: int, activation: str | None = None) -> MLP:
+        return MLP(self.hidden, out, activation or self.activation, self.output_scale)
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """First parameters. The key is consumed."""
+        x, m = jnp.zeros(spec.obs), spec.act
+        if self.log_std_activation is None:
+            return {"trunk": self._net(2 * m).init(key, x)}
+        mean, log_std = jax.random.split(key)
+        return {
+            "mean": self._net(m).init(mean, x),
+            "log_std": self._net(m, self.log_std_activation).init(log_std, x),
+        }
+
+    def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
+        """mu and sigma [..., m] before the squashing, at x [..., n]."""
+        if self.log_std_activation is None:
+            both = self._net(outputs(params["trunk"])).apply(params["trunk"], x)
+            mu, log_std = jnp.split(both, 2, axis=-1)
+        else:
+            m = outputs(params["mean"])
+            mu = self._net(m).apply(params["mean"], x)
+            log_std = self._net(m, self.log_std_activation).apply(params["log_std"], x)
+        return mu, jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
+
+    def mean(self, params: dict[str, Any], x: Array) -> Array:
+        """tanh(mu(x)) [..., m]."""
+        return jnp.tanh(self.gaussian(params, x)[0])
+
+    def sample(self, params: dict[str, Any], x: Array, key: Array) -> tuple[Array, Array]:
+        """u [..., m] ~ pi(.|x) and log pi(u|x) [...]. The key is consumed."""
+        mu, sigma = self.gaussian(params, x)
+        noise = jax.random.normal(key, mu.shape)
+        z = mu + sigma * noise
+        log_normal = -0.5 * noise**2 - jnp.log(sigma) - 0.5 * jnp.log(2 * jnp.pi)
+        log_jacobian = 2 * (jnp.log(2.0) - z - jax.nn.softplus(-2 * z))
+        return jnp.tanh(z), jnp.sum(log_normal - log_jacobian, axis=-1)

@@ -1,0 +1,26 @@
+"""v ~ pi(x): closed-loop proposals, each drawn at the imagined state (thesis Algorithm 3)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from jax import Array
+
+from hybrid_rl.types import Params, Policy, Spec
+
+
+@dataclass(frozen=True)
+class PolicyProposal:
+    """Candidates from the learned policy."""
+
+    policy: Policy
+
+    def init(self, spec: Spec) -> tuple[()]:
+        """Nothing is carried."""
+        return ()
+
+    def __call__(
+        self, params: Params, carry: Any, x: Array, plan: Array, key: Array
+    ) -> tuple[Array, Array, Any]:
+        """v [m] ~ pi(x) and log pi(v|x); `plan` plays no part. The key is consumed."""
+        v, log_prob = self.policy.sample(params.policy, x, key)
+        return v, log_prob, carry

@@ -1,0 +1,204 @@
+"""One decision of one learner: world -> memory -> learners -> params -> controller -> world."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+
+from hybrid_rl.data.replay import Memory, Replay
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import Controller, EnvState, Learner, Params, Spec, Transition
+
+
+@struct.dataclass
+class AgentState:
+    """All that evolves: a learner, its worlds, its memory, its key."""
+
+    env: EnvState  # [E, ...]
+    control: Any  # [E, ...]
+    memory: Memory
+    learners: dict[str, Any]
+    key: Array  # []
+
+
+@dataclass(frozen=True)
+class Agent:
+    """A method at work in `num_envs` worlds.
+
+    Each learner makes `updates` gradient steps a decision once `random_steps` decisions were
+    drawn uniformly and its batch is full.
+
+    Raises:
+        ValueError: for counts out of range, or updates that do not divide into decisions.
+    """
+
+    episode: Episode
+    controller: Controller
+    learners: Mapping[str, Learner]
+    replay: Replay
+    num_envs: int = 1
+    random_steps: int = 0
+    first_update: int = 0  # decisions before any learning, where the memory starts empty later on
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not isinstance(self.num_envs, int) or self.num_envs < 1:
+            raise ValueError(f"num_envs={self.num_envs}: must be a whole number, 1 or more")
+        if not isinstance(self.random_steps, int) or self.random_steps < 0:
+            raise ValueError(f"random_steps={self.random_steps}: must be a whole number, 0 or more")
+        for name, learner in self.learners.items():
+            _rhythm(name, learner, self.num_envs)
+
+    @property
+    def spec(self) -> Spec:
+        """The world's sizes and rate."""
+        return self.episode.spec
+
+    def init(self, key: Array) -> AgentState:
+        """The state before the first decision. The key is consumed."""
+        run, world, *learning = jax.random.split(key, 2 + len(self.learners))
+        env = jax.vmap(self.episode.reset)(jax.random.split(world, self.num_envs))
+        return AgentState(
+            env,
+            self._at_rest(),
+            self.replay.init(self.spec, self.num_envs),
+            {
+                name: learner.init(k, self.spec)
+                for (name, learner), k in zip(self.learners.items(), learning, strict=True)
+            },
+            run,
+        )
+
+    def params(self, state: AgentState) -> Params:
+        """What all learners know."""
+        known: dict[str, Any] = {}
+        for name, learner in self.learners.items():
+            known |= learner.params(state.learners[name])
+        return Params(**known)
+
+    def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
+        """One decision in every world, `step` [] decisions into the run; metrics name -> [].
+
+        A metric is NaN where there is nothing to tell, infinite where it is not finite.
+        `episode/...` are per world [E].
+        """
+        key, deciding, renewing, recalling = jax.random.split(state.key, 4)
+        params = self.params(state)
+        u, control, metrics = self._decide(params, state, step, deciding)
+        now = jax.vmap(self.episode.step)(state.env, u)
+        new = Transition(state.env.obs, u, now.reward, now.terminated, now.truncated, now.obs)
+        memory = self.replay.add(state.memory, new)
+        env = jax.vmap(self.episode.renew)(now, jax.random.split(renewing, self.num_envs))
+        control = jax.tree.map(
+            lambda rest, held: jnp.where(_like(now.done, held), rest, held),
+            self._at_rest(),
+            control,
+        )
+        learners, learned = self._learn(state.learners, params, memory, step, recalling)
+        metrics = {
+            **_told(metrics, step >= self.random_steps),
+            **learned,
+            **_told({"world/reward": now.reward, "world/obs": now.obs, "world/action": u}, True),
+            "episode/done": now.done,
+            "episode/return": now.info["return"],
+            "episode/length": now.info["decision"],
+        }
+        return AgentState(env, control, memory, learners, key), metrics
+
+    def _at_rest(self) -> Any:
+        """The controller's first state in every world [E, ...]."""
+        rest = self.controller.init(self.spec)
+        return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *x.shape)), rest)
+
+    def _decide(
+        self, params: Params, state: AgentState, step: Array, key: Array
+    ) -> tuple[Array, Any, dict[str, Array]]:
+        """Actions [E, m], controller states [E, ...], metrics [E]."""
+        at_random, planned = jax.random.split(key)
+        act = jax.vmap(self.controller.act, in_axes=(None, 0, 0, 0))
+        keys = jax.random.split(planned, self.num_envs)
+
+        def plan() -> tuple[Array, Any, dict[str, Array]]:
+            return act(params, state.control, state.env.obs, keys)
+
+        if not self.random_steps:
+            return plan()
+        u, control, metrics = jax.eval_shape(plan)
+        draw = jax.random.uniform(at_random, u.shape, u.dtype, -1, 1)
+        nothing = _zeros(metrics)
+        return jax.lax.cond(
+            step < self.random_steps, lambda: (draw, state.control, nothing), plan
+        )
+
+    def _learn(
+        self,
+        states: dict[str, Any],
+        params: Params,
+        memory: Memory,
+        step: Array,
+        key: Array,
+    ) -> tuple[dict[str, Any], dict[str, Array]]:
+        """Every learner's state after this decision, and the metrics of their last steps."""
+        learned, metrics = {}, {}
+        keys = jax.random.split(key, len(states)) if states else []
+        for k, (name, learner) in zip(keys, self.learners.items(), strict=True):
+            count, every = _rhythm(name, learner, self.num_envs)
+            full = learner.batch_size + self.num_envs
+            start = max(self.random_steps, full, self.first_update + full)
+
+            def one(state: Any, k: Array, learner: Learner = learner) -> tuple[Any, Any]:
+                drawing, updating = jax.random.split(k)
+                batch = self.replay.sample(memory, self.spec, learner.batch_size, drawing)
+                return learner.update(state, params, batch, updating)
+
+            def update(state: Any, k: Array, count: int = count, one: Any = one) -> Any:
+                rows = jax.random.split(k, count)
+                state, each = jax.lax.scan(one, state, rows, unroll=min(count, 4))
+                return state, jax.tree.map(lambda m: m[-1], each)
+
+            nothing = _zeros(jax.eval_shape(update, states[name], k)[1])
+            due = (step >= start) & ((step // self.num_envs) % every == 0)
+            learned[name], of_this = jax.lax.cond(
+                due, update, lambda state, k, nothing=nothing: (state, nothing), states[name], k
+            )
+            metrics |= _told(of_this, due)
+        return learned, metrics
+
+
+def _rhythm(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:
+    """(gradient steps at a time, rounds of decisions between them) for `learner.updates`."""
+    if not isinstance(learner.batch_size, int) or learner.batch_size < 1:
+        raise ValueError(
+            f"{name}_learner.batch_size={learner.batch_size}: must be a whole number, 1 or more"
+        )
+    a_round = learner.updates * num_envs
+    if a_round >= 1 and float(a_round).is_integer():
+        return int(a_round), 1
+    if 0 < a_round < 1 and float(1 / a_round).is_integer():
+        return 1, int(1 / a_round)
+    raise ValueError(
+        f"{name}_learner.updates={learner.updates}: with num_envs={num_envs} this gives "
+        f"{a_round:g} gradient steps a round; it must be a whole number, or one over one"
+    )
+
+
+def _zeros(shapes: Any) -> Any:
+    """Zeros in the shapes of `jax.eval_shape`."""
+    return jax.tree.map(lambda m: jnp.zeros(m.shape, m.dtype), shapes)
+
+
+def _told(metrics: dict[str, Array], when: Array | bool) -> dict[str, Array]:
+    """Means []: NaN unless `when`, infinite where some number is not finite."""
+    return {
+        name: jnp.where(when, jnp.where(jnp.isfinite(value).all(), value.mean(), jnp.inf), jnp.nan)
+        for name, value in metrics.items()
+    }
+
+
+def _like(flags: Array, x: Array) -> Array:
+    """Flags [E] with trailing axes, to select among x [E, ...]."""
+    return flags.reshape(flags.shape + (1,) * (x.ndim - 1))

@@ -1,0 +1,98 @@
+"""Episodes: time limit, action repeat, and the one place where a world starts anew."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+from jax.custom_batching import custom_vmap
+
+from hybrid_rl.types import Env, EnvState, Spec
+
+
+@dataclass(frozen=True)
+class Episode:
+    """A world with a clock.
+
+    `info["decision"]` and `info["return"]` count from the last reset. An action is held for
+    `action_repeat` decisions of the world, whose rewards add up until it terminates.
+
+    Raises:
+        ValueError: for counts that are not positive whole numbers.
+    """
+
+    env: Env
+    steps: int = 1000  # decisions until the time limit
+    action_repeat: int = 1
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("steps", "action_repeat"):
+            value = getattr(self, name)
+            if not isinstance(value, int) or value < 1:
+                raise ValueError(f"episode.{name}={value}: must be a whole number, 1 or more")
+
+    @property
+    def spec(self) -> Spec:
+        """The world's, at the rate of decisions."""
+        return self.env.spec._replace(dt=self.env.spec.dt * self.action_repeat)
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state of an episode. The key is consumed."""
+        state = self.env.reset(key)
+        clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
+        return state.replace(info={**state.info, **clock})
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """One decision with action [m]."""
+        now = self.env.step(state, action)
+
+        def again(_: int, now: EnvState) -> EnvState:
+            after = self.env.step(now, action)
+            after = after.replace(reward=now.reward + after.reward)
+            return jax.tree.map(lambda a, b: jnp.where(now.terminated, a, b), now, after)
+
+        if self.action_repeat > 1:
+            now = jax.lax.fori_loop(1, self.action_repeat, again, now)
+        decision = state.info["decision"] + 1
+        return now.replace(
+            truncated=(decision >= self.steps) & ~now.terminated,
+            info={
+                **now.info,
+                "decision": decision,
+                "return": state.info["return"] + now.reward,
+            },
+        )
+
+    def renew(self, state: EnvState, key: Array) -> EnvState:
+        """`state`, or a fresh episode where it is done. The key is consumed.
+
+        Under `vmap` the reset is computed only when some world needs one.
+        """
+
+        def choose(state: EnvState, key: Array) -> EnvState:
+            fresh = self.reset(key)
+            return jax.tree.map(lambda a, b: jnp.where(state.done, a, b), fresh, state)
+
+        return _when_any_done(choose)(state, key)
+
+
+def _when_any_done(choose: Callable[[EnvState, Array], EnvState]) -> Any:
+    """`choose(state, key)` behind one branch, however many `vmap`s are around it."""
+
+    @custom_vmap
+    def branch(state: EnvState, key: Array) -> EnvState:
+        return jax.lax.cond(jnp.any(state.done), choose, lambda state, _: state, state, key)
+
+    @branch.def_vmap
+    def _(size: int, batched: Any, state: EnvState, key: Array) -> tuple[EnvState, Any]:
+        def lead(is_batched: bool, x: Array) -> Array:
+            return x if is_batched else jnp.broadcast_to(x, (size, *x.shape))
+
+        state, key = jax.tree.map(lead, batched, [state, key])
+        now = _when_any_done(jax.vmap(choose))(state, key)
+        return now, jax.tree.map(lambda _: True, now)
+
+    return branch

@@ -1,0 +1,67 @@
+"""Undiscounted returns of a controller whose parameters stay as they are."""
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import Controller, EnvState, Params
+
+
+def returns(episode: Episode, controller: Controller, params: Params, keys: Array) -> Array:
+    """Return [N] of one episode per key [N]; all N worlds run side by side until all are done."""
+    starts, keys = _split(keys)
+    env = jax.vmap(episode.reset)(starts)
+    rest = controller.init(episode.spec)
+    control = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(keys), *x.shape)), rest)
+    act = jax.vmap(controller.act, in_axes=(None, 0, 0, 0))
+
+    def going(carry: tuple) -> Array:
+        return ~jnp.all(carry[0].done)
+
+    def decide(carry: tuple) -> tuple:
+        env, control, keys = carry
+        keys, now = _split(keys)
+        u, control, _ = act(params, control, env.obs, now)
+        after = jax.vmap(episode.step)(env, u)
+        frozen = jax.tree.map(
+            lambda old, new: jnp.where(
+                env.done.reshape(env.done.shape + (1,) * (new.ndim - 1)), old, new
+            ),
+            env,
+            after,
+        )
+        return frozen, control, keys
+
+    env = jax.lax.while_loop(going, decide, (env, control, keys))[0]
+    return env.info["return"]
+
+
+def rollout(
+    episode: Episode, controller: Controller, params: Params, key: Array, steps: int
+) -> EnvState:
+    """The states [steps+1, ...] of one episode, from its reset; it stands still once done."""
+    start, key = jax.random.split(key)
+    env = episode.reset(start)
+
+    def decide(carry: tuple, key: Array) -> tuple:
+        env, control = carry
+        u, control, _ = controller.act(params, control, env.obs, key)
+        after = episode.step(env, u)
+        env = jax.tree.map(lambda old, new: jnp.where(env.done, old, new), env, after)
+        return (env, control), env
+
+    carry = (env, controller.init(episode.spec))
+    _, states = jax.lax.scan(decide, carry, jax.random.split(key, steps))
+    return jax.tree.map(lambda first, rest: jnp.concatenate([first[None], rest]), env, states)
+
+
+def evaluation_keys(seed: int, episodes: int) -> Array:
+    """Keys [N] of the evaluation of learner `seed`: the same at every evaluation."""
+    return jax.random.split(jax.random.fold_in(jax.random.key(seed), 0xE7A1), episodes)
+
+
+def _split(keys: Array) -> tuple[Array, Array]:
+    """Two keys [N] from each of keys [N]."""
+    pairs = jax.vmap(jax.random.split)(keys)
+    return pairs[:, 0], pairs[:, 1]

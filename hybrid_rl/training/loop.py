@@ -1,0 +1,62 @@
+"""Many learners in one compiled program: `vmap` over seeds around a loop over decisions."""
+
+from dataclasses import dataclass
+from functools import partial
+from time import perf_counter
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.training.agent import Agent, AgentState
+
+
+@dataclass
+class Loop:
+    """Trains one learner per seed, at most `stride` rounds a call, compiled once.
+
+    A round is one decision in each of an agent's worlds. The number of rounds of a call is an
+    argument of the program, so that no odd remainder compiles again.
+    """
+
+    agent: Agent
+    seeds: tuple[int, ...]
+    stride: int
+    compile_s: float = 0.0  # [s] spent compiling so far
+
+    def init(self) -> AgentState:
+        """The stacked states [S, ...] before the first decision."""
+        keys = jnp.stack([jax.random.key(seed) for seed in self.seeds])
+        return jax.jit(jax.vmap(self.agent.init))(keys)
+
+    def compile(self, state: AgentState) -> Any:
+        """The program (state, first step, rounds) -> (state, metrics)."""
+        began = perf_counter()
+        program = jax.jit(self._advance, donate_argnums=0)
+        zero = jnp.zeros((), jnp.int32)
+        compiled = program.lower(state, zero, zero).compile()
+        self.compile_s += perf_counter() - began
+        return compiled
+
+    def _advance(
+        self, state: AgentState, start: Array, rounds: Array
+    ) -> tuple[AgentState, dict[str, Array]]:
+        """State after `rounds` rounds, and metrics [stride, S, ...] of which these are filled."""
+        step = jax.vmap(self.agent.step, in_axes=(0, None))
+        shapes = jax.eval_shape(step, state, start)[1]
+        rows = jax.tree.map(lambda m: jnp.zeros((self.stride, *m.shape), m.dtype), shapes)
+
+        def body(i: Array, carry: tuple[AgentState, Any]) -> tuple[AgentState, Any]:
+            state, rows = carry
+            state, metrics = step(state, start + i * self.agent.num_envs)
+            put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
+            return state, jax.tree.map(lambda row, m: put(row, m), rows, metrics)
+
+        return jax.lax.fori_loop(0, rounds, body, (state, rows))
+
+
+def finite(state: AgentState) -> Array:
+    """[] bool: every learned number of every learner is finite."""
+    leaves = [x for x in jax.tree.leaves(state.learners) if jnp.issubdtype(x.dtype, jnp.floating)]
+    return jnp.all(jnp.stack([jnp.all(jnp.isfinite(x)) for x in leaves]))

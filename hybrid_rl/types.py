@@ -1,0 +1,183 @@
+"""The nouns that parts exchange, and the protocols that parts follow.
+
+Shapes, once for the whole project:
+
+    o observation   n planning state   m action   T planning horizon [decisions]
+    K samples       B batch            E parallel worlds   C replay capacity
+
+Everything is written for ONE world and ONE sample; `jax.vmap` adds E, K, B and
+the seeds. Actions u lie in [-1, 1]^m everywhere; a world scales them to its own
+units. J is a return and is maximised everywhere. A key is always the last
+argument and is consumed.
+"""
+
+from typing import Any, NamedTuple, Protocol
+
+from flax import struct
+from jax import Array
+
+PyTree = Any
+
+
+class Spec(NamedTuple):
+    """Sizes and rate of a world, as every part sees it."""
+
+    obs: int  # o
+    act: int  # m
+    dt: float  # [s] between two decisions
+
+
+@struct.dataclass
+class EnvState:
+    """What a world is between two decisions (a superset of Brax's fields)."""
+
+    data: PyTree  # the world's own physical state
+    obs: Array  # [o]
+    reward: Array  # []
+    terminated: Array  # [] bool: the task ended, nothing comes after
+    truncated: Array  # [] bool: the clock ended it, the task would go on
+    metrics: dict[str, Array]  # name -> [], for logs alone
+    info: dict[str, Array]  # task memory
+
+    @property
+    def done(self) -> Array:
+        """[] bool: the episode is over, for either reason."""
+        return self.terminated | self.truncated
+
+
+class Transition(NamedTuple):
+    """One decision, as remembered."""
+
+    obs: Array  # [o]
+    action: Array  # [m]
+    reward: Array  # []
+    terminated: Array  # [] bool
+    truncated: Array  # [] bool
+    next_obs: Array  # [o] the true next observation, also where the episode ends
+
+
+class Batch(NamedTuple):
+    """B transitions, as recalled; arrays lead with [B]."""
+
+    obs: Array  # [B, o]
+    action: Array  # [B, m]
+    reward: Array  # [B]
+    terminated: Array  # [B] 0 or 1
+    truncated: Array  # [B] 0 or 1
+    next_obs: Array  # [B, o]
+    next_action: Array  # [B, m] executed at next_obs; meaningless where the episode ended
+
+
+class Path(NamedTuple):
+    """A trajectory, real or imagined: the currency between parts."""
+
+    x: Array  # [T+1, n]
+    u: Array  # [T, m]
+
+
+class Params(NamedTuple):
+    """Read-only view of all that is learned."""
+
+    model: PyTree = None  # f(x, u)
+    reward: PyTree = None  # r(x, u)
+    policy: PyTree = None  # pi(x)
+    critic: PyTree = None  # Q(x, u)
+    belief: PyTree = None  # whatever else a method learns
+
+
+class Env(Protocol):
+    """A world. Frozen and hashable; all that changes is in EnvState."""
+
+    spec: Spec
+
+    def reset(self, key: Array) -> EnvState:
+        """A first state, drawn with `key`."""
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later. action: [m] in [-1, 1]."""
+
+    def scene(self) -> str:
+        """MJCF text of the world as it is drawn."""
+
+    def pose(self, state: EnvState) -> Array:
+        """qpos [nq] of `scene` that shows `state`."""
+
+
+class Model(Protocol):
+    """x' = f(x, u)."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """First parameters."""
+
+    def lift(self, params: PyTree, obs: Array) -> Array:
+        """Planning state x [n] of an observation [o]."""
+
+    def step(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Mean of the next planning state [n]."""
+
+
+class Policy(Protocol):
+    """u = pi(x), stochastic."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """First parameters."""
+
+    def mean(self, params: PyTree, x: Array) -> Array:
+        """The action [m] without noise."""
+
+    def sample(self, params: PyTree, x: Array, key: Array) -> tuple[Array, Array]:
+        """An action [m] and its log-density []."""
+
+
+class Objective(Protocol):
+    """J(path), a return: what a planner maximises."""
+
+    discount: float  # per decision
+
+    def reward_to_go(self, params: Params, path: Path) -> Array:
+        """S [T+1]: the return from each time on. S[0] is J, S[T] the value of the last state."""
+
+
+class Proposal(Protocol):
+    """v ~ ?: where a sampling planner draws its candidates from."""
+
+    def init(self, spec: Spec) -> PyTree:
+        """Carry of one imagined path, before its first action."""
+
+    def __call__(
+        self, params: Params, carry: PyTree, x: Array, plan: Array, key: Array
+    ) -> tuple[Array, Array, PyTree]:
+        """A candidate v [m] at x [n] beside the plan [m], its log-density [], the next carry."""
+
+
+class Controller(Protocol):
+    """obs -> action."""
+
+    def init(self, spec: Spec) -> PyTree:
+        """State at the start of an episode."""
+
+    def act(
+        self, params: Params, state: PyTree, obs: Array, key: Array
+    ) -> tuple[Array, PyTree, dict[str, Array]]:
+        """Action [m] in [-1, 1], next state, metrics (name -> [])."""
+
+    def greedy(self) -> "Controller":
+        """The same controller without exploration, for evaluation."""
+
+
+class Learner(Protocol):
+    """data -> parameters."""
+
+    batch_size: int
+    updates: float  # per decision
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """First state: parameters, optimisers, targets."""
+
+    def params(self, state: PyTree) -> dict[str, PyTree]:
+        """The fields of `Params` that this learner owns."""
+
+    def update(
+        self, state: PyTree, params: Params, batch: Batch, key: Array
+    ) -> tuple[PyTree, dict[str, Array]]:
+        """One gradient step on `batch`; `params` is what all learners know."""
