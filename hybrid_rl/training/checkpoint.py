@@ -15,7 +15,10 @@ import contextlib
 import io
 import json
 import logging
+import re
 import shutil
+import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import quote
@@ -27,6 +30,7 @@ from hybrid_rl.training import manifest
 from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints that stay
+AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write
 
 
 class CheckpointError(OSError):
@@ -109,7 +113,7 @@ def _flatten(state: PyTree) -> tuple[dict[str, np.ndarray], dict[str, dict]]:
     """Arrays on the host by name, and what each was."""
     leaves, kinds = {}, {}
     for name, leaf in _named(state):
-        key = jax.dtypes.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+        key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
         kinds[name] = {
             "shape": list(leaf.shape),
             "dtype": str(leaf.dtype),
@@ -157,8 +161,8 @@ def _prune(folder: Path, newest: int, keep: int) -> None:
 def _refusal(folder: Path, step: int, problem: Exception) -> str:
     """One line for a checkpoint that could not be written."""
     reason = " ".join(str(problem).split()) or type(problem).__name__
-    if "No space left on device" in reason:
-        reason = "no space left on the disk"
+    if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's tale
+        reason = system[1].strip()
     before = [s for s in steps(folder) if not manifest.flaw(folder / str(s), False)]
     kept = f"checkpoint {before[-1]} is whole" if before else "there is no earlier one"
     return f"checkpoint {step} in {folder} was not written: {reason}; {kept}"
@@ -168,13 +172,15 @@ def _refusal(folder: Path, step: int, problem: Exception) -> str:
 def _quiet() -> Iterator[None]:
     """Keeps Orbax's and TensorStore's running commentary off the terminal."""
     logger = logging.getLogger("absl")
-    level = logger.level
+    level, hook = logger.level, sys.unraisablehook
     logger.setLevel(logging.CRITICAL + 1)
+    sys.unraisablehook = lambda _: None
     try:
         with contextlib.redirect_stderr(io.StringIO()):
             yield
     finally:
         logger.setLevel(level)
+        sys.unraisablehook = hook
 
 
 def _write(path: Path, leaves: dict[str, np.ndarray]) -> None:
@@ -184,7 +190,11 @@ def _write(path: Path, leaves: dict[str, np.ndarray]) -> None:
     filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
     handler = ocp.PyTreeCheckpointHandler(use_compression=False)
     with _quiet(), ocp.Checkpointer(handler) as writer:
-        writer.save(path, ocp.args.PyTreeSave(filled))
+        try:
+            writer.save(path, ocp.args.PyTreeSave(filled))
+        except Exception:
+            time.sleep(AFTERMATH)
+            raise
 
 
 def _read(place: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
@@ -210,7 +220,7 @@ def _read(place: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
 
 def _empty(leaf: jax.Array) -> dict:
     """Shape and dtype of an array without elements, of keys as of numbers."""
-    key = jax.dtypes.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+    key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
     data = jax.eval_shape(jax.random.key_data, leaf) if key else leaf
     return {"shape": data.shape, "dtype": data.dtype}
 

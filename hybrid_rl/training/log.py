@@ -55,7 +55,7 @@ class RunLog:
             plain = {name: number(value) for name, value in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
             self._rows.write(json.dumps(plain, allow_nan=False).encode("ascii") + b"\n")
-            board = self._board(plain["seed"])
+            board = self._board(int(row["seed"]))
             for name, value in plain.items():
                 if name not in PLACE and value is not None:
                     board.add_scalar(name, value, plain["step"])
