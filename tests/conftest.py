@@ -1,0 +1,21 @@
+"""What all tests run under: a CPU, strict shapes, and compiled programs kept between runs.
+
+Set as environment variables, before JAX is imported, so that commands which a test starts
+run under the same.
+"""
+
+import os
+from pathlib import Path
+
+CACHE = Path(__file__).resolve().parents[1] / ".cache" / "jax"
+SETTINGS = {
+    "JAX_PLATFORMS": "cpu",
+    "JAX_NUMPY_RANK_PROMOTION": "raise",
+    "JAX_COMPILATION_CACHE_DIR": str(CACHE),
+    "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.5",
+    "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
+    "MPLBACKEND": "agg",
+}
+
+for name, value in SETTINGS.items():
+    os.environ.setdefault(name, value)

@@ -1,0 +1,110 @@
+"""Who may import whom, and how long a page may be.
+
+        types
+          ^
+    core, networks
+          ^
+models policies objectives ...  data  <-  training  <-  commands (hybrid_rl/*.py)
+parts never import each other: they meet in a YAML file
+
+envs -> types alone
+"""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
+LAYER_FILES = {"types", "networks"}
+SHARED = {"types", "core", "networks"}
+ALLOWED = {
+    "types": set(),
+    "core": {"types", "core"},
+    "networks": {"types", "core"},
+    "envs": {"types", "envs"},
+    "training": {*SHARED, "data", "training"},
+}
+VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
+
+over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))
+
+
+def module_of(file):
+    """hybrid_rl.core.sampling of hybrid_rl/core/sampling.py; envs/ counts as hybrid_rl.envs."""
+    parts = file.relative_to(ROOT).with_suffix("").parts
+    parts = parts if parts[0] == "hybrid_rl" else ("hybrid_rl", *parts)
+    return ".".join(parts)
+
+
+def layer_of(module):
+    """The folder of a module; the name of a shared file; "command" of any other file."""
+    parts = module.split(".")
+    if len(parts) < 2 or parts[1].startswith("__"):
+        return "package"
+    is_file = (ROOT / "hybrid_rl" / f"{parts[1]}.py").exists()
+    return "command" if is_file and parts[1] not in LAYER_FILES else parts[1]
+
+
+def imports_of(file):
+    """Full names of all that a file imports, wherever in it."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            outer = module_of(file).split(".")[: -node.level] if node.level else []
+            inner = [*outer, *filter(None, [node.module])]
+            found |= {".".join([*inner, alias.name]) for alias in node.names}
+    return found
+
+
+@over_files
+def test_imports_point_inward(file):
+    layer = layer_of(module_of(file))
+    if layer == "command":
+        return
+    allowed = {"package", *ALLOWED.get(layer, SHARED)}
+    ours = {name for name in imports_of(file) if name.split(".")[0] == "hybrid_rl"}
+    outward = {name for name in ours if layer_of(name) not in allowed}
+    assert not outward, f"{layer} may import {sorted(allowed)} alone"
+
+
+@over_files
+def test_only_commands_know_the_configuration(file):
+    third_party = {name.split(".")[0] for name in imports_of(file)}
+    assert layer_of(module_of(file)) == "command" or not third_party & {"hydra", "omegaconf"}
+
+
+@over_files
+def test_worlds_are_imported_by_their_one_name(file):
+    assert not {name for name in imports_of(file) if name.split(".")[0] in ("envs", "conf")}
+
+
+@over_files
+def test_names_say_what_is_inside(file):
+    assert not VAGUE & set(file.relative_to(ROOT).with_suffix("").parts)
+
+
+@over_files
+def test_a_file_is_at_most_300_lines_and_a_function_50(file):
+    text = file.read_text()
+    assert len(text.splitlines()) <= 300
+    functions = (ast.FunctionDef, ast.AsyncFunctionDef)
+    sizes = {
+        node.name: node.end_lineno - node.lineno + 1
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, functions)
+    }
+    assert not {name: lines for name, lines in sizes.items() if lines > 50}
+
+
+def test_importing_the_package_imports_nothing_heavy():
+    code = "import hybrid_rl, sys; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    heavy = {"jax", "flax", "numpy", "mujoco", "brax", "hydra", "matplotlib"}
+    assert not heavy & set(done.stdout.split())

@@ -1,0 +1,85 @@
+"""An installed wheel works: from an empty folder, and from one with envs/ and conf/ of its own."""
+
+import json
+import os
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+pytestmark = pytest.mark.xdist_group("wheel")
+
+
+def run(*command, cwd):
+    """Standard output of a command that has to succeed, without this checkout on its path."""
+    env = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME")}
+    done = subprocess.run([*map(str, command)], cwd=cwd, env=env, capture_output=True, text=True)
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """The wheel, built from the sdist."""
+    out = tmp_path_factory.mktemp("dist")
+    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", out, ROOT, cwd=out)
+    return next(out.glob("*.whl"))
+
+
+@pytest.fixture(scope="module")
+def python(wheel, tmp_path_factory):
+    """Python of a fresh environment that holds the wheel, and sees our dependencies alone."""
+    venv = tmp_path_factory.mktemp("env")
+    run(sys.executable, "-m", "venv", "--without-pip", venv, cwd=venv)
+    python = venv / "bin/python"
+    pip = [sys.executable, "-m", "pip", "--python", python, "--quiet"]
+    run(*pip, "install", "--no-deps", "--no-index", wheel, cwd=venv)
+    # A path in a .pth file is searched, but the .pth files there are not read: among them
+    # the one that leads to this checkout.
+    site = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", cwd=venv)
+    places = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
+    Path(site.strip(), "dependencies.pth").write_text("\n".join(places))
+    return python
+
+
+@pytest.fixture(params=["empty", "with its own envs and conf"])
+def folder(request, tmp_path):
+    """Where a user stands."""
+    if request.param != "empty":
+        for name in ("envs", "conf", "tests"):
+            tmp_path.joinpath(name).mkdir()
+            tmp_path.joinpath(name, "__init__.py").write_text("raise RuntimeError('not ours')")
+        tmp_path.joinpath("conf", "train.yaml").write_text("task: not ours")
+    return tmp_path
+
+
+def test_the_wheel_holds_one_top_level_package(wheel):
+    names = zipfile.ZipFile(wheel).namelist()
+    assert {name.split("/")[0] for name in names} == {"hybrid_rl", f"{dist_of(wheel)}.dist-info"}
+    wanted = ["py.typed", "types.py", "envs/physics.py", "conf/train.yaml"]
+    assert not {f"hybrid_rl/{name}" for name in wanted} - set(names)
+    for source in [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml")]:
+        assert "__pycache__" in source.parts or f"hybrid_rl/{source.relative_to(ROOT)}" in names
+
+
+def dist_of(wheel):
+    """NAME-VERSION of a wheel's file name."""
+    return "-".join(wheel.name.split("-")[:2])
+
+
+def test_commands_work_from_any_folder(python, folder):
+    origin = run(python, "-c", "import hybrid_rl.envs as e; print(e.__file__)", cwd=folder)
+    assert Path(origin.strip()).is_relative_to(python.parents[1])
+    listed = run(python, "-m", "hybrid_rl.list", cwd=folder)
+    assert {"pendulum", "sac", "hybrid_stochastic"} <= set(listed.split())
+    overrides = "task=pendulum algo=sac total_steps=300 eval_every=300 eval_episodes=1 run_dir=run"
+    run(python, "-m", "hybrid_rl.train", *overrides.split(), cwd=folder)
+    summary = json.loads(folder.joinpath("run", "summary.json").read_text())
+    assert summary["finished"]
+    assert summary["total_steps"] == 300
+    rows = folder.joinpath("run", "metrics.jsonl").read_text().splitlines()
+    assert any("eval/return" in json.loads(row) for row in rows)
