@@ -41,6 +41,7 @@ class HalfCheetah:
 
     @property
     def spec(self) -> Spec:
+        """Sizes and rate."""
         return Spec(obs=17, act=6, dt=DT)
 
     @property
@@ -48,12 +49,14 @@ class HalfCheetah:
         return Physics(ASSETS[self.reward], self.physics)
 
     def reset(self, key: Array) -> EnvState:
+        """A first state, drawn with `key`."""
         key_pos, key_vel = jax.random.split(key)
         qpos = jax.random.uniform(key_pos, (9,), jnp.float32, -0.1, 0.1)
         qvel = 0.1 * jax.random.normal(key_vel, (9,), jnp.float32)
         return _state(self._body.reset(qpos, qvel), jnp.float32(0.0), jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later. action: [6] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, STEPS)
         speed = (data.qpos[0] - state.data.qpos[0]) / DT
@@ -71,9 +74,11 @@ class HalfCheetah:
         return pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
 
     def scene(self) -> str:
+        """MJCF text of the world as it is drawn."""
         return mjcf.text("halfcheetah.xml")
 
     def pose(self, state: EnvState) -> Array:
+        """Positions qpos [9] of the drawn world."""
         return state.data.qpos
 
 

@@ -21,7 +21,7 @@ def pybullet_reward(
     velocity: Array,  # [m] [rad/s]
     limits: Array,  # [m, 2] [rad]
 ) -> Array:
-    """r [] of one decision."""
+    """Reward [] of one decision."""
     middle, half = limits.mean(1), (limits[:, 1] - limits[:, 0]) / 2
     stuck = (jnp.abs((angle - middle) / half) > 0.99).sum()
     electricity = 2.0 * jnp.abs(action * 0.1 * velocity).mean() + 0.1 * (action**2).mean()

@@ -1,6 +1,7 @@
 """MuJoCo C on the threads of the CPU, called from inside a compiled JAX program.
 
-    [qpos, qvel, act, warmstart, ctrl] -> n mj_steps in float64 -> [qpos, qvel, act, warmstart, sensors]
+    x = [qpos, qvel, act, warmstart, ctrl] -> n mj_steps in float64
+      -> y = [qpos, qvel, act, warmstart, sensors]
 
 Stateless: whatever a step depends on goes in and comes out with the call, so that
 one pool of simulations serves all seeds and worlds, at any thread count, with the
@@ -72,7 +73,7 @@ def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> 
 
 @cache
 def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
-    """x [D] -> y [D'], on the CPU by a foreign call, elsewhere by a JAX callback."""
+    """Step x [D] to y [D'], on the CPU by a foreign call, elsewhere by a JAX callback."""
     model = mjcf.load(asset)
     width = model.nq + 2 * model.nv + model.na + model.nsensordata
     out = jax.ShapeDtypeStruct((width,), np.float32)
@@ -96,7 +97,7 @@ def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
 
 
 def step(asset: str, threads: int, n: int, x: jax.Array) -> jax.Array:
-    """[qpos, qvel, act, warmstart, sensors] after `n` steps from [qpos, qvel, act, warmstart, ctrl].
+    """What x = [qpos, qvel, act, warmstart, ctrl] becomes in `n` steps, with the sensors.
 
     n = 0 moves nothing and reads the sensors of positions and velocities.
     """
