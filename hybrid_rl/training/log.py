@@ -7,15 +7,17 @@ run cuts the file back to that length, so that every row is there exactly once.
 import json
 import math
 import os
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from hybrid_rl.training.manifest import write_text
+
+if TYPE_CHECKING:
+    from hybrid_rl.training.board import Board
 
 PLACE = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
 
@@ -32,7 +34,7 @@ class RunLog:
         self.seeds = tuple(seeds)
         run_dir.mkdir(parents=True, exist_ok=True)
         self._rows = (run_dir / "metrics.jsonl").open("ab")
-        self._boards: dict[int, Any] = {}  # seed -> SummaryWriter
+        self._boards: dict[int, Board] = {}  # by seed
         self._purge_step: int | None = None
 
     def __enter__(self) -> Self:
@@ -55,10 +57,8 @@ class RunLog:
             plain = {name: number(value) for name, value in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
             self._rows.write(json.dumps(plain, allow_nan=False).encode("ascii") + b"\n")
-            board = self._board(int(row["seed"]))
-            for name, value in plain.items():
-                if name not in PLACE and value is not None:
-                    board.add_scalar(name, value, plain["step"])
+            scalars = {n: v for n, v in plain.items() if n not in PLACE and v is not None}
+            self._board(int(row["seed"])).write(int(row["step"]), scalars)
         self._rows.flush()
 
     def flush(self) -> int:
@@ -91,17 +91,14 @@ class RunLog:
         write_text(path, json.dumps(_finite(fields), indent=2, allow_nan=False) + "\n")
         return path
 
-    def _board(self, seed: int) -> Any:
-        """The TensorBoard writer of a seed, opened when first needed."""
+    def _board(self, seed: int) -> "Board":
+        """The TensorBoard file of a seed, opened when first needed."""
         if seed not in self._boards:
-            from tensorboardX import SummaryWriter  # 0.2 s
+            from hybrid_rl.training.board import Board  # 0.2 s
 
-            folder = self.run_dir / "tensorboard"
-            self._boards[seed] = SummaryWriter(
-                str(folder / f"seed_{seed}" if len(self.seeds) > 1 else folder),
-                purge_step=self._purge_step,
-                filename_suffix=f".{time.time_ns()}",  # two files of one second stay two
-            )
+            several = (f"seed_{seed}",) if len(self.seeds) > 1 else ()
+            folder = self.run_dir.joinpath("tensorboard", *several)
+            self._boards[seed] = Board(folder, self._purge_step)
         return self._boards[seed]
 
 
