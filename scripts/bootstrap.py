@@ -38,13 +38,13 @@ def make_venv() -> None:
 
 def fetch_pip() -> Path:
     """The locked pip, as a wheel; it runs without being installed."""
-    pin = re.search(r"^pip==(\S+).*\\\n((?: +--hash=.*\n)+)", LOCK.read_text(), re.MULTILINE)
-    wheel = VENV / f"pip-{pin[1]}-py3-none-any.whl"
+    [(version, hashes)] = re.findall(r"^pip==(\S+)((?: \\\n +--hash=\S+)+)", LOCK.read_text(), re.M)
+    wheel = VENV / f"pip-{version}-py3-none-any.whl"
     index = os.environ.get("PIP_INDEX_URL", "https://pypi.org/simple").rstrip("/") + "/pip/"
     page = urllib.request.urlopen(index).read().decode()
-    link = re.search(rf'href="([^"]*{re.escape(wheel.name)})[#"]', page)[1]
+    link = re.findall(rf'href="([^"]*{re.escape(wheel.name)})[#"]', page)[0]
     data = urllib.request.urlopen(urllib.parse.urljoin(index, html.unescape(link))).read()
-    if hashlib.sha256(data).hexdigest() not in pin[2]:
+    if hashlib.sha256(data).hexdigest() not in hashes:
         sys.exit(f"{wheel.name} from {index} is not the one that {LOCK.name} names")
     wheel.write_bytes(data)
     return wheel
