@@ -1,0 +1,188 @@
+"""Learning curves as a picture.
+
+    python -m hybrid_rl.figures runs="runs/halfcheetah/*/*" metric=train/return out=figure.png
+
+A panel for each task; a line for each algorithm: the interquartile mean over seeds
+with its 95% bootstrap band (see hybrid_rl.curves). The numbers drawn are written
+beside the picture, as JSON.
+"""
+
+import json
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hybrid_rl import command
+from hybrid_rl.config import UsageError
+from hybrid_rl.curves import Curve, curves
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DEFAULTS = {
+    "runs": "",
+    "metric": "train/return",
+    "out": "figure.png",
+    "x": "step",
+    "group": "algo",
+    "smooth": "0",
+}
+SUFFIXES = (".png", ".pdf", ".svg")
+COLOURS = (  # Okabe and Ito: told apart by colour-blind readers too
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+    "#000000",
+)
+STROKES = ("-", "--", "-.", ":")  # when the colours are used up
+LABELS = {
+    "train/return": "Training return",
+    "train/length": "Training episode length [steps]",
+    "eval/return": "Evaluation return",
+    "eval/policy_return": "Evaluation return, policy alone",
+    "eval/planner_return": "Evaluation return, planner alone",
+}
+TIMES = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))  # [s]
+STYLE: dict[Any, Any] = {
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+    "pdf.fonttype": 42,  # text stays text
+    "svg.fonttype": "none",
+    "svg.hashsalt": "hybrid_rl",  # the same numbers, the same file
+}
+
+
+def plot(drawn: Sequence[Curve], metric: str = "train/return", x: str = "step") -> "Figure":
+    """A figure of `drawn`, one panel a task, at most three in a row."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    tasks = sorted({curve.task for curve in drawn})
+    labels = sorted({curve.label for curve in drawn})
+    across = min(3, len(tasks))
+    down = math.ceil(len(tasks) / across)
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(4.4 * across, 3.3 * down), layout="constrained")
+        panels = figure.subplots(down, across, squeeze=False).flat
+        for axes, task in zip(panels, tasks, strict=False):
+            _panel(axes, [curve for curve in drawn if curve.task == task], labels, x)
+            axes.set_title(task)
+            axes.set_ylabel(LABELS.get(metric, metric))
+        for axes in list(panels)[len(tasks) :]:
+            axes.remove()
+    return figure
+
+
+def save(figure: "Figure", drawn: Sequence[Curve], out: str | Path, **said: str) -> Path:
+    """Writes the picture, and the numbers in it as JSON beside it.
+
+    said: more to write into the JSON, such as metric="train/return".
+    """
+    import matplotlib
+
+    out = Path(out)
+    if out.suffix not in SUFFIXES:
+        raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
+    with matplotlib.rc_context(STYLE):
+        figure.savefig(out, dpi=200, metadata=undated)
+    numbers = {
+        **said,
+        "line": "interquartile mean over seeds",
+        "band": "95% percentile bootstrap over seeds",
+        "curves": [_numbers(curve) for curve in drawn],
+    }
+    out.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n", encoding="utf-8")
+    return out
+
+
+def _panel(axes: "Axes", drawn: list[Curve], labels: list[str], x: str) -> None:
+    """The lines of one task."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    end = max(curve.x[-1] for curve in drawn)
+    unit, name = next(pair for pair in TIMES if end >= pair[0] or pair[0] == 1.0)
+    scale = unit if x == "wall_s" else 1.0
+    for curve in drawn:
+        place = labels.index(curve.label)
+        colour = COLOURS[place % len(COLOURS)]
+        stroke = STROKES[place // len(COLOURS) % len(STROKES)]
+        number = len(curve.seeds)
+        label = f"{curve.label} ({number} seed{'s' * (number > 1)})"
+        at = curve.x / scale
+        dot = "o" if len(at) == 1 else None
+        axes.plot(at, curve.iqm, color=colour, linestyle=stroke, lw=1.6, marker=dot, label=label)
+        if number > 1:
+            axes.fill_between(at, curve.low, curve.high, color=colour, alpha=0.2, lw=0)
+    axes.set_xlabel(f"Wall time [{name}]" if x == "wall_s" else "Environment steps per learner")
+    axes.set_xlim(0, end / scale or 1.0)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_formatter(FuncFormatter(_thousands))
+    axes.legend()
+
+
+def _thousands(value: float, _: int | None = None) -> str:
+    """-12,500 or 0.25, with a true minus sign."""
+    return f"{value:,.10g}".replace("-", "\N{MINUS SIGN}")
+
+
+def _numbers(curve: Curve) -> dict:
+    """What is drawn of a curve, as JSON holds it."""
+    arrays = {name: getattr(curve, name) for name in ("x", "iqm", "low", "high", "each")}
+    return {
+        "task": curve.task,
+        "label": curve.label,
+        "seeds": curve.seeds,
+        "runs": curve.runs,
+        "notes": curve.notes,
+        **{name: array.astype("float32").tolist() for name, array in arrays.items()},
+    }
+
+
+def _width(text: str) -> float:
+    """smooth= as a number."""
+    try:
+        width = float(text)
+    except ValueError:
+        width = math.nan
+    if not 0 <= width < math.inf:
+        raise UsageError(f"smooth={text}: must be a number of steps (or seconds), 0 or more")
+    return width
+
+
+def main() -> None:
+    """The command."""
+    given = command.arguments(DEFAULTS)
+    said = DEFAULTS | given
+    if "runs" not in given:
+        raise UsageError('runs: not given; say runs="GLOB", such as runs="runs/*/*/*"')
+    if Path(said["out"]).suffix not in SUFFIXES:
+        raise UsageError(f"out={said['out']}: must end in {', '.join(SUFFIXES)}")
+    metric, x, group = said["metric"], said["x"], said["group"]
+    drawn = curves(said["runs"], metric, x, group, _width(said["smooth"]))
+    out = save(plot(drawn, metric, x), drawn, said["out"], metric=metric, x=x, group=group)
+    for curve in drawn:
+        ends = f"{curve.iqm[-1]:,.4g} [{curve.low[-1]:,.4g}, {curve.high[-1]:,.4g}]"
+        print(f"{curve.task}, {curve.label}: {len(curve.seeds)} seeds, last {metric} {ends}")
+    for note in (note for curve in drawn for note in curve.notes):
+        print(f"note: {note}")
+    print(f"{out} and {out.with_suffix('.json')}")
+
+
+if __name__ == "__main__":
+    command.guarded(main)
