@@ -71,4 +71,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (KeyboardInterrupt, OSError, subprocess.CalledProcessError) as error:
+        sys.exit(f"set-up did not finish ({error or 'interrupted'}); make starts it again")
