@@ -1,0 +1,94 @@
+"""A video of one episode of a trained run, without a display.
+
+python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
+
+The episode is the first of the run's own evaluation: same key, no exploration.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hybrid_rl import command
+from hybrid_rl.config import UsageError
+
+DEFAULTS = {
+    "run": "",
+    "out": "",
+    "mode": "full",
+    "seed": "",
+    "episode_steps": "",
+    "width": "640",
+    "height": "480",
+}
+FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
+
+
+def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0) -> tuple:
+    """One episode of a loaded run: poses [frames, nq] and its return.
+
+    trained: what `hybrid_rl.evaluate.load` returns. seed: of one of its learners; None is
+    the first. steps: at most this many decisions; 0 is the task's own limit.
+    """
+    import jax
+
+    from hybrid_rl.training.evaluate import evaluation_keys, rollout
+
+    seed = int(trained.seeds[0]) if seed is None else seed
+    if seed not in trained.seeds:
+        raise UsageError(f"seed={seed}: the run has {', '.join(map(str, trained.seeds))}")
+    if mode not in trained.controllers:
+        raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
+    world = replace(trained.episode, steps=steps or trained.episode.steps)
+    params = jax.tree.map(lambda leaf: leaf[trained.seeds.index(seed)], trained.params)
+
+    def go(params: Any, key: Any) -> tuple:
+        states = rollout(world, trained.controllers[mode], params, key, world.steps)
+        return jax.vmap(world.env.pose)(states), states.done, states.info["return"]
+
+    poses, done, returns = jax.jit(go)(params, evaluation_keys(seed, 1)[0])
+    last = int(np.argmax(done)) if np.any(done) else world.steps
+    return np.asarray(poses)[: last + 1], float(returns[last])
+
+
+def main() -> None:
+    """The command."""
+    given = command.arguments(DEFAULTS)
+    said = DEFAULTS | given
+    if "run" not in given:
+        raise UsageError("run: not given; say run=DIR, a folder that training wrote")
+    from hybrid_rl.drawing import SUFFIXES, backend, draw
+
+    out = Path(said["out"] or Path(said["run"]) / "video.mp4")
+    if out.suffix not in SUFFIXES:
+        raise UsageError(f"out={out}: must end in {' or '.join(SUFFIXES)}")
+    width, height = (
+        _count("width", said["width"], even=True),
+        _count("height", said["height"], True),
+    )
+    steps = _count("episode_steps", said["episode_steps"]) if said["episode_steps"] else 0
+    seed = _count("seed", said["seed"], least=0) if said["seed"] else None
+    backend()  # before minutes of work: nothing is lost where nothing can draw
+
+    from hybrid_rl.evaluate import load
+
+    trained = load(Path(said["run"]))
+    poses, total = episode(trained, said["mode"], seed, steps)
+    rate = 1 / trained.episode.spec.dt
+    stride = int(np.ceil(rate / FASTEST))
+    draw(trained.episode.env.scene(), poses[::stride], out, rate / stride, width, height)
+    print(f"{out}: {len(poses) - 1} decisions, return {total:,.1f}, step {trained.step:,}")
+
+
+def _count(key: str, text: str, even: bool = False, least: int = 1) -> int:
+    """A whole number from an argument."""
+    if text.isdecimal() and int(text) >= least and not (even and int(text) % 2):
+        return int(text)
+    kind = "an even number" if even else "a whole number"
+    raise UsageError(f"{key}={text}: must be {kind}, {least + even} or more")
+
+
+if __name__ == "__main__":
+    command.guarded(main)

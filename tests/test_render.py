@@ -1,0 +1,286 @@
+"""Drawing without a display, and the render command."""
+
+import subprocess
+import sys
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import imageio.v3 as iio
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl import command, drawing, render
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import EnvState, Spec
+
+SPEC = Spec(obs=1, act=1, dt=0.1)
+SCENE = """
+<mujoco>
+  <visual><headlight ambient="1 1 1" diffuse="0 0 0" specular="0 0 0"/></visual>
+  <worldbody>
+    <camera name="{camera}" pos="0 0 4" fovy="60"/>
+    <body>
+      <joint type="slide" axis="1 0 0"/>
+      <geom type="box" size=".2 .2 .2" rgba="1 0 0 1"/>
+    </body>
+    <geom type="box" pos="0 1 0" size=".2 .2 .2" rgba="0 0 1 1"/>
+  </worldbody>
+</mujoco>
+"""
+FIXED, FREE = SCENE.format(camera="track"), SCENE.format(camera="other")
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A box that is pushed to the right, and falls off after `end` decisions."""
+
+    end: int = 5
+    spec: Spec = SPEC
+
+    def reset(self, key):
+        no = jnp.zeros((), bool)
+        return EnvState(jnp.zeros(1), jnp.zeros(1), jnp.float32(0), no, no, {}, {})
+
+    def step(self, state, action):
+        x = state.data + 0.1 * action
+        fell = x[0] > 0.1 * self.end - 0.05
+        return state.replace(data=x, obs=x, reward=action[0], terminated=fell)
+
+    def scene(self):
+        return FIXED
+
+    def pose(self, state):
+        return state.data
+
+
+@dataclass(frozen=True)
+class Push:
+    """u = params."""
+
+    def init(self, spec):
+        return ()
+
+    def act(self, params, state, obs, key):
+        return params, state, {}
+
+
+@pytest.fixture
+def trained(monkeypatch):
+    """A run of two learners, of which the second does not push."""
+    run = SimpleNamespace(
+        episode=Episode(Slider(), steps=20),
+        controllers={"full": Push()},
+        params=jnp.array([[1.0], [0.0]]),
+        seeds=(3, 4),
+        step=7000,
+    )
+    module = SimpleNamespace(load=lambda path: run)
+    monkeypatch.setitem(sys.modules, "hybrid_rl.evaluate", module)
+    return run
+
+
+@pytest.fixture
+def can_draw():
+    """Whether this machine draws; where not, it has to say what to install."""
+    try:
+        drawing.backend()
+    except drawing.NoGraphicsError:
+        with pytest.raises(drawing.NoGraphicsError, match="install libegl1 or libosmesa6"):
+            drawing.backend()
+        return False
+    return True
+
+
+def call(monkeypatch, *arguments):
+    """Exit code of the command."""
+    monkeypatch.setattr(sys, "argv", ["render", *map(str, arguments)])
+    try:
+        command.guarded(render.main)
+    except SystemExit as end:
+        return end.code
+    return 0
+
+
+def centre(picture, channel):
+    """Mean (row, column) of the pixels of one pure colour, as shares of the picture."""
+    rest = [c for c in range(3) if c != channel]
+    found = (picture[..., channel] > 150) & (picture[..., rest] < 90).all(-1)
+    assert found.any()
+    return np.argwhere(found).mean(0) / picture.shape[:2]
+
+
+def positions(number=6):
+    return np.linspace(-1, 1, number)[:, None]
+
+
+def test_pictures_show_the_positions(can_draw):
+    if not can_draw:
+        return
+    pictures = list(drawing.frames(FIXED, positions(3), 64, 48))
+    assert all(picture.shape == (48, 64, 3) for picture in pictures)
+    red = np.array([centre(picture, 0) for picture in pictures])
+    np.testing.assert_allclose(red[:, 0], 0.5, atol=0.05)
+    assert (np.diff(red[:, 1]) > 0.1).all()  # to the right
+    assert centre(pictures[1], 2)[0] < 0.4  # y is up
+
+
+def test_without_a_camera_of_its_own_the_robot_is_followed(can_draw):
+    if not can_draw:
+        return
+    near, far = drawing.frames(FREE, np.array([[0.0], [5.0]]), 64, 48)
+    np.testing.assert_allclose(centre(near, 0), centre(far, 0), atol=0.05)
+    assert len(list(drawing.frames("<mujoco/>", np.zeros((1, 0)), 64, 48))) == 1
+
+
+def test_an_mp4_plays_everywhere(tmp_path, can_draw):
+    if not can_draw:
+        return
+    out = drawing.draw(FIXED, positions(), tmp_path / "new" / "a.mp4", 25, 64, 48)
+    said = iio.immeta(out, plugin="pyav")
+    assert (said["codec"], said["video_format"], said["fps"]) == ("h264", "yuv420p", 25)
+    film = iio.imread(out, plugin="pyav")
+    assert film.shape == (6, 48, 64, 3)
+    assert centre(film[5], 0)[1] > centre(film[0], 0)[1] + 0.2
+    assert [path.name for path in out.parent.iterdir()] == ["a.mp4"]
+
+
+def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, can_draw):
+    if not can_draw:
+        return
+    out = drawing.draw(FIXED, positions(), tmp_path / "a.gif", 40, 64, 48)
+    said = iio.immeta(out)
+    assert (said["duration"], said["loop"]) == (50, 0)  # [ms]: every second of 40 a second
+    film = iio.imread(out)
+    assert film.shape == (3, 48, 64, 3)
+    assert centre(film[2], 0)[1] > centre(film[0], 0)[1] + 0.2
+
+
+def test_what_fails_halfway_leaves_nothing(tmp_path, monkeypatch, can_draw):
+    if not can_draw:
+        return
+
+    def broken(*_):
+        yield np.zeros((48, 64, 3), np.uint8)
+        raise RuntimeError("broken")
+
+    monkeypatch.setattr(drawing, "frames", broken)
+    with pytest.raises(RuntimeError, match="broken"):
+        drawing.draw(FIXED, positions(), tmp_path / "a.mp4", 25, 64, 48)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_positions_of_another_scene_are_refused():
+    with pytest.raises(ValueError, match=r"qpos is \(2, 3\); the scene takes \[frames, 1\]"):
+        next(drawing.frames(FIXED, np.zeros((2, 3))))
+    with pytest.raises(ValueError, match=r"a\.avi: must end in \.mp4 or \.gif"):
+        drawing.draw(FIXED, positions(), "a.avi", 25)
+
+
+@pytest.fixture
+def choosing(monkeypatch):
+    """Decrees which backends work."""
+    drawing.backend.cache_clear()
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    monkeypatch.setattr(sys, "platform", "linux")
+
+    def works(*names):
+        code = f"import sys; sys.exit('{{backend}}' not in {names})"
+        monkeypatch.setattr(drawing, "TRIAL", code)
+
+    yield works
+    drawing.backend.cache_clear()
+
+
+def test_egl_comes_before_osmesa_unless_the_user_says_otherwise(choosing, monkeypatch):
+    choosing("egl", "osmesa")
+    assert drawing.backend() == "egl"
+    drawing.backend.cache_clear()
+    monkeypatch.setenv("MUJOCO_GL", "OSMesa")
+    assert drawing.backend() == "osmesa"
+
+
+def test_osmesa_is_taken_where_egl_fails(choosing):
+    choosing("osmesa")
+    assert drawing.backend() == "osmesa"
+
+
+def test_a_machine_that_cannot_draw_says_what_to_install(choosing, monkeypatch, capsys, tmp_path):
+    choosing()
+    assert call(monkeypatch, f"run={tmp_path}") == 1
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "egl and osmesa failed; install libegl1 or libosmesa6" in said
+
+
+@pytest.mark.parametrize("name", drawing.BACKENDS)
+def test_each_backend_draws_or_is_not_chosen(name):
+    """In a process of its own, after mujoco was imported for no display at all."""
+    code = (
+        "import mujoco, numpy as np, sys\n"
+        "from hybrid_rl import drawing\n"
+        "try: name = drawing.backend()\n"
+        "except drawing.NoGraphicsError as problem: sys.exit(str(problem))\n"
+        f"assert name == {name!r}\n"
+        f"pictures = list(drawing.frames('''{FIXED}''', np.zeros((2, 1)), 64, 48))\n"
+        "assert (pictures[0] == pictures[1]).all() and pictures[0].std() > 10\n"
+    )
+    env = {**drawing.os.environ, "MUJOCO_GL": name}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    assert done.stdout == ""
+    if done.returncode:
+        assert done.stderr.startswith(f"cannot draw without a display: {name} failed; install")
+    else:
+        assert done.stderr == ""
+
+
+def test_an_episode_ends_where_the_world_ends(trained):
+    poses, total = render.episode(trained)
+    np.testing.assert_allclose(poses[:, 0], 0.1 * np.arange(6), atol=1e-6)
+    assert total == 5
+    poses, total = render.episode(trained, seed=4)
+    assert (poses.shape, total) == ((21, 1), 0)
+    poses, total = render.episode(trained, steps=3)
+    assert (len(poses), total) == (4, 3)
+
+
+def test_the_command_writes_a_video_in_real_time(trained, tmp_path, monkeypatch, capsys, can_draw):
+    if not can_draw:
+        return
+    assert call(monkeypatch, f"run={tmp_path}", "width=64", "height=48") == 0
+    out = tmp_path / "video.mp4"
+    assert iio.immeta(out, plugin="pyav")["fps"] == pytest.approx(10)
+    assert len(iio.imread(out, plugin="pyav")) == 6
+    said = capsys.readouterr().out.splitlines()[-1]
+    assert said == f"{out}: 5 decisions, return 5.0, step 7,000"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ([], "run: not given"),
+        (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4 or .gif"),
+        (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
+        (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),
+        (["run=x", "seed=five"], "seed=five: must be a whole number, 0 or more"),
+        (["run=x", "colour=red"], "colour=red: unknown argument"),
+        (["run=x", "seed=5"], "seed=5: the run has 3, 4"),
+        (["run=x", "mode=planner"], "mode=planner: the run has full"),
+    ],
+)
+def test_bad_usage_is_one_line_and_code_2(trained, monkeypatch, capsys, arguments, line):
+    monkeypatch.setattr(drawing, "backend", lambda: "egl")
+    assert call(monkeypatch, *arguments) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert line in said
+
+
+def test_a_fast_world_skips_pictures(trained, tmp_path, monkeypatch, can_draw):
+    """200 decisions a second: every fourth is drawn, at 50 a second."""
+    fast = Slider(end=9, spec=SPEC._replace(dt=0.005))
+    trained.episode = Episode(fast, steps=20)
+    if can_draw:
+        assert call(monkeypatch, "run=x", f"out={tmp_path}/a.mp4", "width=64", "height=48") == 0
+        assert iio.immeta(tmp_path / "a.mp4", plugin="pyav")["fps"] == pytest.approx(50)
+        assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3
