@@ -44,7 +44,7 @@ def _pool(asset: str, worlds: int, threads: int) -> _Pool:
     sizes = (model.nq, model.nv, model.na, model.nv, model.nu)
     first = 1  # column 0 is the time
     inputs = batch.state[:, first : first + sum(sizes)]
-    if model.nhistory or not np.shares_memory(inputs[:, -1], batch.bind("ctrl")):
+    if model.nhistory:
         raise ValueError(f"{asset}: actuators or sensors with delay have no place in the state")
     late = np.repeat(model.sensor_needstage == _LATE, model.sensor_dim)
     return _Pool(batch, inputs, batch.bind("sensordata"), late, threading.Lock())

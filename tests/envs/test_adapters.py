@@ -1,0 +1,114 @@
+"""Our worlds as other libraries see them."""
+
+import gymnasium
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode
+
+from hybrid_rl.envs.as_gymnasium import World, Worlds
+from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.envs.hopper import Hopper
+
+
+@pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
+def test_gymnasium_accepts_a_world():
+    check_env(World(Hopper("native"), steps=20), skip_render_check=True)
+
+
+def test_world_is_our_world():
+    env = HalfCheetah("native")
+    world = World(env, steps=5)
+    world.reset(seed=0)
+    state, step = world._state, jax.jit(env.step)
+    for t in range(5):
+        action = world.action_space.sample()
+        obs, reward, terminated, truncated, _ = world.step(action)
+        state = step(state, action)
+        np.testing.assert_allclose(obs, state.obs, rtol=1e-6)
+        assert reward == pytest.approx(float(state.reward), rel=1e-5)
+        assert (terminated, truncated) == (False, t == 4)
+
+
+def test_world_repeats_by_seed():
+    world = World(Hopper("native"))
+    first, again, other = (world.reset(seed=s)[0] for s in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert (first != other).any()
+    assert (world.reset()[0] != other).any()
+
+
+def _play(worlds, seed, count):
+    worlds.reset(seed=seed)
+    rng = np.random.default_rng(0)
+    for _ in range(count):
+        action = rng.uniform(-1, 1, worlds.action_space.shape)
+        yield worlds.step(action)
+
+
+def test_worlds_reset_in_the_same_step():
+    worlds = Worlds(Hopper("native"), 5, steps=12)
+    assert worlds.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+    fell = stopped = 0
+    for obs, reward, terminated, truncated, infos in _play(worlds, 0, 60):
+        done = terminated | truncated
+        assert reward.shape == (5,)
+        assert not (terminated & truncated).any()
+        # A first state stands still; a last one does not.
+        assert (np.abs(obs[done, 5:]) <= 0.005).all()
+        if done.any():
+            np.testing.assert_array_equal(infos["_final_obs"], done)
+            assert (np.abs(infos["final_obs"][done, 5:]) > 0.005).any(1).all()
+        fell, stopped = fell + terminated.sum(), stopped + truncated.sum()
+    assert fell > 0
+    assert stopped > 0
+
+
+def test_worlds_are_worlds():
+    """World i of seed s starts as a lone world of seed s + i; episodes end alike."""
+    many = [o for o, *_ in _play(Worlds(Hopper("native"), 3, steps=9), 4, 30)]
+    again = [o for o, *_ in _play(Worlds(Hopper("native"), 3, steps=9), 4, 30)]
+    shifted = [o for o, *_ in _play(Worlds(Hopper("native"), 3, steps=9), [5, 6, 7], 1)]
+    np.testing.assert_array_equal(many, again)
+    assert (shifted[0] != many[0]).any()
+    first, _ = Worlds(Hopper("native"), 3).reset(seed=4)
+    second, _ = Worlds(Hopper("native"), 3).reset(seed=5)
+    np.testing.assert_array_equal(first[1:], second[:2])
+
+
+def test_gymnasium_counts_episodes():
+    worlds = gymnasium.wrappers.vector.RecordEpisodeStatistics(Worlds(Hopper("native"), 4, steps=6))
+    lengths = [
+        n
+        for *_, infos in _play(worlds, 0, 12)
+        if "episode" in infos
+        for n in infos["episode"]["l"][infos["_episode"]]
+    ]
+    assert lengths == [6] * 8
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_brax_wrappers_run():
+    from brax.envs import training
+
+    from hybrid_rl.envs.as_brax import World as BraxWorld
+
+    env = training.wrap(BraxWorld(Hopper("native")), episode_length=6, action_repeat=2)
+    state = jax.jit(env.reset)(jax.random.split(jax.random.PRNGKey(0), 3))
+    first, step = state.obs, jax.jit(env.step)
+    ours, own = Hopper("native"), jax.jit(jax.vmap(Hopper("native").step))
+    truth = jax.vmap(ours.reset)(jax.random.split(jax.random.PRNGKey(0), 3))
+    for t in range(3):
+        action = jnp.full((3, 3), 0.1 * t)
+        for _ in range(2):
+            truth = own(truth, action)
+        state = step(state, action)
+        if t < 2:
+            np.testing.assert_allclose(state.obs, truth.obs, atol=1e-5)
+            assert not state.done.any()
+    assert state.done.all()
+    assert state.info["truncation"].all()
+    np.testing.assert_allclose(state.info["episode_metrics"]["length"], 6)
+    np.testing.assert_array_equal(state.obs, first)

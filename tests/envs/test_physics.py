@@ -1,0 +1,191 @@
+"""The stepper itself: many worlds, threads, sensors, errors."""
+
+import threading
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+
+from hybrid_rl.envs import foreign, mjcf
+from hybrid_rl.envs.physics import Physics, PhysicsState, resolve
+
+CHEETAH = Physics("halfcheetah.xml", "native")
+SENSING = """
+<mujoco>
+  <option><flag autoreset="disable"/></option>
+  <worldbody>
+    <body>
+      <joint name="first" axis="0 1 0"/>
+      <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.05" contype="0"/>
+      <body pos="0 0 -1">
+        <joint name="second" axis="0 1 0"/>
+        <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.05" contype="0"/>
+        <site name="tip" pos="0 0 -1"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator><motor joint="second"/></actuator>
+  <sensor>
+    <jointvel name="spin" joint="second"/>
+    <framepos name="tip" objtype="site" objname="tip"/>
+    <framelinvel name="speed" objtype="site" objname="tip"/>
+  </sensor>
+</mujoco>
+"""
+
+
+def _states(physics, count):
+    rng = np.random.default_rng(0)
+    qpos = rng.uniform(-0.1, 0.1, (count, 9)).astype(np.float32)
+    qvel = rng.normal(0, 0.1, (count, 9)).astype(np.float32)
+    ctrl = rng.uniform(-1, 1, (count, 6)).astype(np.float32)
+    return jax.vmap(physics.reset)(qpos, qvel), jnp.asarray(ctrl)
+
+
+def _many(physics, decisions):
+    """`decisions` in one scan, for any number of worlds."""
+
+    def run(state, ctrl):
+        return jax.lax.fori_loop(0, decisions, lambda _, s: physics.step(s, ctrl, 5), state)
+
+    return jax.jit(jax.vmap(run))
+
+
+def _finishes(work, seconds=120.0):
+    """Run `work` on a thread of its own, so that a deadlock fails instead of hanging."""
+    out = []
+    thread = threading.Thread(target=lambda: out.append(jax.block_until_ready(work())), daemon=True)
+    thread.start()
+    thread.join(seconds)
+    assert out, f"not finished after {seconds} s, or failed"
+    return out[0]
+
+
+@pytest.mark.parametrize(("count", "decisions"), [(1, 300), (5, 200), (64, 40), (1024, 4)])
+def test_batch_is_its_rows(count, decisions):
+    state, ctrl = _states(CHEETAH, count)
+    many = _finishes(lambda: _many(CHEETAH, decisions)(state, ctrl))
+    row = jax.tree.map(lambda a: a[-1:], state)
+    one = _finishes(lambda: _many(CHEETAH, decisions)(row, ctrl[-1:]))
+    for a, b in zip(jax.tree.leaves(many), jax.tree.leaves(one), strict=True):
+        np.testing.assert_array_equal(a[-1:], b)
+
+
+def test_two_programs_at_once():
+    state, ctrl = _states(CHEETAH, 64)
+    run = _many(CHEETAH, 20)
+    alone = jax.block_until_ready(run(state, ctrl))
+    results = [None] * 4
+
+    def work(i):
+        results[i] = run(state, ctrl)
+
+    threads = [threading.Thread(target=work, args=(i,), daemon=True) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    for result in results:
+        np.testing.assert_array_equal(_finishes(lambda r=result: r).qpos, alone.qpos)
+
+
+def test_threads_do_not_matter():
+    state, ctrl = _states(CHEETAH, 64)
+    one, two = (
+        _many(Physics("halfcheetah.xml", "native", threads=n), 5)(state, ctrl) for n in (1, 2)
+    )
+    np.testing.assert_array_equal(one.qpos, two.qpos)
+
+
+def test_continuing_is_not_stopping():
+    """A state that was saved and read back goes on with the same bits."""
+    state, ctrl = _states(CHEETAH, 2)
+    half = _many(CHEETAH, 10)
+    through = _many(CHEETAH, 20)(state, ctrl)
+    saved = jax.tree.map(np.asarray, half(state, ctrl))
+    np.testing.assert_array_equal(half(jax.tree.map(jnp.asarray, saved), ctrl).qpos, through.qpos)
+
+
+def test_a_diverged_world_is_nan_and_alone():
+    state, ctrl = _states(CHEETAH, 3)
+    state = state.replace(qpos=jnp.asarray(state.qpos).at[1, 2].set(jnp.inf))
+    after = _many(CHEETAH, 1)(state, ctrl)
+    assert np.isnan(after.qpos[1]).all()
+    assert np.isfinite(after.qpos[jnp.array([0, 2])]).all()
+
+
+def test_without_sensors_a_reset_is_pure():
+    text = str(jax.make_jaxpr(CHEETAH.reset)(jnp.zeros(9), jnp.zeros(9)))
+    assert "ffi_call" not in text
+    assert "callback" not in text
+
+
+def test_compiled_programs_can_be_kept():
+    """JAX's persistent cache refuses programs that call Python by its own callbacks."""
+    state, ctrl = _states(CHEETAH, 2)
+    text = _many(CHEETAH, 1).lower(state, ctrl).compile().as_text()
+    assert "hybrid_rl.native" in text
+    assert "xla_ffi_python" not in text
+
+
+def _sensed(model, qpos, qvel):
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = qpos, qvel
+    mujoco.mj_forward(model, data)
+    return data.sensordata
+
+
+@pytest.mark.parametrize("implementation", ["native", "mjx"])
+def test_sensors_belong_to_the_state(implementation, tmp_path):
+    file = tmp_path / "double.xml"
+    file.write_text(SENSING)
+    physics = Physics(str(file), implementation)
+    state = jax.jit(physics.reset)(jnp.array([0.5, 1.0]), jnp.array([2.0, -3.0]))
+    after = jax.jit(lambda s: physics.step(s, jnp.ones(1), 5))(state)
+    for now in (state, after):
+        expected = _sensed(mjcf.load(str(file)), now.qpos, now.qvel)
+        np.testing.assert_allclose(now.sensors, expected, atol=1e-5)
+        np.testing.assert_array_equal(physics.sensor(now, "tip"), now.sensors[1:4])
+    assert (np.abs(after.sensors - state.sensors) > 1e-3).sum() >= 5
+
+
+def test_state_is_small_and_float32():
+    state = CHEETAH.reset(np.zeros(9), np.zeros(9))
+    assert isinstance(state, PhysicsState)
+    assert {leaf.dtype for leaf in jax.tree.leaves(state)} == {np.dtype("float32")}
+    assert sum(leaf.size for leaf in jax.tree.leaves(state)) == 9 + 9 + 9 + 6
+
+
+def test_auto_is_native_on_a_cpu():
+    assert resolve("auto") == "native"
+    assert resolve("mjx") == "mjx"
+
+
+def test_unknown_asset_is_named():
+    with pytest.raises(ValueError, match=r"no model .*unicorn\.xml.*halfcheetah\.xml"):
+        Physics("unicorn.xml").reset(jnp.zeros(1), jnp.zeros(1))
+
+
+def test_a_model_of_your_own(tmp_path):
+    file = tmp_path / "own.xml"
+    ball = "<worldbody><body><freejoint/><geom size='1'/></body></worldbody>"
+    file.write_text(f"<mujoco>{ball}</mujoco>")
+    with pytest.raises(ValueError, match="autoreset"):
+        Physics(str(file), "native").reset(jnp.zeros(7), jnp.zeros(6))
+    file.write_text(f"<mujoco><option><flag autoreset='disable'/></option>{ball}</mujoco>")
+    physics = Physics(str(file), "native")
+    state = physics.step(physics.reset(jnp.eye(7)[3], jnp.zeros(6)), jnp.zeros(0), 10)
+    np.testing.assert_allclose(state.qvel[2], -9.81 * 0.02, rtol=1e-5)
+
+
+def test_an_error_inside_a_foreign_call_comes_out():
+    def fail(x, y):
+        raise ArithmeticError("no luck today")
+
+    foreign.register("hybrid_rl.test.fails", fail)
+    out = jax.ShapeDtypeStruct((3,), np.float32)
+    call = jax.ffi.ffi_call("hybrid_rl.test.fails", out)
+    with pytest.raises(Exception, match="no luck today"):
+        jax.block_until_ready(jax.jit(call)(jnp.zeros(3)))

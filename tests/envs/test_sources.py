@@ -1,0 +1,249 @@
+"""Worlds against where they come from: Gymnasium's models and environments, formulas."""
+
+from pathlib import Path
+
+import gymnasium
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+from worlds import TASKS
+
+from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.cartpole import Cartpole
+from hybrid_rl.envs.halfcheetah import LEGS, HalfCheetah, _kneels
+from hybrid_rl.envs.locomotion import pybullet_reward
+from hybrid_rl.envs.physics import Physics
+
+FILES = {"halfcheetah": "half_cheetah.xml", "hopper": "hopper.xml"}
+NAMES = {"halfcheetah": "HalfCheetah-v5", "hopper": "Hopper-v5", "pendulum": "Pendulum-v1"}
+FIELDS = (
+    "body_mass",
+    "body_inertia",
+    "body_ipos",
+    "body_iquat",
+    "body_pos",
+    "body_quat",
+    "body_parentid",
+    "dof_armature",
+    "dof_damping",
+    "dof_frictionloss",
+    "jnt_type",
+    "jnt_axis",
+    "jnt_range",
+    "jnt_limited",
+    "jnt_stiffness",
+    "jnt_solref",
+    "jnt_solimp",
+    "jnt_margin",
+    "qpos0",
+    "qpos_spring",
+    "geom_type",
+    "geom_pos",
+    "geom_quat",
+    "geom_bodyid",
+    "geom_friction",
+    "geom_condim",
+    "geom_contype",
+    "geom_conaffinity",
+    "geom_margin",
+    "geom_gap",
+    "geom_solref",
+    "geom_solimp",
+    "geom_solmix",
+    "geom_priority",
+    "actuator_gear",
+    "actuator_ctrlrange",
+    "actuator_ctrllimited",
+    "actuator_trnid",
+    "actuator_gainprm",
+    "actuator_biasprm",
+    "actuator_forcelimited",
+)
+OPTIONS = (
+    "timestep",
+    "integrator",
+    "gravity",
+    "solver",
+    "iterations",
+    "ls_iterations",
+    "tolerance",
+    "ls_tolerance",
+    "cone",
+    "jacobian",
+    "impratio",
+    "density",
+    "viscosity",
+    "wind",
+    "enableflags",
+)
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    """MuJoCo logs to the working directory that an old model's settotalmass is deprecated."""
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture(params=FILES)
+def models(request):
+    folder = Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets"
+    theirs = mujoco.MjModel.from_xml_path(str(folder / FILES[request.param]))
+    return mjcf.load(f"{request.param}.xml"), theirs
+
+
+@pytest.mark.parametrize("field", FIELDS)
+def test_model_field(models, field):
+    ours, theirs = (getattr(m, field) for m in models)
+    np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("field", OPTIONS)
+def test_model_option(models, field):
+    ours, theirs = (getattr(m.opt, field) for m in models)
+    np.testing.assert_array_equal(ours, theirs)
+
+
+def test_capsules_are_as_large(models):
+    ours, theirs = (m.geom_size[1:] for m in models)  # 0 is the floor
+    np.testing.assert_allclose(ours, theirs, rtol=1e-12)
+
+
+def test_only_autoreset_differs(models):
+    ours, theirs = (m.opt.disableflags for m in models)
+    assert ours ^ theirs == mujoco.mjtDisableBit.mjDSBL_AUTORESET
+
+
+def _set(task, env, state, qpos, qvel):
+    """`state` at qpos, qvel, with what follows from them."""
+    if task == "pendulum":
+        return state.replace(data=jnp.array([qpos[0], qvel[0]], jnp.float32))
+    data = env._body.reset(jnp.asarray(qpos), jnp.asarray(qvel))
+    return state.replace(data=data)
+
+
+@pytest.mark.parametrize("task", NAMES)
+def test_trajectory_and_reward(task):
+    """20 decisions; Gymnasium in float64 throughout."""
+    theirs = gymnasium.make(NAMES[task]).unwrapped
+    theirs.reset(seed=3)
+    rng = np.random.default_rng(0)
+    if task == "pendulum":
+        qpos, qvel = theirs.state[:1], theirs.state[1:]
+        scale = 2.0
+    else:
+        qpos, qvel = theirs.data.qpos, theirs.data.qvel
+        scale = 1.0
+    ours = TASKS[task](physics="native")
+    state = _set(task, ours, ours.reset(jax.random.key(0)), qpos, qvel)
+    step = jax.jit(ours.step)
+    for _ in range(20):
+        action = rng.uniform(-1, 1, ours.spec.act).astype(np.float32)
+        obs, reward, terminated, _, _ = theirs.step(scale * action)
+        state = step(state, action)
+        np.testing.assert_allclose(state.obs, obs, atol=1e-4)
+        np.testing.assert_allclose(state.reward, reward, atol=1e-4)
+        assert bool(state.terminated) == terminated
+    theirs.close()
+
+
+def test_hopper_falls_when_theirs_does():
+    theirs = gymnasium.make("Hopper-v5").unwrapped
+    theirs.reset(seed=1)
+    ours = TASKS["hopper"](physics="native")
+    state = _set("hopper", ours, ours.reset(jax.random.key(0)), theirs.data.qpos, theirs.data.qvel)
+    step = jax.jit(ours.step)
+    action = np.array([0.5, -0.5, 0.3], np.float32)
+    lasted = 0
+    while not state.terminated:
+        terminated = theirs.step(action)[2]
+        state = step(state, action)
+        assert bool(state.terminated) == terminated
+        lasted += 1
+    assert 5 < lasted < 200
+
+
+@pytest.mark.parametrize("task", ["halfcheetah", "hopper"])
+def test_starts_are_spread_as_theirs(task):
+    theirs = gymnasium.make(NAMES[task]).unwrapped
+    a = np.array([theirs.reset(seed=i)[0] for i in range(300)])
+    b = jax.vmap(TASKS[task](physics="native").reset)(jax.random.split(jax.random.key(0), 300))
+    b = np.asarray(b.obs)
+    np.testing.assert_allclose(a.mean(0), b.mean(0), atol=5 * a.std(0).max() / 300**0.5)
+    np.testing.assert_allclose(a.std(0), b.std(0), rtol=0.25)
+    theirs.close()
+
+
+def test_walker_reward_by_hand():
+    limits = jnp.array([[-1.0, 1.0], [0.0, 2.0]])
+    reward = pybullet_reward(
+        jnp.array(True),
+        jnp.float32(2.0),
+        jnp.array([0.5, -1.0]),
+        jnp.array([0.0, 2.0]),
+        jnp.array([4.0, 2.0]),
+        limits,
+    )
+    # 1 + 2 - 2 * mean(.5 * .4, 1 * .2) - 0.1 * mean(.25, 1) - 0.1 * 1
+    np.testing.assert_allclose(reward, 1 + 2 - 2 * 0.2 - 0.0625 - 0.1, rtol=1e-6)
+
+
+def test_cheetah_kneels_when_mujoco_says_contact():
+    body = Physics("halfcheetah_contact.xml", "native")
+    model, rng = body.model, np.random.default_rng(0)
+    data = mujoco.MjData(model)
+    qpos = rng.uniform(-0.5, 0.5, (300, 9)).astype(np.float32)
+    qpos[:, 1] -= 0.1
+    seen = jax.vmap(lambda q: _kneels(body, body.reset(q, jnp.zeros(9))))(qpos)
+    legs, truth = {model.geom(name).id for name in LEGS}, []
+    for q in qpos:
+        data.qpos[:] = q
+        mujoco.mj_forward(model, data)
+        truth.append(bool(legs & set(data.contact.geom2.tolist())))
+    assert 30 < sum(truth) < 270
+    np.testing.assert_array_equal(seen, truth)
+
+
+def test_cheetah_pybullet_never_ends_hopper_does():
+    cheetah = HalfCheetah("native", "pybullet")
+    state = cheetah.reset(jax.random.key(0))
+    over = state.data.replace(qpos=jnp.array([0, 0, 3, 0, 0, 0, 0, 0, 0], jnp.float32))
+    step = jax.jit(cheetah.step)
+    stand, fall = step(state, jnp.zeros(6)), step(state.replace(data=over), jnp.zeros(6))
+    assert stand.reward - stand.metrics["speed"] > 0.5
+    assert fall.reward - fall.metrics["speed"] < -0.9
+    assert not fall.terminated
+    hopper = TASKS["hopper"]("native", "pybullet")
+    state = hopper.reset(jax.random.key(0))
+    leaning = state.data.qpos.at[2].set(0.9)
+    assert not jax.jit(hopper.step)(state, jnp.zeros(3)).terminated
+    tipped = state.replace(data=state.data.replace(qpos=leaning.at[2].set(1.1)))
+    leaning = state.replace(data=state.data.replace(qpos=leaning))
+    assert not jax.jit(hopper.step)(leaning, jnp.zeros(3)).terminated
+    after = jax.jit(hopper.step)(tipped, jnp.zeros(3))
+    assert after.terminated
+    assert after.reward - after.metrics["speed"] < -0.9
+
+
+def _tolerance(x, margin):
+    """dm_control's `tolerance` with bounds (0, 0), Gaussian, 0.1 at the margin."""
+    return np.exp(-0.5 * (np.abs(x) / margin * np.sqrt(-2 * np.log(0.1))) ** 2)
+
+
+def test_cartpole_rewards():
+    cos, dm = Cartpole("native", "cos"), Cartpole("native", "dm_control")
+    state = cos.reset(jax.random.key(0))
+    rng = np.random.default_rng(0)
+    for qpos, qvel, a in zip(*rng.uniform(-1, 1, (2, 5, 2)), range(5), strict=True):
+        now = state.replace(data=cos._body.reset(jnp.array(qpos), jnp.array(qvel)))
+        action = jnp.array([a / 4], jnp.float32)
+        after = cos.step(now, action)
+        x, _, c, _, w = np.asarray(after.obs)
+        np.testing.assert_allclose(after.reward, c, rtol=1e-6)
+        expected = (1 + c) / 2 * (1 + _tolerance(x, 2)) / 2 * (4 + 1 - (a / 4) ** 2) / 5
+        expected *= (1 + _tolerance(w, 5)) / 2
+        np.testing.assert_allclose(dm.step(now, action).reward, expected, rtol=1e-5)
+        assert dm.step(now, action).reward <= 1.0
+    top = state.replace(data=dm._body.reset(jnp.zeros(2), jnp.zeros(2)))
+    np.testing.assert_allclose(dm.step(top, jnp.zeros(1)).reward, 1.0, atol=1e-6)

@@ -1,0 +1,88 @@
+"""Every world, in every implementation: what all may rely on."""
+
+import jax
+import mujoco
+import numpy as np
+import pytest
+from worlds import BROKEN, DECISIONS, IMPLEMENTATIONS, OTHER, TASKS, TOUCHING, make, rollout
+
+CASES = [(t, i) for t in TASKS for i in IMPLEMENTATIONS if (t, i) != ("pendulum", "mjx")]
+
+
+@pytest.fixture(params=CASES, ids="-".join)
+def env(request):
+    return make(*request.param)
+
+
+def test_shapes_and_types(env):
+    path = rollout(env)
+    lead = (2, 2, DECISIONS)
+    assert path.obs.shape == (*lead, env.spec.obs)
+    assert path.obs.dtype == path.reward.dtype == np.float32
+    assert path.reward.shape == path.terminated.shape == path.truncated.shape == lead
+    assert path.terminated.dtype == path.truncated.dtype == bool
+
+
+def test_finite_and_never_truncated(env):
+    path = rollout(env)
+    for leaf in jax.tree.leaves(path):
+        assert np.isfinite(leaf[TOUCHING]).all()
+    assert not path.truncated.any()
+
+
+def test_it_moves(env):
+    obs = np.asarray(rollout(env).obs[TOUCHING])
+    assert (np.abs(obs[-1] - obs[0]) > 1e-3).any()
+
+
+def test_same_start_same_path(env):
+    path = rollout(env)
+    for leaf in jax.tree.leaves(path):
+        np.testing.assert_array_equal(leaf[TOUCHING], leaf[OTHER])
+
+
+def test_nan_surfaces_and_stays_in_its_world(env):
+    path = rollout(env)
+    obs, reward = np.asarray(path.obs), np.asarray(path.reward)
+    assert np.isfinite(obs[BROKEN][:5]).all()
+    assert np.isnan(obs[BROKEN][5:]).all()
+    assert np.isnan(reward[BROKEN][5:]).all()
+    assert np.isfinite(obs[OTHER]).all()
+
+
+def test_equal_by_value(env):
+    again = type(env)(**{k: getattr(env, k) for k in env.__dataclass_fields__})
+    assert env == again
+    assert hash(env) == hash(again)
+
+
+def test_scene_shows_pose(env):
+    model = mujoco.MjModel.from_xml_string(env.scene())
+    assert env.pose(env.reset(jax.random.key(0))).shape == (model.nq,)
+    assert model.camera("track").id >= 0
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_resets_differ_by_key_and_repeat(task):
+    env = make(task, "native")
+    first, again, other = (env.reset(jax.random.key(k)).obs for k in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert (np.asarray(first) != np.asarray(other)).any()
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_unknown_physics_is_named(task):
+    with pytest.raises(ValueError, match=r"physics='bullet'.*native, mjx, warp"):
+        make(task, "bullet")
+
+
+@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "cartpole"])
+def test_unknown_reward_is_named(task):
+    with pytest.raises(ValueError, match=r"reward='fame': choose one of \w+, \w+"):
+        TASKS[task](reward="fame")
+
+
+@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "cartpole"])
+def test_warp_without_gpu_says_so(task):
+    with pytest.raises(ValueError, match=r"physics='warp' needs"):
+        make(task, "warp")
