@@ -20,28 +20,24 @@ def hydra_main(job: Callable[[DictConfig], None]) -> None:
     import hydra
     from hydra.errors import HydraException
 
+    def alone(config: DictConfig) -> None:  # ends here, before Hydra adds lines of its own
+        guarded(lambda: job(config))
+
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
-        hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(job)()
+        hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except (HydraException, OmegaConfBaseException) as error:
         _fail(2, explain(error))
-    except Exception as error:
-        report(error)
-    except KeyboardInterrupt:
-        _fail(130, "interrupted")
 
 
 def report(error: Exception) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""
-    from hybrid_rl.training.checkpoint import CheckpointError
-    from hybrid_rl.training.rows import Diverged
+    from hybrid_rl.training.rows import DivergenceError
 
     if isinstance(error, UsageError):
         _fail(2, str(error))
-    if isinstance(error, (CheckpointError, Diverged)):
+    if isinstance(error, (OSError, DivergenceError)):
         _fail(1, str(error))
-    if isinstance(error, OSError):
-        _fail(1, f"{error.filename or 'the system'}: {error.strerror or error}")
     raise error
 
 
@@ -69,7 +65,8 @@ def explain(error: Exception) -> str:
 def options(group: str) -> list[str]:
     """Names that a configuration group offers, with their folders."""
     return sorted(
-        str(path.relative_to(CONF / group).with_suffix("")) for path in (CONF / group).rglob("*.yaml")
+        str(path.relative_to(CONF / group).with_suffix(""))
+        for path in (CONF / group).rglob("*.yaml")
     )
 
 
@@ -104,6 +101,18 @@ def arguments(known: dict[str, Any]) -> dict[str, str]:
             raise UsageError(f"{text}: unknown argument; give key=value with {', '.join(known)}")
         given[key] = value
     return given
+
+
+def count(key: str, text: str, even: bool = False, least: int = 1) -> int:
+    """A whole number from an argument.
+
+    Raises:
+        UsageError: for anything else.
+    """
+    if text.isdecimal() and int(text) >= least and not (even and int(text) % 2):
+        return int(text)
+    kind = "an even number" if even else "a whole number"
+    raise UsageError(f"{key}={text}: must be {kind}, {least + even} or more")
 
 
 def guarded(job: Callable[[], None]) -> None:

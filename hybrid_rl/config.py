@@ -1,12 +1,14 @@
 """From overrides to parts: composes conf/, checks it, builds a run."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
+from hydra.errors import InstantiationException
 from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
@@ -17,7 +19,16 @@ from hybrid_rl.types import Controller
 HERE = Path(__file__).parent
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
 
-COUNTS = ("num_seeds", "total_steps", "eval_every", "eval_episodes", "checkpoint_every", "log_every")
+COUNTS = (
+    "num_seeds",
+    "total_steps",
+    "eval_every",
+    "eval_episodes",
+    "checkpoint_every",
+    "log_every",
+)
+
+MODES = ("full", "policy", "planner")
 
 
 class UsageError(ValueError):
@@ -66,22 +77,35 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
     capacity = min(_whole(config.replay, "capacity", "replay."), rounds * config.num_envs)
-    parts = _instantiate({**config.replay, "capacity": capacity})
-    controllers = {mode: _instantiate(c) for mode, c in config.controllers.items()}
-    agent = Agent(
-        Episode(_instantiate(config.env), config.episode.steps, config.episode.action_repeat),
-        controllers["full"],
-        {name: _instantiate(learner) for name, learner in config.learners.items()},
-        parts,
-        config.num_envs,
-        config.random_steps,
-    )
-    unknown = [mode for mode in config.eval_modes if mode not in controllers]
-    if unknown:
-        raise UsageError(
-            f"eval_modes={unknown[0]}: algo={config.algo} offers {', '.join(controllers)}"
+    with _usage():
+        controllers = {mode: _instantiate(node) for mode, node in config.controllers.items()}
+        env = _instantiate(config.env)
+        agent = Agent(
+            Episode(env, config.episode.steps, config.episode.action_repeat),
+            controllers["full"],
+            {name: _instantiate(node) for name, node in config.learners.items()},
+            _instantiate({**config.replay, "capacity": capacity}),
+            config.num_envs,
+            config.random_steps,
         )
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
+
+
+def _instantiate(node: Any) -> Any:
+    return instantiate(node, _convert_="all")
+
+
+@contextmanager
+def _usage() -> Iterator[None]:
+    """A part's ValueError about its fields becomes the user's."""
+    try:
+        yield
+    except InstantiationException as error:
+        if isinstance(error.__cause__, (ValueError, TypeError)):
+            raise UsageError(str(error.__cause__)) from error
+        raise
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
 def check(config: DictConfig) -> None:
@@ -90,6 +114,9 @@ def check(config: DictConfig) -> None:
         _whole(config, key)
     if not isinstance(config.seed, int) or config.seed < 0:
         raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
+    for mode in config.eval_modes:
+        if mode not in MODES:
+            raise UsageError(f"eval_modes={mode}: choose among {', '.join(MODES)}")
 
 
 def _whole(config: Any, key: str, where: str = "") -> int:
@@ -97,14 +124,3 @@ def _whole(config: Any, key: str, where: str = "") -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < 1:
         raise UsageError(f"{where}{key}={value}: must be a whole number, 1 or more")
     return value
-
-
-def _instantiate(node: Any) -> Any:
-    """The part that `node` names; its own ValueError becomes ours."""
-    try:
-        return instantiate(node, _convert_="all")
-    except Exception as error:
-        cause = error.__cause__ or error
-        if isinstance(cause, ValueError):
-            raise UsageError(str(cause)) from error
-        raise

@@ -33,7 +33,7 @@ class MLP(nn.Module):
 
     @nn.compact
     def __call__(self, x: Array) -> Array:
-        """y [..., out] for x [..., d]."""
+        """Y [..., out] for x [..., d]."""
         for width in self.hidden:
             x = ACTIVATIONS[self.activation](nn.Dense(width)(x))
         if self.output_scale is None:

@@ -64,12 +64,10 @@ def main() -> None:
     out = Path(said["out"] or Path(said["run"]) / "video.mp4")
     if out.suffix not in SUFFIXES:
         raise UsageError(f"out={out}: must end in {' or '.join(SUFFIXES)}")
-    width, height = (
-        _count("width", said["width"], even=True),
-        _count("height", said["height"], True),
-    )
-    steps = _count("episode_steps", said["episode_steps"]) if said["episode_steps"] else 0
-    seed = _count("seed", said["seed"], least=0) if said["seed"] else None
+    width = command.count("width", said["width"], even=True)
+    height = command.count("height", said["height"], even=True)
+    steps = command.count("episode_steps", said["episode_steps"]) if said["episode_steps"] else 0
+    seed = command.count("seed", said["seed"], least=0) if said["seed"] else None
     backend()  # before minutes of work: nothing is lost where nothing can draw
 
     from hybrid_rl.evaluate import load
@@ -80,14 +78,6 @@ def main() -> None:
     stride = int(np.ceil(rate / FASTEST))
     draw(trained.episode.env.scene(), poses[::stride], out, rate / stride, width, height)
     print(f"{out}: {len(poses) - 1} decisions, return {total:,.1f}, step {trained.step:,}")
-
-
-def _count(key: str, text: str, even: bool = False, least: int = 1) -> int:
-    """A whole number from an argument."""
-    if text.isdecimal() and int(text) >= least and not (even and int(text) % 2):
-        return int(text)
-    kind = "an even number" if even else "a whole number"
-    raise UsageError(f"{key}={text}: must be {kind}, {least + even} or more")
 
 
 if __name__ == "__main__":

@@ -100,7 +100,7 @@ class Env(Protocol):
         """MJCF text of the world as it is drawn."""
 
     def pose(self, state: EnvState) -> Array:
-        """qpos [nq] of `scene` that shows `state`."""
+        """Qpos [nq] of `scene` that shows `state`."""
 
 
 class Model(Protocol):

@@ -29,4 +29,3 @@ class PolicyController:
     def greedy(self) -> "PolicyController":
         """The mean."""
         return replace(self, explore=False)
-

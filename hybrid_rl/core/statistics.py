@@ -42,5 +42,5 @@ def whiten(stats: Running, x: Array) -> Array:
 
 
 def colour(stats: Running, x: Array) -> Array:
-    """mean + std x, the inverse of `whiten`."""
+    """Mean + std x, the inverse of `whiten`."""
     return stats.mean + stats.std * x

@@ -125,7 +125,7 @@ class SAC:
         ), metrics
 
     def _target(self, state: SACState, alpha: Array, batch: Batch, key: Array) -> Array:
-        """y [B], without gradient. The key is consumed."""
+        """Y [B], without gradient. The key is consumed."""
         v, log_prob = self.policy.sample(state.policy, batch.next_obs, key)
         after = self.critic.value(state.target, batch.next_obs, v) - alpha * log_prob
         return batch.reward + self.discount * (1 - batch.terminated) * after

@@ -56,7 +56,7 @@ class LearnedReward:
         return {**params, "state": statistics.update(params["state"], x)}
 
     def reward(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """r [...] at x [..., n] and u [..., m]."""
+        """R [...] at x [..., n] and u [..., m]."""
         inputs = jnp.concatenate([statistics.whiten(params["state"], x), u], -1)
         return MLP(self.hidden, 1, self.activation).apply(params["weights"], inputs)[..., 0]
 

@@ -55,7 +55,7 @@ class TanhGaussian:
         }
 
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
-        """mu and sigma [..., m] before the squashing, at x [..., n]."""
+        """Mu and sigma [..., m] before the squashing, at x [..., n]."""
         if self.log_std_activation is None:
             both = self._net(outputs(params["trunk"])).apply(params["trunk"], x)
             mu, log_std = jnp.split(both, 2, axis=-1)
@@ -70,7 +70,7 @@ class TanhGaussian:
         return jnp.tanh(self.gaussian(params, x)[0])
 
     def sample(self, params: dict[str, Any], x: Array, key: Array) -> tuple[Array, Array]:
-        """u [..., m] ~ pi(.|x) and log pi(u|x) [...]. The key is consumed."""
+        """U [..., m] ~ pi(.|x) and log pi(u|x) [...]. The key is consumed."""
         mu, sigma = self.gaussian(params, x)
         noise = jax.random.normal(key, mu.shape)
         z = mu + sigma * noise

@@ -37,7 +37,7 @@ class NoiseProposal:
     def __call__(
         self, params: Params, carry: Array, x: Array, plan: Array, key: Array
     ) -> tuple[Array, Array, Array]:
-        """v [m] around plan [m] and the log-density of its noise. The key is consumed."""
+        """V [m] around plan [m] and the log-density of its noise. The key is consumed."""
         fresh = jax.random.normal(key, plan.shape)
         noise = self.colour * carry + jnp.sqrt(1 - self.colour**2) * self.std * fresh
         log_prob = jnp.sum(-0.5 * (noise / self.std) ** 2 - jnp.log(self.std * 2.5066283))

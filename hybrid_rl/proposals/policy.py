@@ -21,6 +21,6 @@ class PolicyProposal:
     def __call__(
         self, params: Params, carry: Any, x: Array, plan: Array, key: Array
     ) -> tuple[Array, Array, Any]:
-        """v [m] ~ pi(x) and log pi(v|x); `plan` plays no part. The key is consumed."""
+        """V [m] ~ pi(x) and log pi(v|x); `plan` plays no part. The key is consumed."""
         v, log_prob = self.policy.sample(params.policy, x, key)
         return v, log_prob, carry

@@ -127,12 +127,10 @@ class Agent:
 
         if not self.random_steps:
             return plan()
-        u, control, metrics = jax.eval_shape(plan)
-        draw = jax.random.uniform(at_random, u.shape, u.dtype, -1, 1)
-        nothing = _zeros(metrics)
-        return jax.lax.cond(
-            step < self.random_steps, lambda: (draw, state.control, nothing), plan
-        )
+        shapes = jax.eval_shape(plan)
+        draw = jax.random.uniform(at_random, shapes[0].shape, minval=-1, maxval=1)
+        nothing = _zeros(shapes[2])
+        return jax.lax.cond(step < self.random_steps, lambda: (draw, state.control, nothing), plan)
 
     def _learn(
         self,

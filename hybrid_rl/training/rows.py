@@ -1,18 +1,23 @@
-"""From the metrics of a stride of decisions to rows of metrics.jsonl."""
+"""From the metrics of a stride of decisions to rows of metrics.jsonl.
+
+`metrics` are arrays [rounds, S], `episode/...` [rounds, S, E]; a round is one decision in each
+of E worlds of each of S learners.
+"""
 
 from typing import Any
 
 import numpy as np
 
 Metrics = dict[str, np.ndarray]
+Row = dict[str, Any]
 
 
-class Diverged(ArithmeticError):
+class DivergenceError(ArithmeticError):
     """A learner reached NaN or infinity; one line names seed, step and quantity."""
 
 
-def check(metrics: Metrics, seeds: tuple[int, ...], step: int, num_envs: int) -> None:
-    """Raise Diverged at the first infinite entry; metrics [rounds, S] begin after `step`."""
+def check(metrics: Metrics, seeds: tuple[int, ...], start: int, worlds: int) -> None:
+    """Raise DivergenceError at the earliest infinite entry; the stride begins after `start`."""
     first: tuple[int, int, str] | None = None
     for name, values in metrics.items():
         if name.startswith("episode/"):
@@ -22,33 +27,32 @@ def check(metrics: Metrics, seeds: tuple[int, ...], step: int, num_envs: int) ->
                 first = (int(i), int(s), name)
     if first is not None:
         i, s, name = first
-        raise Diverged(f"seed {seeds[s]}, step {step + (i + 1) * num_envs}: {name} is not finite")
+        raise DivergenceError(
+            f"seed {seeds[s]}, step {start + (i + 1) * worlds}: {name} is not finite"
+        )
 
 
-def rows(
-    metrics: Metrics, seeds: tuple[int, ...], step: int, num_envs: int, wall_s: float
-) -> list[dict[str, Any]]:
-    """A row per finished episode, then one of means per seed.
-
-    metrics [rounds, S] (`episode/...` [rounds, S, E]) begin after `step` decisions.
-    """
-    done = metrics["episode/done"]
-    found = [
+def episodes(metrics: Metrics, seeds: tuple[int, ...], start: int, worlds: int) -> list[Row]:
+    """A row per episode that ended in the stride, which begins after `start`."""
+    return [
         {
-            "step": step + (int(i) + 1) * num_envs,
+            "step": start + (int(i) + 1) * worlds,
             "seed": seeds[s],
-            "wall_s": wall_s,
             "train/return": metrics["episode/return"][i, s, e],
             "train/length": int(metrics["episode/length"][i, s, e]),
         }
-        for i, s, e in np.argwhere(done)
+        for i, s, e in np.argwhere(metrics["episode/done"])
     ]
-    end = step + done.shape[0] * num_envs
+
+
+def means(metrics: Metrics, seeds: tuple[int, ...], end: int) -> list[Row]:
+    """A row of means per seed; NaN is left out, and a name with nothing else."""
+    found = []
     for s, seed in enumerate(seeds):
-        row = {"step": end, "seed": seed, "wall_s": wall_s}
+        row: Row = {"step": end, "seed": seed}
         for name, values in metrics.items():
-            told = values[:, s][~np.isnan(values[:, s])] if values.ndim == 2 else []
-            if len(told):
-                row[name] = told.mean(dtype=np.float64)
+            if not name.startswith("episode/"):
+                told = values[:, s][~np.isnan(values[:, s])]
+                row |= {name: told.mean(dtype=np.float64)} if told.size else {}
         found.append(row)
     return found

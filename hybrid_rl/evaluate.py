@@ -1,0 +1,116 @@
+"""`python -m hybrid_rl.evaluate run=DIR [episodes=10] [mode=full]`: returns of a trained run.
+
+mode: full (planner and policy together), policy (learned policy alone), planner (learned
+model alone). No exploration, learners as they were at the newest checkpoint.
+"""
+
+import json
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from omegaconf import OmegaConf
+from rich.console import Console
+from rich.table import Table
+
+from hybrid_rl import command
+from hybrid_rl import config as configuration
+from hybrid_rl.config import UsageError
+from hybrid_rl.training import checkpoint
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.evaluate import evaluation_keys, returns
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import Controller, Params
+
+DEFAULTS = {"run": "", "episodes": "10", "mode": "full"}
+
+
+@dataclass(frozen=True)
+class Trained:
+    """A run, read back."""
+
+    episode: Episode
+    controllers: dict[str, Controller]  # mode -> controller without exploration
+    params: Params  # [S, ...]
+    seeds: tuple[int, ...]
+    step: int  # decisions of each learner
+    notes: tuple[str, ...]  # checkpoints that were passed over
+
+
+def load(folder: Path) -> Trained:
+    """The learners of the run in `folder`, at its newest sound checkpoint.
+
+    Raises:
+        UsageError: where `folder` holds no run, or no checkpoint.
+        CheckpointError: where none of its checkpoints is sound.
+    """
+    place = folder / "config.yaml"
+    if not place.exists():
+        raise UsageError(f"run={folder}: no run folder there (no config.yaml in it)")
+    if not checkpoint.steps(folder / "checkpoints"):
+        raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
+    config = OmegaConf.load(place)
+    command.prepare(config)
+    run = configuration.build(config)
+    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+    like = like.replace(env=None, control=None, memory=None, key=None)
+    step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
+    params = jax.vmap(run.agent.params)(state)
+    return Trained(run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes))
+
+
+def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> np.ndarray:
+    """Undiscounted returns [S, episodes], of the same episodes as in training.
+
+    Raises:
+        UsageError: for a mode that the method does not have.
+    """
+    if mode not in trained.controllers:
+        raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
+    keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
+    one = partial(returns, trained.episode, trained.controllers[mode])
+    return np.asarray(jax.jit(jax.vmap(one))(trained.params, keys))
+
+
+def report(trained: Trained, mode: str, got: np.ndarray) -> dict[str, Any]:
+    """What evaluation_<mode>.json holds."""
+    return {
+        "mode": mode,
+        "step": trained.step,
+        "seeds": list(trained.seeds),
+        "episodes": got.shape[1],
+        "mean": got.mean(1).tolist(),
+        "std": got.std(1).tolist(),
+        "returns": got.tolist(),
+    }
+
+
+def main() -> None:
+    """The command."""
+    given = DEFAULTS | command.arguments(DEFAULTS)
+    if not given["run"]:
+        raise UsageError("run: not given; say run=DIR, a folder that training wrote")
+    episodes = command.count("episodes", given["episodes"])
+    trained = load(Path(given["run"]))
+    console = Console()
+    for note in trained.notes:
+        console.print(note, markup=False)
+    said = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
+    out = Path(given["run"]) / f"evaluation_{given['mode']}.json"
+    out.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
+    table = Table(title=f"{given['run']}, mode {given['mode']}, step {trained.step:,}")
+    for name in ("seed", "mean return", "std", "lowest", "highest"):
+        table.add_column(name, justify="right")
+    for seed, each in zip(said["seeds"], said["returns"], strict=True):
+        numbers = (np.mean(each), np.std(each), min(each), max(each))
+        table.add_row(str(seed), *(f"{value:,.1f}" for value in numbers))
+    console.print(table)
+    console.print(f"{episodes} episodes a seed; written to {out}", markup=False)
+
+
+if __name__ == "__main__":
+    command.guarded(main)

@@ -1,0 +1,221 @@
+"""The host's side of a run: decide, log, evaluate, save, until the end or a signal.
+
+Strides end at the multiples of `log_every`, `eval_every` and `checkpoint_every`, and there
+alone a signal is heard: a run that was stopped and resumed has the rows of one that was not.
+"""
+
+import signal
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from time import monotonic, perf_counter
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from hybrid_rl.training import checkpoint, provenance, rows
+from hybrid_rl.training.agent import AgentState
+from hybrid_rl.training.evaluate import evaluation_keys, returns
+from hybrid_rl.training.log import RunLog
+from hybrid_rl.training.loop import Loop, finite
+from hybrid_rl.training.progress import Progress
+from hybrid_rl.types import Controller, Params
+
+EVALUATED = {  # mode -> name of its return
+    "full": "eval/return",
+    "policy": "eval/policy_return",
+    "planner": "eval/planner_return",
+}
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """What happens when, in decisions of each learner."""
+
+    total_steps: int
+    log_every: int
+    eval_every: int
+    eval_episodes: int
+    eval_modes: tuple[str, ...]
+    checkpoint_every: int
+    checkpoint_replay: bool
+
+
+@dataclass
+class Session:
+    """One run on its way."""
+
+    loop: Loop
+    controllers: Mapping[str, Controller]  # mode -> controller without exploration
+    schedule: Schedule
+    log: RunLog
+    progress: Progress
+    state: AgentState | None = None
+    step: int = 0  # decisions of each learner
+    before_s: float = 0.0  # [s] in earlier sessions
+    began: float = field(default_factory=monotonic)
+    returns: list[list[tuple[int, float]]] = field(default_factory=list)  # per seed: (step, return)
+    latest: dict[str, float] = field(default_factory=dict)  # for the display
+    evaluators: dict[str, Any] = field(default_factory=dict)  # mode -> compiled
+    stop: int | None = None  # the signal that asked for an end
+
+    @property
+    def wall_s(self) -> float:
+        """[s] over all sessions of the run."""
+        return self.before_s + monotonic() - self.began
+
+    @property
+    def _checkpoints(self) -> Path:
+        return self.log.run_dir / "checkpoints"
+
+    def begin(self) -> None:
+        """Start from the first state."""
+        self.state = self.loop.init()
+        self.returns = [[] for _ in self.loop.seeds]
+
+    def resume(self) -> None:
+        """Start from the newest sound checkpoint.
+
+        Raises:
+            CheckpointError: where there is none, or it is of another run.
+        """
+        like = jax.eval_shape(self.loop.init)
+        kept = self.schedule.checkpoint_replay
+        wanted = like if kept else like.replace(memory=None)
+        self.step, self.state, meta, notes = checkpoint.restore(self._checkpoints, wanted)
+        if not kept:
+            self.loop.agent = replace(self.loop.agent, first_update=self.step)
+            self.state = self.state.replace(memory=self.loop.init().memory)
+            notes = [*notes, "no replay memory in checkpoints: it goes on, but not bit for bit"]
+        for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
+            self.progress.note(note)
+        self.before_s = meta["wall_s"]
+        self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
+        self.progress.note(f"going on from step {self.step:,}")
+
+    def run(self) -> None:
+        """Advance to the end or to a signal; the last state is always saved.
+
+        Raises:
+            DivergenceError: where a learner reached NaN or infinity.
+            CheckpointError: where a checkpoint could not be written.
+        """
+        if self.step >= self.schedule.total_steps:
+            return
+        with self._signals():
+            self.progress.note(f"compiling on {provenance.device()} ...")
+            program = self.loop.compile(self.state)
+            self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
+            saved = None
+            while self.step < self.schedule.total_steps and self.stop is None:
+                self._stride(program)
+                if self._due(self.schedule.eval_every):
+                    self._evaluate()
+                if self._due(self.schedule.checkpoint_every):
+                    self._save()
+                    saved = self.step
+            if saved != self.step:
+                self._save()
+
+    def _due(self, every: int) -> bool:
+        """Whether a multiple of `every`, or the end, lies in the last round."""
+        before = self.step - self.loop.agent.num_envs
+        return self.step // every > before // every or self.step >= self.schedule.total_steps
+
+    @contextmanager
+    def _signals(self) -> Iterator[None]:
+        """Ctrl-C and SIGTERM ask for an end at the next row; the second ends at once."""
+
+        def ask(number: int, frame: Any) -> None:
+            if self.stop is not None:
+                raise KeyboardInterrupt
+            self.stop = number
+            self.progress.note("stopping at the next row, with a checkpoint ...")
+
+        old = {s: signal.signal(s, ask) for s in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for number, handler in old.items():
+                signal.signal(number, handler)
+
+    def _stride(self, program: Any) -> None:
+        """Decisions up to the next mark, and their rows."""
+        plan, worlds, seeds = self.schedule, self.loop.agent.num_envs, self.loop.seeds
+        start = self.step
+        marks = [
+            (start // every + 1) * every
+            for every in (plan.log_every, plan.eval_every, plan.checkpoint_every)
+        ]
+        rounds = -(-(min(plan.total_steps, *marks) - start) // worlds)
+        began = perf_counter()
+        self.state, metrics = program(self.state, jnp.int32(start), jnp.int32(rounds))
+        metrics = {name: np.asarray(m)[:rounds] for name, m in metrics.items()}
+        speed = rounds * worlds * len(seeds) / (perf_counter() - began)
+        rows.check(metrics, seeds, start, worlds)
+        self.step += rounds * worlds
+        episodes = rows.episodes(metrics, seeds, start, worlds)
+        for row in episodes:
+            pair = (row["step"], float(row["train/return"]))
+            self.returns[seeds.index(row["seed"])].append(pair)
+        means = rows.means(metrics, seeds, self.step)
+        self._write(episodes + [row | {"perf/env_steps_per_s": speed} for row in means])
+        newest = [pairs[-1][1] for pairs in self.returns if pairs]
+        shown = {"train/return": float(np.mean(newest))} if newest else {}
+        self._show(shown | {"perf/env_steps_per_s": speed})
+
+    def _evaluate(self) -> None:
+        """Returns of every evaluated mode, with keys of their own."""
+        seeds, agent = self.loop.seeds, self.loop.agent
+        params = jax.vmap(agent.params)(self.state)
+        keys = jnp.stack([evaluation_keys(s, self.schedule.eval_episodes) for s in seeds])
+        found = [{"step": self.step, "seed": seed} for seed in seeds]
+        for mode in self.schedule.eval_modes:
+            got = np.asarray(self._evaluator(mode, params, keys)(params, keys)).mean(-1)
+            for row, value in zip(found, got, strict=True):
+                row[EVALUATED[mode]] = value
+            self._show({EVALUATED[mode]: float(got.mean())})
+        self._write(found)
+
+    def _evaluator(self, mode: str, params: Params, keys: jax.Array) -> Any:
+        """The compiled program (params, keys) -> returns [S, N] of `mode`."""
+        if mode not in self.evaluators:
+            began = perf_counter()
+            one = partial(returns, self.loop.agent.episode, self.controllers[mode])
+            self.evaluators[mode] = jax.jit(jax.vmap(one)).lower(params, keys).compile()
+            self.loop.compile_s += perf_counter() - began
+        return self.evaluators[mode]
+
+    def _save(self) -> None:
+        """A checkpoint of all that the run needs to go on."""
+        if not finite(self.state):
+            raise rows.DivergenceError(f"step {self.step}: a learned parameter is not finite")
+        kept = self.schedule.checkpoint_replay
+        meta = {
+            "step": self.step,
+            "wall_s": self.wall_s,
+            "metrics_bytes": self.log.flush(),
+            "returns": self.returns,
+        }
+        state = self.state if kept else self.state.replace(memory=None)
+        checkpoint.save(self._checkpoints, self.step, state, meta)
+
+    def _write(self, found: list[dict[str, Any]]) -> None:
+        self.log.write([{**row, "wall_s": self.wall_s} for row in found])
+
+    def _show(self, scalars: dict[str, float]) -> None:
+        self.latest |= scalars
+        self.progress.update(self.step, self.latest)
+
+    def final_returns(self) -> list[float | None]:
+        """Per seed the mean training return over the last tenth of the run."""
+        tail = self.step - 0.1 * self.schedule.total_steps
+        found = []
+        for pairs in self.returns:
+            values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
+            found.append(float(np.mean(values)) if values else None)
+        return found
