@@ -21,6 +21,7 @@ CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml
 
 COUNTS = (
     "num_seeds",
+    "num_envs",
     "total_steps",
     "eval_every",
     "eval_episodes",

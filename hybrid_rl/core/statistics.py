@@ -37,7 +37,7 @@ def update(stats: Running, batch: Array, rate: float = 1e-3) -> Running:
 
 
 def whiten(stats: Running, x: Array) -> Array:
-    """(x - mean) / std for x [..., d]."""
+    """(x - mean) / std for x [d]."""
     return (x - stats.mean) / stats.std
 
 

@@ -7,6 +7,7 @@ with u' the action that was executed at x' and no gradient through the target; o
 """
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import jax
@@ -75,18 +76,20 @@ class ModelLearner:
         reward = self.reward.observe(state.reward, batch.obs)
         target = batch.reward
         if self.reward_discount > 0:
-            after = self.reward.reward(reward, batch.next_obs, batch.next_action)
+            rate = jax.vmap(self.reward.reward, (None, 0, 0))
+            after = rate(reward, batch.next_obs, batch.next_action)
             goes_on = self.reward_discount * (1 - batch.terminated) * (1 - batch.truncated)
             target = target + goes_on * after
 
         def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array]]:
             f, r = weights
-            of_model = self.model.loss(
-                {**model, "weights": f}, batch.obs, batch.action, batch.next_obs
-            )
-            of_reward = self.reward.loss({**reward, "weights": r}, batch.obs, batch.action, target)
+            at = (batch.obs, batch.action)
+            of_model = over_batch(self.model.loss)({**model, "weights": f}, *at, batch.next_obs)
+            of_reward = over_batch(self.reward.loss)({**reward, "weights": r}, *at, target)
+            of_model, of_reward = of_model.mean(), of_reward.mean()
             return of_model + of_reward, (of_model, of_reward)
 
+        over_batch = partial(jax.vmap, in_axes=(None, 0, 0, 0))
         weights = (model["weights"], reward["weights"])
         grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
         change, optimiser = self._optimiser().update(grads, state.optimiser, weights)

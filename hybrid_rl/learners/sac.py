@@ -92,7 +92,7 @@ class SAC:
 
         def critic_loss(critic: Any) -> tuple[Array, Array]:
             q = self.critic.all(critic, batch.obs, batch.action)
-            return 0.5 * jnp.sum(jnp.mean((q - y) ** 2, axis=-1)), q.mean()
+            return 0.5 * jnp.sum(jnp.mean((q - y[None]) ** 2, axis=-1)), q.mean()
 
         (of_critic, q), grads = jax.value_and_grad(critic_loss, has_aux=True)(state.critic)
         critic, critic_optimiser = _adam(

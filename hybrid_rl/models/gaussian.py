@@ -61,17 +61,17 @@ class Gaussian:
         return obs
 
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """Predicted change [..., n] of x [..., n] under u [..., m], in running deviations."""
+        """Predicted change [n] of x [n] under u [m], in running deviations."""
         net = MLP(self.hidden, x.shape[-1], self.activation)
-        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u], -1)
+        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u])
         return net.apply(params["weights"]["net"], inputs)
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """Mean of the next planning state [..., n]."""
+        """Mean of the next planning state [n]."""
         return x + statistics.colour(params["change"], self.change(params, x, u))
 
     def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
-        """Negative log-likelihood [] of next_x [B, n], mean over batch and dimensions."""
+        """Negative log-likelihood [] of next_x [n], mean over its entries."""
         log_std = jnp.clip(params["weights"]["log_std"], self.log_std_min, self.log_std_max)
         target = statistics.whiten(params["change"], next_x - x)
         error = (target - self.change(params, x, u)) * jnp.exp(-log_std)

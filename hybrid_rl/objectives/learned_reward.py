@@ -57,16 +57,16 @@ class LearnedReward:
 
     def reward(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """R [...] at x [..., n] and u [..., m]."""
-        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u], -1)
-        return MLP(self.hidden, 1, self.activation).apply(params["weights"], inputs)[..., 0]
+        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u])
+        return MLP(self.hidden, 1, self.activation).apply(params["weights"], inputs)[0]
 
     def loss(self, params: dict[str, Any], x: Array, u: Array, target: Array) -> Array:
-        """Half the mean squared error [] against target [B]."""
-        return 0.5 * jnp.mean((target - self.reward(params, x, u)) ** 2)
+        """Half the squared error [] against target []."""
+        return 0.5 * (target - self.reward(params, x, u)) ** 2
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
-        rewards = self.reward(params.reward, path.x[:-1], path.u)
+        rewards = jax.vmap(self.reward, (None, 0, 0))(params.reward, path.x[:-1], path.u)
         last = jnp.zeros(())
         if self.critic is not None and self.policy is not None:
             x = path.x[-1]

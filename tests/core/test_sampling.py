@@ -1,0 +1,79 @@
+"""The sampling core against a plain loop, and against the path integral that it estimates."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.core import sampling
+
+K, T, N, M = 7, 4, 3, 2
+A = jnp.array([[0.9, 0.1, 0.0], [0.0, 0.8, 0.2], [0.1, 0.0, 0.7]])
+B = jnp.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
+
+
+def step(x: Array, u: Array) -> Array:
+    """A linear model."""
+    return A @ x + B @ u
+
+
+def propose(carry: Array, x: Array, a: Array, key: Array) -> tuple[Array, Array, Array]:
+    """Noise around plan and state; the carry counts decisions."""
+    v = a + 0.1 * x[:M] + jax.random.normal(key, a.shape)
+    return v, v.sum() + carry, carry + 1
+
+
+def test_imagine_is_the_plain_loop() -> None:
+    """Given equal keys, every path is the one that a Python loop rolls."""
+    x, plan = jnp.array([0.3, -0.2, 0.5]), jnp.arange(8.0).reshape(T, M) / 10
+    key = jax.random.key(3)
+    got = sampling.imagine(step, propose, jnp.float32(0), x, plan, K, key)
+    keys = jax.random.split(key, (K, T))
+    for k in range(K):
+        state, carry = x, jnp.float32(0)
+        for t in range(T):
+            v, log_prob, carry = propose(carry, state, plan[t], keys[k, t])
+            state = step(state, v)
+            np.testing.assert_allclose(got.path.u[k, t], v, rtol=1e-5, atol=1e-6)
+            np.testing.assert_allclose(got.path.x[k, t + 1], state, rtol=1e-5, atol=1e-6)
+            np.testing.assert_allclose(got.log_prob[k, t], log_prob, rtol=1e-5, atol=1e-5)
+
+
+@pytest.mark.parametrize("shifted", [0.0, 1e4])
+def test_weights_are_the_printed_formula(shifted: float) -> None:
+    """exp(S / lambda) over its sum, whatever constant is added to S."""
+    s = np.random.default_rng(0).normal(size=(K, T))
+    got = sampling.weights(jnp.float32(s + shifted), 0.5)
+    want = np.exp(s / 0.5) / np.exp(s / 0.5).sum(0)
+    np.testing.assert_allclose(got, want, rtol=2e-2 if shifted else 1e-5)
+
+
+def test_weights_with_density_and_normalisation() -> None:
+    """The density joins the exponent; normalised returns have deviation one."""
+    rng = np.random.default_rng(1)
+    s, log_prob = rng.normal(size=(K, T)), rng.normal(size=(K, T))
+    got = sampling.weights(jnp.float32(100 * s), 2.0, True, jnp.float32(log_prob))
+    raw = np.exp(s / s.std(0) / 2.0) * np.exp(log_prob)
+    np.testing.assert_allclose(got, raw / raw.sum(0), rtol=1e-3)
+
+
+def test_plan_reaches_the_path_integral() -> None:
+    """For v ~ N(0, 1) and S = b v the weighted mean tends to b / lambda (no p in the weight)."""
+    v = jax.random.normal(jax.random.key(0), (400_000, 1))
+    w = sampling.weights(0.6 * v, 0.5)
+    assert float((w * v).sum()) == pytest.approx(0.6 / 0.5, abs=0.02)
+    squared = sampling.weights(0.6 * v, 0.5, log_prob=-0.5 * v**2)
+    assert float((squared * v).sum()) == pytest.approx(0.6 / 0.5 / 2, abs=0.02)
+
+
+def test_effective_samples() -> None:
+    """K where all count alike, 1 where one takes all."""
+    assert sampling.effective_samples(jnp.full((K, 1), 1 / K))[0] == pytest.approx(K)
+    assert sampling.effective_samples(jnp.eye(K)[:, :1])[0] == pytest.approx(1)
+
+
+def test_shift() -> None:
+    """The second row comes first, zeros come last."""
+    plan = jnp.arange(6.0).reshape(3, 2)
+    np.testing.assert_array_equal(sampling.shift(plan), [[2, 3], [4, 5], [0, 0]])

@@ -1,0 +1,51 @@
+"""The replay memory against a list."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.data.replay import Memory, Replay
+from hybrid_rl.types import Spec, Transition
+
+SPEC = Spec(obs=2, act=1, dt=0.1)
+
+
+def transition(time: int, worlds: int) -> Transition:
+    """Decision `time` of every world, all numbers told apart."""
+    base = 100.0 * time + jnp.arange(worlds, dtype=jnp.float32)
+    obs = jnp.stack([base, base + 0.25], -1)
+    flags = jnp.full(worlds, time % 3 == 0)
+    return Transition(obs, base[:, None] + 0.5, -base, flags, ~flags, obs + 100.0)
+
+
+def filled(capacity: int, worlds: int, times: int) -> tuple[Replay, Memory]:
+    """A memory after `times` decisions."""
+    replay = Replay(capacity)
+    memory = replay.init(SPEC, worlds)
+    for time in range(times):
+        memory = replay.add(memory, transition(time, worlds))
+    return replay, memory
+
+
+@pytest.mark.parametrize(("capacity", "worlds", "times"), [(50, 1, 20), (12, 1, 40), (12, 3, 11)])
+def test_rows_come_back_with_their_successors(capacity: int, worlds: int, times: int) -> None:
+    """Every drawn row is one that was added and is still held; its next action follows it."""
+    replay, memory = filled(capacity, worlds, times)
+    batch = replay.sample(memory, SPEC, 500, jax.random.key(0))
+    time, world = np.divmod(np.asarray(batch.obs[:, 0]), 100)
+    held = range(max(0, times - capacity // worlds), times - 1)
+    assert set(time) == set(map(float, held))  # all but the newest, whose successor is unknown
+    assert set(world) == set(map(float, range(worlds)))
+    np.testing.assert_array_equal(batch.action[:, 0], batch.obs[:, 0] + 0.5)
+    np.testing.assert_array_equal(batch.reward, -batch.obs[:, 0])
+    np.testing.assert_array_equal(batch.next_obs, batch.obs + 100)
+    np.testing.assert_array_equal(batch.next_action, batch.action + 100)
+    np.testing.assert_array_equal(batch.terminated, time % 3 == 0)
+    np.testing.assert_array_equal(batch.truncated, time % 3 != 0)
+
+
+def test_bytes_are_told_before() -> None:
+    """Nbytes is what init allocates."""
+    replay = Replay(1000)
+    assert replay.init(SPEC, 4).rows.nbytes == replay.nbytes(SPEC)

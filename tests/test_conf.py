@@ -1,0 +1,90 @@
+"""The configuration: every choice composes, and every file lists the fields of its part."""
+
+import dataclasses
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import pytest
+from hydra.utils import get_class
+from omegaconf import OmegaConf
+
+from hybrid_rl import config
+from hybrid_rl.command import options
+from hybrid_rl.training.loop import Loop
+
+SMALL = [
+    "total_steps=200",
+    "random_steps=2",
+    "model.hidden=[8]",
+    "objective.hidden=[8]",
+    "policy.hidden=[8]",
+    "critic.hidden=[8]",
+    "planner.samples=3",
+    "planner.horizon=2",
+    "model_learner.batch_size=2",
+    "policy_learner.batch_size=2",
+]
+PARTS = [
+    path
+    for path in sorted(config.CONF.rglob("*.yaml"))
+    if "_target_" in path.read_text(encoding="utf-8")
+]
+
+
+@pytest.mark.parametrize("path", PARTS, ids=lambda p: str(p.relative_to(config.CONF)))
+def test_a_part_lists_every_field(path: Path) -> None:
+    """A part's YAML and its dataclass have the same names."""
+    node = OmegaConf.load(path)
+    node = node.get("env", node)
+    fields = {field.name for field in dataclasses.fields(get_class(node._target_))}
+    given = {str(key) for key in node} - {"_target_", "defaults"}
+    for default in node.get("defaults", []):
+        given |= {str(key).split("@")[-1] for key in default} if default != "_self_" else set()
+    assert given == fields
+
+
+@pytest.mark.parametrize("algo", options("algo"))
+@pytest.mark.parametrize("task", options("task"))
+def test_every_method_decides_on_every_task(task: str, algo: str) -> None:
+    """Eight decisions of two learners, with learning, all finite."""
+    run = config.build(config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]))
+    loop = Loop(run.agent, run.seeds, stride=8)
+    state = loop.init()
+    program = loop.compile(state)
+    state, metrics = program(state, jnp.int32(0), jnp.int32(8))
+    assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(run.agent.params(state)))
+    assert int(state.env.info["decision"][0, 0]) == 8
+    learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
+    assert learned
+    for name in learned:
+        assert jnp.isfinite(metrics[name][-1]).all()
+
+
+@pytest.mark.parametrize("experiment", options("experiment"))
+@pytest.mark.parametrize("algo", options("algo"))
+def test_every_experiment_builds(experiment: str, algo: str) -> None:
+    """The parts of an experiment accept their values, whatever the method."""
+    config.build(config.load([f"experiment={experiment}", f"algo={algo}"]))
+
+
+def test_thesis_parameters() -> None:
+    """Table B.1, with its swapped columns put right."""
+    table = {  # H, T, K, lambda
+        "pendulum": (5, 200, 20, 0.1),
+        "cartpole": (5, 200, 20, 0.1),
+        "hopper": (5, 1000, 20, 0.1),
+        "halfcheetah": (10, 1000, 20, 0.2),
+    }
+    for task, (horizon, steps, samples, temperature) in table.items():
+        c = config.load([f"experiment=thesis/fig_3_2_{task}"])
+        got = (c.planner.horizon, c.episode.steps, c.planner.samples, c.planner.temperature)
+        assert got == (horizon, steps, samples, temperature)
+        assert c.task == task
+        assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
+
+
+def test_two_copies_are_equal_by_value() -> None:
+    """The planner's model and the learner's are two objects and one value."""
+    run = config.build(config.load(["task=pendulum", *SMALL]))
+    assert run.agent.learners["model"].model == run.agent.controller.model

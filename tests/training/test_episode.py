@@ -1,0 +1,83 @@
+"""Time limits, action repeat, and resets under any number of vmaps."""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import EnvState, Spec
+
+
+@dataclass(frozen=True)
+class Counter:
+    """Counts decisions; reward 1 each; terminates at `end`."""
+
+    end: int = 1000
+    spec: Spec = Spec(obs=1, act=1, dt=0.1)
+
+    def reset(self, key: Array) -> EnvState:
+        """A count below zero, so that a fresh world is told apart."""
+        start = -1.0 - jax.random.uniform(key, (1,))
+        no = jnp.zeros((), bool)
+        return EnvState(jnp.zeros(()), start, jnp.zeros(()), no, no, {}, {})
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """One more."""
+        count = state.data + 1
+        return state.replace(
+            data=count, obs=count[None], reward=jnp.ones(()), terminated=count >= self.end
+        )
+
+
+def roll(episode: Episode, decisions: int) -> EnvState:
+    """The state after some decisions, without renewal."""
+    state = episode.reset(jax.random.key(0))
+    for _ in range(decisions):
+        state = episode.step(state, jnp.zeros(1))
+    return state
+
+
+def test_the_clock_truncates_and_the_task_terminates() -> None:
+    """Never both: what ended by itself is not cut."""
+    cut = roll(Episode(Counter(), steps=5), 5)
+    assert bool(cut.truncated) and not bool(cut.terminated)
+    ended = roll(Episode(Counter(end=5), steps=5), 5)
+    assert bool(ended.terminated) and not bool(ended.truncated)
+    assert not bool(roll(Episode(Counter(), steps=5), 4).done)
+
+
+@pytest.mark.parametrize(("end", "total"), [(1000, 6.0), (5, 5.0), (4, 4.0)])
+def test_repeat_adds_rewards_until_the_end(end: int, total: float) -> None:
+    """Two decisions of three repeats each; nothing counts after termination."""
+    state = roll(Episode(Counter(end=end), steps=100, action_repeat=3), 2)
+    assert float(state.info["return"]) == total
+    assert bool(state.terminated) == (end <= 6)
+
+
+def test_renew_under_two_vmaps() -> None:
+    """Only worlds that are done start anew, each with its own key; the rest is untouched."""
+    episode = Episode(Counter(), steps=3)
+    keys = jax.random.split(jax.random.key(1), (2, 4))
+    state = jax.vmap(jax.vmap(episode.reset))(keys)
+    for _ in range(3):
+        state = jax.vmap(jax.vmap(episode.step))(state, jnp.zeros((2, 4, 1)))
+    done = jnp.array([[True, False, True, False], [False, False, False, True]])
+    state = state.replace(truncated=done)
+    renewed = jax.jit(jax.vmap(jax.vmap(episode.renew)))(state, keys)
+    fresh = jax.vmap(jax.vmap(episode.reset))(keys)
+    want = jnp.where(done[..., None], fresh.obs, state.obs)
+    np.testing.assert_array_equal(renewed.obs, want)
+    np.testing.assert_array_equal(renewed.info["decision"], jnp.where(done, 0, 3))
+
+
+def test_nothing_is_reset_while_nobody_is_done() -> None:
+    """The compiled program resets behind a branch, not at every step."""
+    episode = Episode(Counter(), steps=3)
+    keys = jax.random.split(jax.random.key(1), (2, 4))
+    state = jax.vmap(jax.vmap(episode.reset))(keys)
+    text = str(jax.make_jaxpr(jax.vmap(jax.vmap(episode.renew)))(state, keys))
+    assert "cond[" in text
