@@ -99,6 +99,15 @@ def test_threads_do_not_matter():
     np.testing.assert_array_equal(one.qpos, two.qpos)
 
 
+def test_where_jax_is_not_on_a_cpu_a_callback_does_the_same(monkeypatch):
+    state, ctrl = _states(CHEETAH, 3)
+    here = _many(CHEETAH, 4)(state, ctrl)
+    monkeypatch.setattr(jax.lax, "platform_dependent", lambda x, cpu, default: default(x))
+    lowered = _many(CHEETAH, 4).lower(state, ctrl)
+    assert "hybrid_rl.native" not in lowered.as_text()
+    np.testing.assert_array_equal(lowered.compile()(state, ctrl).qpos, here.qpos)
+
+
 def test_continuing_is_not_stopping():
     """A state that was saved and read back goes on with the same bits."""
     state, ctrl = _states(CHEETAH, 2)
