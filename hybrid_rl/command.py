@@ -12,30 +12,42 @@ from typing import Any, NoReturn
 from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl.config import CONF, UsageError
+from hybrid_rl import config as configuration
+from hybrid_rl.config import CONF, SHOW, UsageError
 
 
 def hydra_main(job: Callable[[DictConfig], None]) -> None:
     """Run `job` on the configuration that the command line composes, once or in a sweep."""
     import hydra
+    from hydra.core.hydra_config import HydraConfig
     from hydra.errors import HydraException
 
+    def checked(config: DictConfig) -> None:
+        configuration.refuse_new_keys(HydraConfig.get().overrides.task)
+        job(config)
+
     def alone(config: DictConfig) -> None:  # ends here, before Hydra adds lines of its own
-        guarded(lambda: job(config))
+        guarded(lambda: checked(config))
 
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except (HydraException, OmegaConfBaseException) as error:
-        _fail(2, explain(error))
+        report(error)
+    except KeyboardInterrupt:
+        _fail(130, "interrupted")
 
 
 def report(error: Exception) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""
+    from hydra.errors import HydraException
+
     from hybrid_rl.training.rows import DivergenceError
 
     if isinstance(error, UsageError):
         _fail(2, str(error))
+    if isinstance(error, (HydraException, OmegaConfBaseException)):
+        _fail(2, explain(error))
     if isinstance(error, (OSError, DivergenceError)):
         _fail(1, str(error))
     raise error
@@ -50,16 +62,15 @@ def explain(error: Exception) -> str:
     """One line that names the key, the value and what is allowed, from an error of Hydra."""
     from hydra.errors import MissingConfigException
 
-    text = str(error)
-    if isinstance(error, MissingConfigException) and "Could not find" in text:
-        group, _, value = text.split("Could not find '")[1].split("'")[0].rpartition("/")
-        known = options(group)
+    if isinstance(error, MissingConfigException) and error.missing_cfg_file is not None:
+        group, _, value = error.missing_cfg_file.partition("/")
+        known = sorted({*options(group), *(error.options or ())})  # theirs: of --config-dir too
         return f"{group}={value}: unknown; choose one of {', '.join(known)}"
     cause = error.__cause__
     if cause is not None and "is not in struct" in str(cause):
         key = str(cause).split("full_key: ")[1].splitlines()[0].strip()
-        return f"{key}: unknown key; `python -m hybrid_rl.train --cfg job` shows all of them"
-    return f"{text} {cause or ''}"
+        return f"{key}: unknown key; {SHOW}"
+    return f"{error} {cause or ''}"
 
 
 def options(group: str) -> list[str]:
@@ -76,10 +87,18 @@ def prepare(config: DictConfig) -> None:
 
     jax.config.update("jax_default_matmul_precision", config.matmul_precision)
     if config.compile_cache is not None:
-        cache = Path(config.compile_cache).expanduser()
+        cache = Path(str(config.compile_cache)).expanduser()
+        _mend(cache)
         jax.config.update("jax_compilation_cache_dir", str(cache))
         jax.config.update("jax_compilation_cache_max_size", 4 * 2**30)
         jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.5)
+
+
+def _mend(cache: Path) -> None:
+    """Drop what a kill left half written: JAX would warn of it, and never write there again."""
+    for entry in cache.glob("*-cache"):
+        if not entry.with_name(entry.name.removesuffix("-cache") + "-atime").exists():
+            entry.unlink(missing_ok=True)
 
 
 def asked(config_overrides: list[str]) -> dict[str, str]:

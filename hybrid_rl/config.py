@@ -2,15 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin
 
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.errors import InstantiationException
-from hydra.utils import instantiate
-from omegaconf import DictConfig, OmegaConf
+from hydra.utils import get_object, instantiate
+from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -30,6 +31,17 @@ COUNTS = (
 )
 
 MODES = ("full", "policy", "planner")
+PRECISIONS = ("highest", "high", "default")
+KINDS = {  # type of a part's field -> how its values are called
+    int: "a whole number",
+    float: "a number",
+    bool: "true or false",
+    str: "a word",
+    tuple: "a list",
+    NoneType: "null",
+}
+UNKNOWN = object()  # what OmegaConf selects where there is nothing
+SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
 
 
 class UsageError(ValueError):
@@ -55,11 +67,26 @@ def load(overrides: Sequence[str] = ()) -> DictConfig:
 
     Raises:
         hydra.errors.HydraException: where an override fits nothing in conf/.
+        UsageError: where one appends a key that nothing reads.
     """
-    if GlobalHydra.instance().is_initialized():
-        return resolved(compose("train", list(overrides)))
-    with initialize_config_dir(str(CONF), version_base="1.3"):
-        return resolved(compose("train", list(overrides)))
+    if not GlobalHydra.instance().is_initialized():
+        with initialize_config_dir(str(CONF), version_base="1.3"):
+            return load(overrides)
+    refuse_new_keys(overrides)
+    return resolved(compose("train", list(overrides)))
+
+
+def refuse_new_keys(overrides: Sequence[str]) -> None:
+    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it."""
+    added = [text.lstrip("+").partition("=")[0] for text in overrides if text.startswith("+")]
+    if not added:
+        return
+    known = compose("train", [text for text in overrides if not text.startswith("+")])
+    groups = GlobalHydra.instance().config_loader()
+    for key in added:
+        new = OmegaConf.select(known, key, default=UNKNOWN) is UNKNOWN
+        if new and not groups.get_group_options(key.partition("@")[0]):
+            raise UsageError(f"{key}: unknown key; {SHOW}")
 
 
 def resolved(config: DictConfig) -> DictConfig:
@@ -110,14 +137,52 @@ def _usage() -> Iterator[None]:
 
 
 def check(config: DictConfig) -> None:
-    """Raise UsageError for a count that is not a positive whole number."""
+    """Raise UsageError for a value that no run can have; parts check their own ranges."""
     for key in COUNTS:
         _whole(config, key)
-    if not isinstance(config.seed, int) or config.seed < 0:
+    if type(config.seed) is not int or config.seed < 0:
         raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
-    for mode in config.eval_modes:
-        if mode not in MODES:
-            raise UsageError(f"eval_modes={mode}: choose among {', '.join(MODES)}")
+    modes = config.eval_modes
+    if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
+        raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
+    if type(config.checkpoint_replay) is not bool:
+        raise UsageError(f"checkpoint_replay={config.checkpoint_replay}: must be true or false")
+    if config.matmul_precision not in PRECISIONS:
+        known = ", ".join(PRECISIONS)
+        raise UsageError(f"matmul_precision={config.matmul_precision}: choose one of {known}")
+    _check_kinds(config)
+
+
+def _check_kinds(node: DictConfig, where: str = "") -> None:
+    """Raise UsageError for a value of a part, here or below, that its field cannot hold."""
+    kinds = _kinds(node, where)
+    for key, value in node.items():
+        if isinstance(value, DictConfig):
+            _check_kinds(value, f"{where}{key}.")
+            continue
+        kind = tuple if isinstance(value, ListConfig) else type(value)
+        wanted = kinds.get(str(key), {kind})
+        if kind not in wanted and not (kind is int and float in wanted):
+            called = " or ".join(KINDS[each] for each in KINDS if each in wanted)
+            raise UsageError(f"{where}{key}={value}: must be {called}")
+
+
+def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
+    """Field -> types it can hold, of the part that `node` names; fields of other types left out."""
+    if "_target_" not in node:
+        return {}
+    try:
+        part = get_object(node._target_)
+    except (ImportError, ValueError) as error:
+        raise UsageError(f"{where}_target_={node._target_}: {error}") from error
+    found = {}
+    for field in fields(part) if is_dataclass(part) else ():
+        several = get_origin(field.type) in (Union, UnionType)
+        each = get_args(field.type) if several else (field.type,)
+        wanted = {get_origin(kind) or kind for kind in each}
+        if wanted <= set(KINDS):
+            found[field.name] = wanted
+    return found
 
 
 def _whole(config: Any, key: str, where: str = "") -> int:

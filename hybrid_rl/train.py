@@ -14,11 +14,12 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import command
 from hybrid_rl import config as configuration
-from hybrid_rl.config import Run, UsageError
+from hybrid_rl.config import UNKNOWN, Run, UsageError
 from hybrid_rl.envs.physics import resolve
 from hybrid_rl.training import checkpoint, provenance
 from hybrid_rl.training.log import RunLog
 from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.manifest import write_text
 from hybrid_rl.training.progress import Progress
 from hybrid_rl.training.session import Schedule, Session
 
@@ -38,6 +39,7 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
     """
     config = _settings(config, asked)
     run = configuration.build(config)
+    command.prepare(config)
     label = f"{config.task} {config.algo}"
     memory = _memory(run)
     folder = _folder(config)
@@ -49,10 +51,11 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
         loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
         session = Session(loop, run.controllers, _schedule(config), log, progress)
         if config.resume is None:
-            OmegaConf.save(config, folder / "config.yaml")
             session.begin()
         else:
             session.resume()
+        kept = OmegaConf.merge(config, {"resume": None})  # a resumed run may have become longer
+        write_text(folder / "config.yaml", OmegaConf.to_yaml(kept))
         session.run()
         summary = _summary(config, session)
         log.summary(summary)
@@ -63,20 +66,26 @@ def _settings(config: DictConfig, asked: Mapping[str, str]) -> DictConfig:
     """The configuration to run: `config`, or that of the run that it resumes."""
     if config.resume is None:
         return config
-    place = Path(config.resume) / "config.yaml"
+    configuration.check(config)
+    place = Path(str(config.resume)) / "config.yaml"
     if not place.exists():
         raise UsageError(f"resume={config.resume}: no run folder there (no config.yaml in it)")
     if not checkpoint.steps(place.parent / "checkpoints"):
         raise UsageError(f"resume={config.resume}: holds no checkpoint; start the run anew")
     old = OmegaConf.load(place)
-    for key, value in asked.items():
-        before = OmegaConf.select(old, key)
-        if key not in ("resume", "total_steps") and str(before) != value:
+    for key in asked.keys() - {"resume", "total_steps"}:
+        before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
+        if before is UNKNOWN or before != now:
+            has = "" if before is UNKNOWN else f"; the run in resume={config.resume} has {before}"
             raise UsageError(
-                f"{key}={value}: the run in resume={config.resume} has {key}={before}; "
-                "beside resume only total_steps can be changed"
+                f"{key}={asked[key]}: beside resume only total_steps can be changed{has}"
             )
     if "total_steps" in asked:
+        if config.total_steps < old.total_steps:
+            raise UsageError(
+                f"total_steps={config.total_steps}: the run in resume={config.resume} "
+                f"has {old.total_steps}; it can be raised, not lowered"
+            )
         old.total_steps = config.total_steps
     old.resume = config.resume
     return old
@@ -85,9 +94,9 @@ def _settings(config: DictConfig, asked: Mapping[str, str]) -> DictConfig:
 def _folder(config: DictConfig) -> Path:
     """The run folder: the resumed one, or one that is new and ours alone."""
     if config.resume is not None:
-        return _writable(Path(config.resume), "resume")
+        return _writable(Path(str(config.resume)), "resume")
     if config.run_dir is not None:
-        folder = Path(config.run_dir)
+        folder = Path(str(config.run_dir))
         if (folder / "config.yaml").exists():
             raise UsageError(
                 f"run_dir={folder}: holds a run already; choose another, or resume={folder}"
@@ -176,7 +185,6 @@ def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
 
 def _job(config: DictConfig) -> None:
     """One run of the command."""
-    command.prepare(config)
     given = command.asked(list(HydraConfig.get().overrides.task))
     summary = train(configuration.resolved(config), given)
     shown = ", ".join("-" if r is None else f"{r:,.1f}" for r in summary["final_return"])

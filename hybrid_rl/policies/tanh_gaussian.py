@@ -30,7 +30,6 @@ class TanhGaussian:
     log_std_activation: str | None = None  # None: mean and deviation share the trunk
     log_std_min: float = -5.0
     log_std_max: float = 2.0
-    output_scale: float | None = None
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -41,7 +40,7 @@ class TanhGaussian:
             raise ValueError(f"policy.log_std_min={self.log_std_min}: must lie below log_std_max")
 
     def _net(self, out: int, activation: str | None = None) -> MLP:
-        return MLP(self.hidden, out, activation or self.activation, self.output_scale)
+        return MLP(self.hidden, out, activation or self.activation)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """First parameters. The key is consumed."""

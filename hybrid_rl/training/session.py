@@ -83,11 +83,12 @@ class Session:
         Raises:
             CheckpointError: where there is none, or it is of another run.
         """
-        like = jax.eval_shape(self.loop.init)
-        kept = self.schedule.checkpoint_replay
-        wanted = like if kept else like.replace(memory=None)
-        self.step, self.state, meta, notes = checkpoint.restore(self._checkpoints, wanted)
-        if not kept:
+        like = jax.eval_shape(self.loop.init).replace(memory=None)
+        found = checkpoint.restore(self._checkpoints, like, part=True)
+        self.step, self.state, meta, notes = found
+        if self.schedule.checkpoint_replay:
+            self.state = self.state.replace(memory=self._remembered(meta["capacity"]))
+        else:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             self.state = self.state.replace(memory=self.loop.init().memory)
             notes = [*notes, "no replay memory in checkpoints: it goes on, but not bit for bit"]
@@ -96,6 +97,24 @@ class Session:
         self.before_s = meta["wall_s"]
         self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
         self.progress.note(f"going on from step {self.step:,}")
+
+    def _remembered(self, capacity: int) -> Any:
+        """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
+
+        A longer run has a larger one. What was bounded by the run's length has not come round
+        yet, so that new rows at its end are all that it takes.
+        """
+        agent = self.loop.agent
+        then = replace(agent, replay=replace(agent.replay, capacity=capacity))
+        like = jax.eval_shape(replace(self.loop, agent=then).init)
+        alone = like.replace(env=None, control=None, learners=None, key=None)
+        memory = checkpoint.restore(self._checkpoints, alone, self.step, part=True)[1].memory
+
+        def grown(old: jax.Array, now: Any) -> jax.Array:
+            ends = zip(old.shape, now.shape, strict=True)
+            return jnp.pad(old, [(0, size - filled) for filled, size in ends])
+
+        return jax.tree.map(grown, memory, jax.eval_shape(self.loop.init).memory)
 
     def run(self) -> None:
         """Advance to the end or to a signal; the last state is always saved.
@@ -200,6 +219,7 @@ class Session:
             "wall_s": self.wall_s,
             "metrics_bytes": self.log.flush(),
             "returns": self.returns,
+            "capacity": self.loop.agent.replay.capacity,
         }
         state = self.state if kept else self.state.replace(memory=None)
         checkpoint.save(self._checkpoints, self.step, state, meta)

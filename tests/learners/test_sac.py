@@ -1,0 +1,95 @@
+"""Soft actor-critic on problems whose values are known."""
+
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.critics.ensemble_q import EnsembleQ
+from hybrid_rl.learners.sac import SAC, SACState
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.types import Batch, Params, Spec
+
+SPEC = Spec(obs=1, act=1, dt=1.0)
+B = 64
+
+
+def learner(**fields: float) -> SAC:
+    """A small learner that is quick on small problems."""
+    rates = dict.fromkeys(
+        ("policy_learning_rate", "critic_learning_rate", "alpha_learning_rate"), 3e-3
+    )
+    return SAC(
+        TanhGaussian(hidden=(32,)), EnsembleQ(hidden=(32, 32)), **(rates | {"tau": 0.05} | fields)
+    )
+
+
+def train(sac: SAC, draw: partial, steps: int) -> SACState:
+    """The state after `steps` updates on batches that `draw` makes."""
+
+    def one(state: SACState, key: Array) -> tuple[SACState, None]:
+        drawing, updating = jax.random.split(key)
+        return sac.update(state, Params(), draw(drawing), updating)[0], None
+
+    keys = jax.random.split(jax.random.key(1), steps)
+    return jax.jit(lambda s: jax.lax.scan(one, s, keys)[0])(sac.init(jax.random.key(0), SPEC))
+
+
+def batch(key: Array, terminated: float, truncated: float, of_action: bool) -> Batch:
+    """Uniform actions in one state; reward 1, or -(u - 0.5)^2."""
+    u = jax.random.uniform(key, (B, 1), minval=-1, maxval=1)
+    reward = -((u[:, 0] - 0.5) ** 2) if of_action else jnp.ones(B)
+    obs, one = jnp.zeros((B, 1)), jnp.ones(B)
+    return Batch(obs, u, reward, terminated * one, truncated * one, obs, u)
+
+
+def value(sac: SAC, state: SACState, u: float = 0.0) -> float:
+    """Q of the smaller critic at the one state."""
+    return float(sac.critic.value(state.critic, jnp.zeros(1), jnp.array([u])))
+
+
+def test_a_terminal_reward_is_its_own_value() -> None:
+    """Q = r where nothing follows."""
+    sac = learner()
+    state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=False), 1500)
+    assert value(sac, state) == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_time_limit_is_bootstrapped_through() -> None:
+    """Q = r / (1 - gamma) + entropy bonus, although every transition is truncated."""
+    sac = learner(discount=0.5, alpha=1e-6, alpha_learning_rate=1e-9)
+    state = train(sac, partial(batch, terminated=0.0, truncated=1.0, of_action=False), 3000)
+    assert value(sac, state) == pytest.approx(2.0, abs=0.1)
+
+
+def test_the_policy_finds_the_best_action() -> None:
+    """The mean goes where the reward is greatest; Q is right there and elsewhere."""
+    sac = learner()
+    state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 3000)
+    mean = float(sac.policy.mean(state.policy, jnp.zeros(1))[0])
+    assert mean == pytest.approx(0.5, abs=0.1)
+    assert value(sac, state, 0.5) == pytest.approx(0.0, abs=0.1)
+    assert value(sac, state, -0.5) == pytest.approx(-1.0, abs=0.15)
+
+
+def test_the_temperature_meets_its_target() -> None:
+    """Entropy settles at the target while the reward asks for none."""
+    sac = learner(target_entropy=-1.0)
+    state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 4000)
+    keys = jax.random.split(jax.random.key(2), 4000)
+    log_prob = jax.vmap(lambda k: sac.policy.sample(state.policy, jnp.zeros(1), k)[1])(keys)
+    assert -float(log_prob.mean()) == pytest.approx(-1.0, abs=0.35)
+
+
+def test_the_smaller_critic_counts() -> None:
+    """`value` is the minimum over members."""
+    critic = EnsembleQ(hidden=(8,), members=3)
+    params = critic.init(jax.random.key(0), SPEC)
+    x, u = jnp.ones(1), jnp.ones(1)
+    members = critic.all(params, x, u)
+    assert members.shape == (3,)
+    assert len(set(np.asarray(members).tolist())) == 3
+    assert float(critic.value(params, x, u)) == float(members.min())

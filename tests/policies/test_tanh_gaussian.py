@@ -1,0 +1,51 @@
+"""The squashed Gaussian: its density integrates to one, its samples follow it."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.types import Spec
+
+SPEC = Spec(obs=3, act=2, dt=1.0)
+KINDS = {
+    "one trunk": TanhGaussian(hidden=(16,)),
+    "two networks": TanhGaussian(hidden=(16,), activation="sin", log_std_activation="relu"),
+}
+
+
+@pytest.mark.parametrize("policy", KINDS.values(), ids=KINDS)
+def test_log_density_is_that_of_the_squashed_normal(policy: TanhGaussian) -> None:
+    """Change of variables, written out."""
+    params = policy.init(jax.random.key(0), SPEC)
+    x = jnp.array([0.3, -1.0, 2.0])
+    u, log_prob = policy.sample(params, x, jax.random.key(1))
+    mu, sigma = map(np.asarray, policy.gaussian(params, x))
+    z = np.arctanh(np.asarray(u, np.float64))
+    normal = np.exp(-0.5 * ((z - mu) / sigma) ** 2) / (sigma * np.sqrt(2 * np.pi))
+    assert float(log_prob) == pytest.approx(np.log(normal / (1 - np.tanh(z) ** 2)).sum(), abs=1e-3)
+    assert (np.abs(policy.mean(params, x)) < 1).all()
+
+
+@pytest.mark.parametrize("policy", KINDS.values(), ids=KINDS)
+def test_samples_have_the_mean_of_the_normal(policy: TanhGaussian) -> None:
+    """atanh of the samples has mean mu and deviation sigma."""
+    params = policy.init(jax.random.key(0), SPEC)
+    x = jnp.array([0.3, -0.2, 0.1])
+    keys = jax.random.split(jax.random.key(1), 20_000)
+    u = jax.vmap(lambda k: policy.sample(params, x, k)[0])(keys)
+    mu, sigma = policy.gaussian(params, x)
+    z = np.arctanh(np.clip(np.asarray(u, np.float64), -0.999999, 0.999999))
+    np.testing.assert_allclose(z.mean(0), mu, atol=0.05)
+    np.testing.assert_allclose(z.std(0), sigma, rtol=0.05)
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [{"hidden": (0,)}, {"activation": "step"}, {"log_std_min": 3.0, "log_std_max": 2.0}],
+)
+def test_bad_fields_are_named(fields: dict) -> None:
+    """One clear line."""
+    with pytest.raises(ValueError, match=next(iter(fields))):
+        TanhGaussian(**fields)
