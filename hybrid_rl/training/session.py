@@ -132,6 +132,8 @@ class Session:
             saved = None
             while self.step < self.schedule.total_steps and self.stop is None:
                 self._stride(program)
+                if self.stop is not None:
+                    self.progress.note("stopping, with a checkpoint ...")
                 if self._due(self.schedule.eval_every):
                     self._evaluate()
                 if self._due(self.schedule.checkpoint_every):
@@ -147,13 +149,12 @@ class Session:
 
     @contextmanager
     def _signals(self) -> Iterator[None]:
-        """Ctrl-C and SIGTERM ask for an end at the next row; the second ends at once."""
+        """Ctrl-C and SIGTERM ask for an end at the next row; a second Ctrl-C ends at once."""
 
         def ask(number: int, frame: Any) -> None:
-            if self.stop is not None:
+            if self.stop == number == signal.SIGINT:
                 raise KeyboardInterrupt
             self.stop = number
-            self.progress.note("stopping at the next row, with a checkpoint ...")
 
         old = {s: signal.signal(s, ask) for s in (signal.SIGINT, signal.SIGTERM)}
         try:
