@@ -54,9 +54,3 @@ class Loop:
             return state, jax.tree.map(lambda row, m: put(row, m), rows, metrics)
 
         return jax.lax.fori_loop(0, rounds, body, (state, rows))
-
-
-def finite(state: AgentState) -> Array:
-    """[] bool: every learned number of every learner is finite."""
-    leaves = [x for x in jax.tree.leaves(state.learners) if jnp.issubdtype(x.dtype, jnp.floating)]
-    return jnp.all(jnp.stack([jnp.all(jnp.isfinite(x)) for x in leaves]))

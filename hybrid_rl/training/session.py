@@ -21,7 +21,7 @@ from hybrid_rl.training import checkpoint, provenance, rows
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.evaluate import evaluation_keys, returns
 from hybrid_rl.training.log import RunLog
-from hybrid_rl.training.loop import Loop, finite
+from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.progress import Progress
 from hybrid_rl.types import Controller, Params
 
@@ -212,8 +212,7 @@ class Session:
 
     def _save(self) -> None:
         """A checkpoint of all that the run needs to go on."""
-        if not finite(self.state):
-            raise rows.DivergenceError(f"step {self.step}: a learned parameter is not finite")
+        self._check_learned()
         kept = self.schedule.checkpoint_replay
         meta = {
             "step": self.step,
@@ -224,6 +223,17 @@ class Session:
         }
         state = self.state if kept else self.state.replace(memory=None)
         checkpoint.save(self._checkpoints, self.step, state, meta)
+
+    def _check_learned(self) -> None:
+        """Raise DivergenceError where a learned number is not finite."""
+        for path, leaf in jax.tree_util.tree_leaves_with_path(self.state.learners):
+            if jnp.issubdtype(leaf.dtype, jnp.floating):
+                numbers = np.asarray(leaf).reshape(len(self.loop.seeds), -1)
+                for s in np.flatnonzero(~np.isfinite(numbers).all(1))[:1]:
+                    name = jax.tree_util.keystr(path, simple=True, separator=".")
+                    raise rows.DivergenceError(
+                        f"seed {self.loop.seeds[s]}, step {self.step}: {name} is not finite"
+                    )
 
     def _write(self, found: list[dict[str, Any]]) -> None:
         self.log.write([{**row, "wall_s": self.wall_s} for row in found])
