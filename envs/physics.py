@@ -5,7 +5,7 @@
     native   MuJoCo C on CPU threads, float64 inside      one world or few, any CPU
     mjx      MuJoCo XLA, pure JAX, float32                many worlds on an accelerator
     warp     MuJoCo Warp through MJX, float32             many worlds on an NVIDIA GPU
-    auto     warp on an NVIDIA GPU that has warp-lang, mjx on other accelerators, else native
+    auto     native on a CPU, else mjx (warp only by name, until its contact capacities are sized)
 
 The state is the same few numbers for all three: a checkpoint is small, a reset is a
 `where`, and a run that continues continues bit for bit.
@@ -58,10 +58,7 @@ def resolve(implementation: str) -> str:
     """What `implementation` means on this machine: native, mjx or warp."""
     if implementation != "auto":
         return implementation
-    if jax.default_backend() == "cpu":
-        return "native"
-    nvidia = "nvidia" in jax.devices()[0].device_kind.lower()
-    return "warp" if nvidia and find_spec("warp") is not None else "mjx"
+    return "native" if jax.default_backend() == "cpu" else "mjx"
 
 
 @dataclass(frozen=True)
