@@ -1,0 +1,175 @@
+"""Stops a run at random moments, resumes it, and compares it with one that was never stopped.
+
+    python scripts/interrupt.py --trials 20 task=cartpole algo=hybrid_stochastic total_steps=3000
+
+A trial starts the run in a process of its own and stops it up to `--stops` times, each time
+after a random delay and by a random one of Ctrl-C, SIGTERM and kill -9; a run that was stopped
+before its first checkpoint starts anew. Then it goes on to its end. Compared are the newest
+checkpoints, bit for bit, and metrics.jsonl, all but its clocks. Exit code 1 where any differs.
+"""
+
+import argparse
+import json
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jax
+import numpy as np
+from omegaconf import OmegaConf
+
+from hybrid_rl import config as configuration
+from hybrid_rl.training import checkpoint
+from hybrid_rl.training.loop import Loop
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+
+
+class Stop(NamedTuple):
+    """One interruption."""
+
+    by: str  # the signal
+    code: int  # how the process ended
+    step: int | None  # of the newest checkpoint then
+
+
+class Trial(NamedTuple):
+    """A run that was stopped, and went on to its end."""
+
+    stops: list[Stop]
+    difference: str  # from the run that was never stopped; "" where there is none
+
+
+def start(overrides: Sequence[str]) -> subprocess.Popen:
+    """`python -m hybrid_rl.train OVERRIDES`, silent."""
+    line = [sys.executable, "-m", "hybrid_rl.train", *overrides]
+    return subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+
+def finish(overrides: Sequence[str]) -> float:
+    """Run to the end; [s] that it took."""
+    began = time.monotonic()
+    process = start(overrides)
+    said = process.communicate()[1]
+    if process.returncode:
+        raise RuntimeError(f"{' '.join(overrides)}: exit code {process.returncode}: {said}")
+    return time.monotonic() - began
+
+
+def stop(process: subprocess.Popen, by: int) -> int:
+    """Send signal `by`; the exit code, minus the signal where that killed it."""
+    process.send_signal(by)
+    process.communicate()
+    return process.returncode
+
+
+def newest(run: Path) -> int | None:
+    """The step of the newest checkpoint."""
+    return next(reversed(checkpoint.steps(run / "checkpoints")), None)
+
+
+def difference(run: Path, other: Path) -> str:
+    """What sets two finished runs apart first; "" where they are the same, but for clocks."""
+    (step, leaves), (other_step, other_leaves) = _state(run), _state(other)
+    if step != other_step:
+        return f"checkpoint {step} and {other_step}"
+    for name, leaf in leaves.items():
+        if leaf.tobytes() != other_leaves[name].tobytes():
+            return f"{name} at step {step}"
+    ours, theirs = rows(run), rows(other)
+    for one, two in zip(ours, theirs, strict=False):
+        if one != two:
+            return f"row {one} and {two}"
+    return "" if len(ours) == len(theirs) else f"{len(ours)} and {len(theirs)} rows"
+
+
+def rows(run: Path) -> list[dict[str, Any]]:
+    """Rows of metrics.jsonl without what a clock gave."""
+    lines = (run / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
+    return [
+        {k: v for k, v in json.loads(line).items() if k != "wall_s" and not k.startswith("perf/")}
+        for line in lines
+    ]
+
+
+def _state(run: Path) -> tuple[int, dict[str, np.ndarray]]:
+    """(step, name -> array) of the newest checkpoint."""
+    config: Any = OmegaConf.load(run / "config.yaml")
+    built = configuration.build(config)
+    like = jax.eval_shape(Loop(built.agent, built.seeds, 1).init)
+    step, state, *_ = checkpoint.restore(run / "checkpoints", like)
+    found = {}
+    for path, leaf in jax.tree_util.tree_leaves_with_path(state):
+        key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+        found[jax.tree_util.keystr(path)] = np.asarray(jax.random.key_data(leaf) if key else leaf)
+    return step, found
+
+
+def trial(overrides: Sequence[str], whole: Path, run: Path, stops: int, within: float) -> Trial:
+    """One run into `run`, stopped up to `stops` times, each `within` [s] of its start."""
+    made = []
+    for _ in range(stops):
+        by = random.choice(SIGNALS)
+        process = start(_or_resume(overrides, run))
+        time.sleep(random.uniform(0, within))
+        made.append(Stop(by.name, stop(process, by), newest(run)))
+    finish(_or_resume(overrides, run))
+    return Trial(made, difference(whole, run))
+
+
+def _or_resume(overrides: Sequence[str], run: Path) -> list[str]:
+    """Arguments that start the run in folder `run`, or go on with it where it has a checkpoint."""
+    if newest(run) is not None:
+        return [f"resume={run}"]
+    shutil.rmtree(run, ignore_errors=True)
+    return [*overrides, f"run_dir={run}"]
+
+
+def line(number: int, done: Trial) -> str:
+    """A trial in the table."""
+    told = ", ".join(f"{stop.by} -> {stop.code} at {stop.step}" for stop in done.stops)
+    return f"{number:5}  {done.difference or 'same'}  {told}"
+
+
+def arguments() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(description="Stop a run at random moments, and resume it.")
+    parser.add_argument("--trials", type=int, default=20)
+    parser.add_argument("--stops", type=int, default=2, help="interruptions of a trial at most")
+    parser.add_argument("--seed", type=int, default=0, help="of the random moments")
+    parser.add_argument("--within", type=float, help="[s] the latest moment; default: the run's")
+    parser.add_argument("--keep", type=Path, help="folder of all runs; default: one that goes")
+    parser.add_argument("overrides", nargs="+", help="of hybrid_rl.train")
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Exit code: 0 where all trials are the same as the run that was never stopped."""
+    args = arguments()
+    random.seed(args.seed)
+    with tempfile.TemporaryDirectory() as spare:
+        place = args.keep or Path(spare)
+        whole = place / "whole"
+        finish([*args.overrides, f"run_dir={whole}"])  # compiles, and keeps what it compiled
+        within = args.within or finish([*args.overrides, f"run_dir={place / 'again'}"])
+        print(f"never stopped: {within:.0f} s, last checkpoint {newest(whole)}", flush=True)
+        print("trial  result  signal -> exit code at newest checkpoint", flush=True)
+        same = 0
+        for number in range(1, args.trials + 1):
+            stops = random.randint(1, args.stops)
+            done = trial(args.overrides, whole, place / str(number), stops, within)
+            print(line(number, done), flush=True)
+            same += not done.difference
+    print(f"{same} of {args.trials} the same as the run that was never stopped")
+    return int(same < args.trials)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,192 @@
+"""What the commands leave behind: files, names, tables, pictures."""
+
+import json
+import re
+from pathlib import Path
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+from omegaconf import OmegaConf
+from tiny import TINY, call, call_train, contents, run
+
+from hybrid_rl import command, config, drawing, evaluate, figures, render
+from hybrid_rl import list as listed
+from hybrid_rl.curves import curves
+from hybrid_rl.training import checkpoint
+
+pytestmark = pytest.mark.xdist_group("commands")
+MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}
+NAME = re.compile(r"(train|eval|model|sac|planner|perf|world)/[a-z_]+")
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    """A run of the command, on MuJoCo C."""
+    folder = tmp_path_factory.mktemp("trained") / "run"
+    world = ["task=cartpole", "algo=hybrid_stochastic", "physics=native", "episode.steps=40"]
+    settings = [*TINY, *world, "eval_modes=[full,policy,planner]", f"run_dir={folder}"]
+    assert call_train(*settings) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    """The folder in which two methods ran, two seeds each."""
+    place = tmp_path_factory.mktemp("swept")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        assert call_train("-m", *TINY, "algo=sac,nn_mppi", "seed=range(2)") == 0
+    return place
+
+
+def rows(folder):
+    return [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+
+
+def summary(folder):
+    return json.loads((folder / "summary.json").read_text())
+
+
+def test_a_run_folder_holds_what_it_should(trained):
+    found = {path.name for path in trained.iterdir()}
+    assert found == {"config.yaml", "metrics.jsonl", "tensorboard", "checkpoints", "summary.json"}
+    assert checkpoint.steps(trained / "checkpoints") == [500, 600]
+
+
+def test_the_configuration_is_resolved_and_builds(trained):
+    text = (trained / "config.yaml").read_text()
+    assert "${" not in text
+    kept = OmegaConf.load(trained / "config.yaml")
+    assert (kept.task, kept.algo, kept.total_steps, kept.resume) == (
+        "cartpole",
+        "hybrid_stochastic",
+        600,
+        None,
+    )
+    assert config.build(kept).agent.episode.steps == 40
+
+
+def test_rows_have_a_place_and_known_names(trained):
+    steps = [row["step"] for row in rows(trained)]
+    assert steps == sorted(steps)
+    for row in rows(trained):
+        assert (type(row["step"]), row["seed"], type(row["wall_s"])) == (int, 0, float)
+        names = row.keys() - {"step", "seed", "wall_s"}
+        assert names
+        assert all(NAME.fullmatch(name) for name in names)
+        assert np.isfinite([row[name] for name in names]).all()
+
+
+def test_rows_tell_what_they_promise(trained):
+    told = {name for row in rows(trained) for name in row}
+    assert told >= {*MODES.values(), "train/return", "train/length"}
+    assert told >= {"model/loss", "model/reward_loss", "perf/env_steps_per_s", "sac/q"}
+    assert "planner/effective_samples" in told
+    ends = [row for row in rows(trained) if "train/return" in row]
+    assert [(row["step"], row["train/length"]) for row in ends] == [
+        (step, 40) for step in range(40, 601, 40)
+    ]
+
+
+def test_the_board_has_the_same_names(trained):
+    (board,) = (trained / "tensorboard").iterdir()
+    data = board.read_bytes()
+    names = {name for row in rows(trained) for name in row} - {"step", "seed", "wall_s"}
+    assert all(name.encode() in data for name in names)
+
+
+def test_the_summary_says_what_was_done(trained):
+    said = summary(trained)
+    assert said.keys() >= {
+        *("task", "algo", "seeds", "total_steps", "finished", "final_return", "wall_s"),
+        *("env_steps_per_s", "physics", "device", "versions", "git_commit"),
+    }
+    assert (said["task"], said["algo"], said["seeds"]) == ("cartpole", "hybrid_stochastic", [0])
+    assert (said["total_steps"], said["finished"], said["physics"]) == (600, True, "native")
+    last = [row["train/return"] for row in rows(trained) if row["step"] > 540 and len(row) == 5]
+    assert said["final_return"] == [pytest.approx(np.mean(last))]
+    assert 0 < said["compile_s"] < said["wall_s"]
+    assert {"jax", "mujoco", "python", "hybrid_rl"} <= said["versions"].keys()
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
+    code = call(
+        lambda: command.guarded(evaluate.main), f"run={trained}", "episodes=1", f"mode={mode}"
+    )
+    assert code == 0
+    said = json.loads((trained / f"evaluation_{mode}.json").read_text())
+    assert (said["mode"], said["step"], said["seeds"], said["episodes"]) == (mode, 600, [0], 1)
+    assert said["mean"] == [row[0] for row in said["returns"]]
+    last = [row[MODES[mode]] for row in rows(trained) if MODES[mode] in row][-1]
+    assert said["mean"] == [pytest.approx(last, rel=1e-4)]
+    table = capsys.readouterr().out
+    assert f"mode {mode}, step 600" in " ".join(table.split())
+    assert f"{last:,.1f}" in table
+
+
+def test_render_draws_an_episode(trained, tmp_path, capfd):
+    out = tmp_path / "video.mp4"
+    given = [f"run={trained}", f"out={out}", "episode_steps=4", "width=64", "height=48"]
+    code = call(lambda: command.guarded(render.main), *given)
+    try:
+        drawing.backend()
+    except drawing.NoGraphicsError:
+        assert code == 1
+        assert "install libegl1 or libosmesa6" in capfd.readouterr().err
+        return
+    assert code == 0
+    assert iio.imread(out, plugin="pyav").shape == (5, 48, 64, 3)
+    assert "4 decisions" in capfd.readouterr().out
+
+
+def test_a_sweep_makes_a_folder_each(swept):
+    folders = sorted((swept / "runs" / "pendulum").glob("*/*"))
+    said = [summary(folder) for folder in folders]
+    assert sorted((each["algo"], *each["seeds"]) for each in said) == [
+        ("nn_mppi", 0),
+        ("nn_mppi", 1),
+        ("sac", 0),
+        ("sac", 1),
+    ]
+    assert all(each["finished"] for each in said)
+    assert [each["algo"] for each in said] == [folder.parent.name for folder in folders]
+
+
+def test_figures_draw_a_sweep(swept, monkeypatch, capsys):
+    monkeypatch.chdir(swept)
+    given = ["runs=runs/pendulum/*/*", "out=curves.png"]
+    assert call(lambda: command.guarded(figures.main), *given) == 0
+    assert (swept / "curves.png").read_bytes().startswith(b"\x89PNG")
+    drawn = json.loads((swept / "curves.json").read_text())["curves"]
+    assert [(c["label"], c["seeds"]) for c in drawn] == [("nn_mppi", [0, 1]), ("sac", [0, 1])]
+    assert "pendulum, sac: 2 seeds" in capsys.readouterr().out
+
+
+def test_a_method_without_a_planner_skips_that_evaluation(swept):
+    (folder, _) = sorted((swept / "runs" / "pendulum" / "sac").iterdir())
+    names = {name for row in rows(folder) for name in row}
+    assert "eval/return" in names
+    assert not any(name.startswith(("planner/", "model/")) for name in names)
+
+
+def test_python_does_what_the_commands_do(tmp_path):
+    said = run(tmp_path / "run", "algo=sac")
+    before = contents(tmp_path)
+    assert said == summary(tmp_path / "run")
+    trained = evaluate.load(Path(said["run_dir"]))
+    assert (trained.seeds, trained.step, trained.notes) == ((0,), 600, ())
+    got = evaluate.evaluate(trained, "policy", episodes=1)
+    assert got.shape == (1, 1)
+    assert np.isfinite(got).all()
+    (curve,) = curves(said["run_dir"])
+    assert (curve.label, list(curve.x)) == ("sac", [200, 400, 600])
+    assert contents(tmp_path) == before
+
+
+def test_the_list_names_every_task_and_method(capsys):
+    assert call(lambda: command.guarded(listed.main)) == 0
+    said = capsys.readouterr().out
+    for group in ("task", "algo", "experiment"):
+        assert all(f"  {name}  " in said for name in command.options(group))

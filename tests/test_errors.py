@@ -1,0 +1,287 @@
+"""What goes wrong is one line, an exit code, and nothing lost."""
+
+import json
+import resource
+import shutil
+import subprocess
+import sys
+
+import jax
+import jax.numpy as jnp
+import pytest
+from tiny import TINY, call, call_train, contents, run
+
+from hybrid_rl import command, drawing, evaluate, figures, render
+from hybrid_rl import list as listed
+from hybrid_rl.envs.pendulum import Pendulum
+from hybrid_rl.training import checkpoint, manifest, session
+
+pytestmark = pytest.mark.xdist_group("errors")
+MAINS = {
+    "evaluate": evaluate.main,
+    "render": render.main,
+    "figures": figures.main,
+    "list": listed.main,
+}
+COUNT = "must be a whole number, 1 or more"
+KEYS = (
+    *("total_steps", "num_seeds", "num_envs", "log_every", "checkpoint_every"),
+    *("eval_every", "eval_episodes", "replay.capacity", "episode.steps", "episode.action_repeat"),
+    *("planner.samples", "planner.horizon"),
+    *("policy_learner.batch_size", "model_learner.batch_size"),
+)
+USAGE = [  # overrides of train, words of the line
+    ("task=cartpool", "task=cartpool: unknown; choose one of cartpole, halfcheetah"),
+    ("algo=sacc", "algo=sacc: unknown; choose one of hybrid_stochastic"),
+    ("objective=foo", "objective=foo: unknown; choose one of learned_re"),
+    ("experiment=foo", "experiment=foo: unknown; choose one of thesis/"),
+    ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of thesis/"),
+    ("sed=3", "sed: unknown key; `python -m hybrid_rl.train --cfg job` shows"),
+    ("planner.horizn=3", "planner.horizn: unknown key"),
+    ("+sed=3", "sed: unknown key"),
+    ("++planner.horizn=3", "planner.horizn: unknown key"),
+    ("total_steps", "total_steps"),
+    ("physics=bullet", "physics='bullet': choose one of auto, native, mjx, warp"),
+    ("task=cartpole physics=warp", "physics='warp' needs"),
+    *((f"{key}=0", f"{key}=0: {COUNT}") for key in KEYS),
+    *((f"{key}=-3", f"{key}=-3: {COUNT}") for key in ("total_steps", "num_envs")),
+    *((f"{key}=2.5", f"{key}=2.5: must be a whole number") for key in KEYS[::3]),
+    ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
+    ("num_envs=many", f"num_envs=many: {COUNT}"),
+    ("seed=-1", "seed=-1: must be a whole number, 0 or more"),
+    ("planner.temperature=0", "planner.temperature=0: must be above 0"),
+    ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
+    ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
+    ("policy.hidden=16", "policy.hidden=16: must be a list"),
+    ("policy.hidden=[0]", "policy.hidden=[0]: widths are positive"),
+    ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),
+    ("eval_modes=[full,both]", "eval_modes=['full', 'both']: must be a list of full, policy"),
+    ("eval_modes=full", "eval_modes=full: must be a list of full, policy, planner"),
+    ("checkpoint_replay=0", "checkpoint_replay=0: must be true or false"),
+    ("matmul_precision=low", "matmul_precision=low: choose one of highest, high, default"),
+    ("replay.capacity=1000000000000 total_steps=1000000000000", "learners would take"),
+    ("resume=nowhere", "resume=nowhere: no run folder there"),
+    ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
+]
+OTHERS = [  # command and its arguments, exit code, words of the line
+    ("evaluate", 2, "run: not given"),
+    ("evaluate run=nowhere", 2, "run=nowhere: no run folder there"),
+    ("evaluate run={begun}", 2, "holds no checkpoint yet"),
+    ("evaluate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
+    ("evaluate run={trained} mode=planner", 2, "mode=planner: the run has full, policy"),
+    ("evaluate run={trained} episodes=0", 2, f"episodes=0: {COUNT}"),
+    ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
+    ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
+    ("evaluate {trained}", 2, "unknown argument; give key=value"),
+    ("render run=nowhere", 2, "run=nowhere: no run folder there"),
+    ("render run={trained} out=film.avi", 2, "out=film.avi: must end in .mp4 or .gif"),
+    ("figures runs=nowhere/*", 2, "runs=nowhere/*: no run there"),
+    ("figures runs={trained} metric=train/reward", 2, "metric=train/reward: not in these runs"),
+    ("figures runs={trained} out=curve.txt", 2, "out=curve.txt: must end in .png"),
+    ("list tasks", 2, "tasks: the list takes no argument"),
+]
+RESUMED = [  # overrides beside resume, words of the line
+    ("task=cartpole", "task=cartpole: beside resume only total_steps can be changed; the run in"),
+    ("algo=nn_mppi", "algo=nn_mppi: beside resume only total_steps can be changed; the run in"),
+    ("seed=7", "has 0"),
+    ("policy.hidden=[8,8]", "has [16]"),
+    ("experiment=thesis/fig_3_2_pendulum", "beside resume only total_steps can be changed"),
+    ("total_steps=100", "has 600; it can be raised, not lowered"),
+    ("total_steps=1e9", f"total_steps=1000000000.0: {COUNT}"),
+]
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    """A run that is done, and one that never reached a checkpoint."""
+    place = tmp_path_factory.mktemp("folders")
+    run(place / "trained", "algo=sac")
+    (place / "begun").mkdir()
+    shutil.copy(place / "trained" / "config.yaml", place / "begun")
+    return {"trained": place / "trained", "begun": place / "begun"}
+
+
+@pytest.fixture
+def copied(folders, tmp_path):
+    """A run that is done, to harm."""
+    return shutil.copytree(folders["trained"], tmp_path / "run")
+
+
+@pytest.fixture
+def nothing_lost(folders, tmp_path, monkeypatch):
+    """No file is made, changed or gone."""
+    monkeypatch.chdir(tmp_path)
+    place = folders["trained"].parent
+    before = contents(place)
+    yield
+    assert contents(place) == before
+    assert contents(tmp_path) == {}
+
+
+def only_line(capfd):
+    """What was said on stderr, which is one line."""
+    said = capfd.readouterr().err
+    assert said.startswith("hybrid_rl: ")
+    assert said.count("\n") == 1
+    return said
+
+
+def harm(folder):
+    """Change one byte in the middle of the largest file."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    largest = max(files, key=lambda path: path.stat().st_size)
+    data = bytearray(largest.read_bytes())
+    data[len(data) // 2] ^= 1
+    largest.write_bytes(data)
+
+
+def cut(folder):
+    """Leave half of the largest file."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    largest = max(files, key=lambda path: path.stat().st_size)
+    largest.write_bytes(largest.read_bytes()[: largest.stat().st_size // 2])
+
+
+@pytest.mark.parametrize(("given", "words"), USAGE, ids=[given for given, _ in USAGE])
+def test_train_refuses(nothing_lost, capfd, given, words):
+    assert call_train("task=pendulum", "algo=hybrid_stochastic", *given.split()) == 2
+    assert words in only_line(capfd)
+
+
+@pytest.mark.parametrize(("given", "code", "words"), OTHERS, ids=[given for given, *_ in OTHERS])
+def test_the_other_commands_refuse(nothing_lost, folders, monkeypatch, capfd, given, code, words):
+    monkeypatch.setattr(drawing, "backend", lambda: "egl")
+    name, *arguments = given.format(**folders).split()
+    assert call(lambda: command.guarded(MAINS[name]), *arguments) == code
+    assert words in only_line(capfd)
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("train task=cartpool", "task=cartpool: unknown"),
+        ("train num_envs=2.5", "num_envs=2.5: must be"),
+        ("train resume=nowhere", "resume=nowhere: no run folder"),
+        ("evaluate run=nowhere", "run=nowhere: no run folder"),
+    ],
+)
+def test_a_process_says_one_line(nothing_lost, line, words):
+    name, *arguments = line.split()
+    whole = [sys.executable, "-m", f"hybrid_rl.{name}", *arguments]
+    done = subprocess.run(whole, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert words in done.stderr
+
+
+@pytest.mark.parametrize(("given", "words"), RESUMED, ids=[given for given, _ in RESUMED])
+def test_resume_refuses_other_settings(nothing_lost, folders, capfd, given, words):
+    assert call_train(f"resume={folders['trained']}", given) == 2
+    assert words in only_line(capfd)
+
+
+def test_resume_needs_a_checkpoint(nothing_lost, folders, capfd):
+    assert call_train(f"resume={folders['begun']}") == 2
+    assert "holds no checkpoint; start the run anew" in only_line(capfd)
+
+
+def test_a_run_is_never_written_over(nothing_lost, folders, capfd):
+    assert call_train(*TINY, "algo=sac", f"run_dir={folders['trained']}") == 2
+    said = only_line(capfd)
+    assert "holds a run already; choose another, or resume=" in said
+
+
+def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
+    monkeypatch.setattr(drawing, "TRIAL", "raise SystemExit(1)")
+    monkeypatch.setattr(sys, "platform", "linux")
+    drawing.backend.cache_clear()
+    code = call(lambda: command.guarded(render.main), f"run={folders['trained']}")
+    assert code == 1
+    assert "install libegl1 or libosmesa6" in only_line(capfd)
+
+
+@pytest.mark.parametrize("damage", [harm, cut])
+def test_a_damaged_checkpoint_is_passed_over(copied, capfd, damage):
+    damage(copied / "checkpoints" / "600")
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
+    assert "checkpoint 600 is passed over" in " ".join(capfd.readouterr().out.split())
+    assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
+    assert call_train(f"resume={copied}") == 0
+    said = capfd.readouterr()
+    assert "checkpoint 600 is passed over" in said.out
+    assert "going on from step 500" in said.out
+    assert said.err == ""
+    assert manifest.flaw(copied / "checkpoints" / "600") is None
+
+
+def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
+    for step in (500, 600):
+        harm(copied / "checkpoints" / str(step))
+    before = contents(copied)
+    assert call_train(f"resume={copied}") == 1
+    assert "holds no sound checkpoint" in only_line(capfd)
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}") == 1
+    assert "holds no sound checkpoint" in only_line(capfd)
+    assert contents(copied) == before
+
+
+def test_a_full_disk_leaves_the_last_checkpoint(copied, monkeypatch, capfd):
+    """The system refuses files beyond 1 kB, as it does where no place is left."""
+    kept = contents(copied / "checkpoints")
+    save, limits = checkpoint.save, resource.getrlimit(resource.RLIMIT_FSIZE)
+
+    def save_on_a_full_disk(*arguments):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+        try:
+            save(*arguments)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+    monkeypatch.setattr(checkpoint, "save", save_on_a_full_disk)
+    assert call_train(f"resume={copied}", "total_steps=700") == 1
+    said = only_line(capfd)
+    assert "checkpoint 700" in said
+    assert "File too large; checkpoint 600 is whole" in said
+    assert contents(copied / "checkpoints") == kept
+
+
+def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, capfd):
+    """From decision 50 of an episode on, its reward is no number."""
+    sound = Pendulum.step
+
+    def step(world, state, action):
+        now = sound(world, state, action)
+        broken = state.info["decision"] >= 50
+        return now.replace(reward=jnp.where(broken, jnp.nan, now.reward))
+
+    folder = copied.with_name("broken")
+    with monkeypatch.context() as patch:
+        patch.setattr(Pendulum, "step", step)
+        line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
+        assert call_train(*line) == 1
+    assert only_line(capfd) == "hybrid_rl: seed 0, step 51: world/reward is not finite\n"
+    assert checkpoint.steps(folder / "checkpoints") == [50]
+    assert call_train(f"resume={folder}") == 0
+    theirs, ours = (copied / "metrics.jsonl", folder / "metrics.jsonl")
+    last = [json.loads(path.read_text().splitlines()[-1]) for path in (theirs, ours)]
+    assert last[0]["eval/return"] == last[1]["eval/return"]
+
+
+def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
+    """A parameter that is no number is not saved."""
+    stride = session.Session._stride
+
+    def spoilt(self, program):
+        stride(self, program)
+        if self.step == 650:
+            leaves, form = jax.tree.flatten(self.state.learners)
+            leaves = [jnp.full_like(x, jnp.nan) if x.dtype == jnp.float32 else x for x in leaves]
+            self.state = self.state.replace(learners=jax.tree.unflatten(form, leaves))
+
+    monkeypatch.setattr(session.Session, "_stride", spoilt)
+    monkeypatch.setattr(session.rows, "check", lambda *_: None)
+    assert call_train(f"resume={copied}", "total_steps=700") == 1
+    said = only_line(capfd)
+    assert said.startswith("hybrid_rl: seed 0, step 700: policy.")
+    assert said.endswith(" is not finite\n")
+    assert checkpoint.steps(copied / "checkpoints") == [500, 600]

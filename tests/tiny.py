@@ -1,0 +1,61 @@
+"""Runs that take seconds, and commands called in this process."""
+
+import hashlib
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from hybrid_rl import command, config, train
+
+TINY = [
+    "task=pendulum",
+    "total_steps=600",
+    "log_every=50",
+    "eval_every=300",
+    "eval_episodes=1",
+    "checkpoint_every=100",
+    "random_steps=50",
+    "replay.capacity=200",
+    "policy.hidden=[16]",
+    "critic.hidden=[16]",
+    "model.hidden=[16]",
+    "objective.hidden=[16]",
+    "planner.samples=4",
+    "planner.horizon=2",
+    "model_learner.batch_size=16",
+    "policy_learner.batch_size=16",
+    "compile_cache=null",  # that of conftest.py
+]
+
+
+def run(folder: Path, *overrides: str) -> dict:
+    """The summary of a tiny run into `folder`, as a notebook makes it."""
+    return train.train(config.load([*TINY, f"run_dir={folder}", *overrides]))
+
+
+def call(main: Callable[[], None], *arguments: str | Path) -> int:
+    """Exit code of a command."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["hybrid_rl", *map(str, arguments)])
+        try:
+            main()
+        except SystemExit as end:
+            return end.code
+    return 0
+
+
+def call_train(*arguments: str | Path) -> int:
+    """Exit code of `python -m hybrid_rl.train`."""
+    return call(lambda: command.hydra_main(train._job), *arguments)
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """Every file below `folder` -> its digest, and every folder."""
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        if path.is_file()
+        else ""
+        for path in sorted(folder.rglob("*"))
+    }
