@@ -44,9 +44,11 @@ def roll(episode: Episode, decisions: int) -> EnvState:
 def test_the_clock_truncates_and_the_task_terminates() -> None:
     """Never both: what ended by itself is not cut."""
     cut = roll(Episode(Counter(), steps=5), 5)
-    assert bool(cut.truncated) and not bool(cut.terminated)
+    assert bool(cut.truncated)
+    assert not bool(cut.terminated)
     ended = roll(Episode(Counter(end=5), steps=5), 5)
-    assert bool(ended.terminated) and not bool(ended.truncated)
+    assert bool(ended.terminated)
+    assert not bool(ended.truncated)
     assert not bool(roll(Episode(Counter(), steps=5), 4).done)
 
 
