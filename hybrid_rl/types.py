@@ -125,8 +125,8 @@ class Policy(Protocol):
     def mean(self, params: PyTree, x: Array) -> Array:
         """The action [m] without noise."""
 
-    def sample(self, params: PyTree, x: Array, key: Array) -> tuple[Array, Array]:
-        """An action [m] and its log-density []."""
+    def sample(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array]:
+        """The action [m] that `noise` [m] ~ N(0, I) becomes, and its log-density []."""
 
 
 class Objective(Protocol):
@@ -145,9 +145,12 @@ class Proposal(Protocol):
         """Carry of one imagined path, before its first action."""
 
     def __call__(
-        self, params: Params, carry: PyTree, x: Array, plan: Array, key: Array
+        self, params: Params, carry: PyTree, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, PyTree]:
-        """A candidate v [m] at x [n] beside the plan [m], its log-density [], the next carry."""
+        """A candidate v [m] at x [n] beside the plan [m], its log-density [], the next carry.
+
+        All chance is in `noise` [m] ~ N(0, I): the planner draws it for all candidates at once.
+        """
 
 
 class Controller(Protocol):

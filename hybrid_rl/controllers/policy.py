@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+import jax
 from jax import Array
 
 from hybrid_rl.types import Params, Policy, Spec
@@ -22,9 +23,11 @@ class PolicyController:
         self, params: Params, state: tuple[()], obs: Array, key: Array
     ) -> tuple[Array, tuple[()], dict[str, Array]]:
         """Action [m]. The key is consumed."""
+        mean = self.policy.mean(params.policy, obs)
         if self.explore:
-            return self.policy.sample(params.policy, obs, key)[0], state, {}
-        return self.policy.mean(params.policy, obs), state, {}
+            noise = jax.random.normal(key, mean.shape)
+            return self.policy.sample(params.policy, obs, noise)[0], state, {}
+        return mean, state, {}
 
     def greedy(self) -> "PolicyController":
         """The mean."""

@@ -67,8 +67,7 @@ class SamplingController:
             carry,
             x,
             plan,
-            self.samples,
-            rolling,
+            jax.random.normal(rolling, (self.samples, *plan.shape)),
         )
         returns = jax.vmap(lambda path: self.objective.reward_to_go(params, path))(samples.path)
         w = sampling.weights(

@@ -31,28 +31,27 @@ def imagine(
     carry: Any,
     x: Array,
     plan: Array,
-    samples: int,
-    key: Array,
+    noise: Array,
 ) -> Samples:
-    """Roll `samples` paths of the model `step` from x [n] beside plan [T, m].
+    """Roll K paths of the model `step` from x [n] beside plan [T, m].
 
-    `propose(carry, x, a_t, key) -> (v, log_prob, carry)` draws the candidates; `carry` starts
-    each path. The key is consumed.
+    `propose(carry, x, a_t, noise) -> (v, log_prob, carry)` makes the candidates of the
+    noise [K, T, m] ~ N(0, I); `carry` starts each path.
     """
-    rows = jax.random.split(key, (samples, plan.shape[0]))
+    samples = noise.shape[0]
     start = jnp.broadcast_to(x, (samples, *x.shape))
     carries = jax.tree.map(lambda c: jnp.broadcast_to(c, (samples, *jnp.shape(c))), carry)
     propose_all = jax.vmap(propose, in_axes=(0, 0, None, 0))
 
     def forward(state: tuple[Array, Any], inputs: tuple[Array, Array]) -> tuple:
         x, carry = state
-        a, keys = inputs
-        v, log_prob, carry = propose_all(carry, x, a, keys)
+        a, noise = inputs
+        v, log_prob, carry = propose_all(carry, x, a, noise)
         x = jax.vmap(step)(x, v)
         return (x, carry), (x, v, log_prob)
 
     _, (xs, vs, log_probs) = jax.lax.scan(
-        forward, (start, carries), (plan, rows.swapaxes(0, 1)), unroll=True
+        forward, (start, carries), (plan, noise.swapaxes(0, 1)), unroll=True
     )
     xs = jnp.concatenate([start[None], xs]).swapaxes(0, 1)
     return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)

@@ -68,7 +68,9 @@ class Replay:
         length, worlds, width = memory.rows.shape
         filled = jnp.minimum(memory.count, length)
         oldest = memory.count - filled
-        draw = jax.random.randint(key, (batch_size,), 0, jnp.maximum(filled - 1, 1) * worlds)
+        known = jnp.maximum(filled - 1, 1) * worlds
+        bits = jax.random.bits(key, (batch_size,))  # one draw where randint makes three
+        draw = (bits % known.astype(bits.dtype)).astype(known.dtype)
         time, world = oldest + draw // worlds, draw % worlds
         flat = memory.rows.reshape(-1, width)
         row = flat[(time % length) * worlds + world]

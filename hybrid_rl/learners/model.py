@@ -54,8 +54,10 @@ class ModelLearner:
             raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
 
     def _optimiser(self) -> optax.GradientTransformation:
-        clip = optax.clip_by_global_norm(self.max_grad_norm or jnp.inf)
-        return optax.chain(clip, optax.adam(self.learning_rate))
+        adam = optax.adam(self.learning_rate)
+        if self.max_grad_norm is None:
+            return adam
+        return optax.chain(optax.clip_by_global_norm(self.max_grad_norm), adam)
 
     def init(self, key: Array, spec: Spec) -> ModelState:
         """First parameters and optimiser. The key is consumed."""

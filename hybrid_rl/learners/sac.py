@@ -86,7 +86,7 @@ class SAC:
         self, state: SACState, params: Params, batch: Batch, key: Array
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
-        for_target, for_policy = jax.random.split(key)
+        for_target, for_policy = jax.random.normal(key, (2, *batch.action.shape))
         alpha = jnp.exp(state.log_alpha)
         y = self._target(state, alpha, batch, for_target)
 
@@ -124,9 +124,9 @@ class SAC:
             policy, critic, target, log_alpha, policy_optimiser, critic_optimiser, alpha_optimiser
         ), metrics
 
-    def _target(self, state: SACState, alpha: Array, batch: Batch, key: Array) -> Array:
-        """Y [B], without gradient. The key is consumed."""
-        v, log_prob = self.policy.sample(state.policy, batch.next_obs, key)
+    def _target(self, state: SACState, alpha: Array, batch: Batch, noise: Array) -> Array:
+        """Y [B], without gradient."""
+        v, log_prob = self.policy.sample(state.policy, batch.next_obs, noise)
         after = self.critic.value(state.target, batch.next_obs, v) - alpha * log_prob
         return batch.reward + self.discount * (1 - batch.terminated) * after
 

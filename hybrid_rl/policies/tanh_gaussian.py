@@ -68,10 +68,9 @@ class TanhGaussian:
         """tanh(mu(x)) [..., m]."""
         return jnp.tanh(self.gaussian(params, x)[0])
 
-    def sample(self, params: dict[str, Any], x: Array, key: Array) -> tuple[Array, Array]:
-        """U [..., m] ~ pi(.|x) and log pi(u|x) [...]. The key is consumed."""
+    def sample(self, params: dict[str, Any], x: Array, noise: Array) -> tuple[Array, Array]:
+        """U [..., m] ~ pi(.|x) for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
         mu, sigma = self.gaussian(params, x)
-        noise = jax.random.normal(key, mu.shape)
         z = mu + sigma * noise
         log_normal = -0.5 * noise**2 - jnp.log(sigma) - 0.5 * jnp.log(2 * jnp.pi)
         log_jacobian = 2 * (jnp.log(2.0) - z - jax.nn.softplus(-2 * z))

@@ -5,7 +5,6 @@ The proposals of MPPI (Williams et al. 2017); c > 0 colours them.
 
 from dataclasses import dataclass
 
-import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -35,10 +34,9 @@ class NoiseProposal:
         return jnp.zeros(spec.act)
 
     def __call__(
-        self, params: Params, carry: Array, x: Array, plan: Array, key: Array
+        self, params: Params, carry: Array, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, Array]:
-        """V [m] around plan [m] and the log-density of its noise. The key is consumed."""
-        fresh = jax.random.normal(key, plan.shape)
-        noise = self.colour * carry + jnp.sqrt(1 - self.colour**2) * self.std * fresh
+        """V [m] around plan [m] and the log-density of its deviation."""
+        noise = self.colour * carry + jnp.sqrt(1 - self.colour**2) * self.std * noise
         log_prob = jnp.sum(-0.5 * (noise / self.std) ** 2 - jnp.log(self.std * 2.5066283))
         return jnp.clip(plan + noise, -1, 1), log_prob, noise

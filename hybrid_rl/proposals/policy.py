@@ -19,8 +19,8 @@ class PolicyProposal:
         return ()
 
     def __call__(
-        self, params: Params, carry: Any, x: Array, plan: Array, key: Array
+        self, params: Params, carry: Any, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, Any]:
-        """V [m] ~ pi(x) and log pi(v|x); `plan` plays no part. The key is consumed."""
-        v, log_prob = self.policy.sample(params.policy, x, key)
+        """V [m] ~ pi(x) and log pi(v|x); `plan` plays no part."""
+        v, log_prob = self.policy.sample(params.policy, x, noise)
         return v, log_prob, carry

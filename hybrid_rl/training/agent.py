@@ -86,13 +86,15 @@ class Agent:
         A metric is NaN where there is nothing to tell, infinite where it is not finite.
         `episode/...` are per world [E].
         """
-        key, deciding, renewing, recalling = jax.random.split(state.key, 4)
+        keys = jax.random.split(state.key, 3 + 2 * self.num_envs)
+        key, at_random, recalling = keys[:3]
+        deciding, renewing = jnp.split(keys[3:], 2)
         params = self.params(state)
-        u, control, metrics = self._decide(params, state, step, deciding)
+        u, control, metrics = self._decide(params, state, step, at_random, deciding)
         now = jax.vmap(self.episode.step)(state.env, u)
         new = Transition(state.env.obs, u, now.reward, now.terminated, now.truncated, now.obs)
         memory = self.replay.add(state.memory, new)
-        env = jax.vmap(self.episode.renew)(now, jax.random.split(renewing, self.num_envs))
+        env = jax.vmap(self.episode.renew)(now, renewing)
         control = jax.tree.map(
             lambda rest, held: jnp.where(_like(now.done, held), rest, held),
             self._at_rest(),
@@ -115,12 +117,10 @@ class Agent:
         return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *x.shape)), rest)
 
     def _decide(
-        self, params: Params, state: AgentState, step: Array, key: Array
+        self, params: Params, state: AgentState, step: Array, at_random: Array, keys: Array
     ) -> tuple[Array, Any, dict[str, Array]]:
-        """Actions [E, m], controller states [E, ...], metrics [E]."""
-        at_random, planned = jax.random.split(key)
+        """Actions [E, m], controller states [E, ...], metrics [E], from one key and keys [E]."""
         act = jax.vmap(self.controller.act, in_axes=(None, 0, 0, 0))
-        keys = jax.random.split(planned, self.num_envs)
 
         def plan() -> tuple[Array, Any, dict[str, Array]]:
             return act(params, state.control, state.env.obs, keys)
@@ -148,13 +148,13 @@ class Agent:
             full = learner.batch_size + self.num_envs
             start = max(self.random_steps, full, self.first_update + full)
 
-            def one(state: Any, k: Array, learner: Learner = learner) -> tuple[Any, Any]:
-                drawing, updating = jax.random.split(k)
+            def one(state: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
+                drawing, updating = keys
                 batch = self.replay.sample(memory, self.spec, learner.batch_size, drawing)
                 return learner.update(state, params, batch, updating)
 
             def update(state: Any, k: Array, count: int = count, one: Any = one) -> Any:
-                rows = jax.random.split(k, count)
+                rows = jax.random.split(k, (count, 2))
                 state, each = jax.lax.scan(one, state, rows, unroll=min(count, 4))
                 return state, jax.tree.map(lambda m: m[-1], each)
 

@@ -18,22 +18,21 @@ def step(x: Array, u: Array) -> Array:
     return A @ x + B @ u
 
 
-def propose(carry: Array, x: Array, a: Array, key: Array) -> tuple[Array, Array, Array]:
+def propose(carry: Array, x: Array, a: Array, noise: Array) -> tuple[Array, Array, Array]:
     """Noise around plan and state; the carry counts decisions."""
-    v = a + 0.1 * x[:M] + jax.random.normal(key, a.shape)
+    v = a + 0.1 * x[:M] + noise
     return v, v.sum() + carry, carry + 1
 
 
 def test_imagine_is_the_plain_loop() -> None:
-    """Given equal keys, every path is the one that a Python loop rolls."""
+    """Given equal noise, every path is the one that a Python loop rolls."""
     x, plan = jnp.array([0.3, -0.2, 0.5]), jnp.arange(8.0).reshape(T, M) / 10
-    key = jax.random.key(3)
-    got = sampling.imagine(step, propose, jnp.float32(0), x, plan, K, key)
-    keys = jax.random.split(key, (K, T))
+    noise = jax.random.normal(jax.random.key(3), (K, T, M))
+    got = sampling.imagine(step, propose, jnp.float32(0), x, plan, noise)
     for k in range(K):
         state, carry = x, jnp.float32(0)
         for t in range(T):
-            v, log_prob, carry = propose(carry, state, plan[t], keys[k, t])
+            v, log_prob, carry = propose(carry, state, plan[t], noise[k, t])
             state = step(state, v)
             np.testing.assert_allclose(got.path.u[k, t], v, rtol=1e-5, atol=1e-6)
             np.testing.assert_allclose(got.path.x[k, t + 1], state, rtol=1e-5, atol=1e-6)
