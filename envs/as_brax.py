@@ -9,6 +9,8 @@ into `info`; what our world remembers must come back with a reset, so it travels
 Source: Brax's documentation, `brax.envs.base.Env`, `brax.envs.wrappers.training`.
 """
 
+from typing import Any
+
 import jax.numpy as jnp
 from brax.envs.base import Env as BraxEnv
 from brax.envs.base import State
@@ -25,11 +27,12 @@ class World(BraxEnv):
 
     def reset(self, rng: Array) -> State:
         """First state of an episode."""
-        now = self.env.reset(rng)
+        now: Any = self.env.reset(rng)
         done = jnp.float32(0.0)
-        return State((now.data, now.info), now.obs, now.reward, done, dict(now.metrics), {})
+        kept: Any = (now.data, now.info)
+        return State(kept, now.obs, now.reward, done, dict(now.metrics), {})
 
-    def step(self, state: State, action: Array) -> State:
+    def step(self, state: Any, action: Array) -> State:
         """The state one decision later."""
         data, info = state.pipeline_state
         no = jnp.zeros((), bool)

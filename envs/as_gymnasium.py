@@ -46,7 +46,8 @@ class World(gymnasium.Env):
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
         self._reset, self._step = jax.jit(env.reset), jax.jit(partial(_brief_step, env))
-        self._renderer, self._scene = None, None
+        self._renderer: Any = None
+        self._scene: Any = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

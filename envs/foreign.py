@@ -98,7 +98,7 @@ def _rows(buffers: _Buffers) -> np.ndarray:
     shape = buffer.dims[: buffer.rank]
     wide = shape[-1]
     flat = (ctypes.c_float * prod(shape)).from_address(buffer.data)
-    return np.frombuffer(flat, np.float32).reshape(-1, wide)
+    return np.ctypeslib.as_array(flat).reshape(-1, wide)
 
 
 def register(name: str, function: Callable[[np.ndarray, np.ndarray], None]) -> None:

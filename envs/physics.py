@@ -80,11 +80,9 @@ class Physics:
     def reset(self, qpos: Array, qvel: Array) -> PhysicsState:
         """The state at qpos [nq], qvel [nv], at rest otherwise."""
         model = self.model
-        zeros = [jnp.zeros(k, jnp.float32) for k in (model.na, model.nv, model.nu)]
-        sensors = jnp.zeros(model.nsensordata, jnp.float32)
-        state = PhysicsState(
-            jnp.asarray(qpos, jnp.float32), jnp.asarray(qvel, jnp.float32), *zeros, sensors
-        )
+        sizes = (model.na, model.nv, model.nu, model.nsensordata)
+        zeros = [jnp.zeros(size, jnp.float32) for size in sizes]
+        state = PhysicsState(*(jnp.asarray(q, jnp.float32) for q in (qpos, qvel)), *zeros)
         return self._advance(state, 0) if model.nsensordata else state
 
     def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:

@@ -29,6 +29,9 @@ def hydra_main(job: Callable[[DictConfig], None]) -> None:
     def alone(config: DictConfig) -> None:  # ends here, before Hydra adds lines of its own
         guarded(lambda: checked(config))
 
+    for key in (text.removesuffix("=null") for text in sys.argv if text.endswith("=null")):
+        if key != "experiment" and options(key):
+            _fail(2, f"{key}=null: choose one of {', '.join(options(key))}")
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()

@@ -30,6 +30,8 @@ COUNTS = (
     "log_every",
 )
 
+SECTIONS = ("env", "episode", "replay", "controllers", "learners")
+
 MODES = ("full", "policy", "planner")
 PRECISIONS = ("highest", "high", "default")
 KINDS = {  # type of a part's field -> how its values are called
@@ -91,9 +93,9 @@ def refuse_new_keys(overrides: Sequence[str]) -> None:
 
 def resolved(config: DictConfig) -> DictConfig:
     """A copy with every interpolation replaced by its value."""
-    config = OmegaConf.create(OmegaConf.to_container(config, resolve=True))
-    OmegaConf.set_struct(config, True)
-    return config
+    made: Any = OmegaConf.create(OmegaConf.to_container(config, resolve=True))
+    OmegaConf.set_struct(made, True)
+    return made
 
 
 def build(config: DictConfig) -> Run:
@@ -138,6 +140,9 @@ def _usage() -> Iterator[None]:
 
 def check(config: DictConfig) -> None:
     """Raise UsageError for a value that no run can have; parts check their own ranges."""
+    for key in SECTIONS:
+        if not isinstance(config.get(key), DictConfig):
+            raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
     for key in COUNTS:
         _whole(config, key)
     if type(config.seed) is not int or config.seed < 0:

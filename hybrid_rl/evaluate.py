@@ -53,7 +53,7 @@ def load(folder: Path) -> Trained:
         raise UsageError(f"run={folder}: no run folder there (no config.yaml in it)")
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
-    config = OmegaConf.load(place)
+    config: Any = OmegaConf.load(place)
     command.prepare(config)
     run = configuration.build(config)
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)

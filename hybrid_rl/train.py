@@ -155,9 +155,9 @@ def _memory(run: Run) -> str:
 
 def _schedule(config: DictConfig) -> Schedule:
     """What happens when."""
-    values = {name: config[name] for name in Schedule.__dataclass_fields__}
-    offered = tuple(mode for mode in config.eval_modes if mode in config.controllers)
-    return Schedule(**values | {"eval_modes": offered})
+    values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
+    values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
+    return Schedule(**values)
 
 
 def _summary(config: DictConfig, session: Session) -> dict[str, Any]:

@@ -83,6 +83,7 @@ class Params(NamedTuple):
     policy: PyTree = None  # pi(x)
     critic: PyTree = None  # Q(x, u)
     belief: PyTree = None  # whatever else a method learns
+    decisions: Array | None = None  # [] into the run, where it is training
 
 
 class Env(Protocol):

@@ -33,6 +33,9 @@ KEYS = (
 USAGE = [  # overrides of train, words of the line
     ("task=cartpool", "task=cartpool: unknown; choose one of cartpole, halfcheetah"),
     ("algo=sacc", "algo=sacc: unknown; choose one of hybrid_stochastic"),
+    ("task=null", "task=null: choose one of cartpole, halfcheetah"),
+    ("env=null", "env=None: must be a group of keys"),
+    ("episode=3", "episode=3: must be a group of keys"),
     ("objective=foo", "objective=foo: unknown; choose one of learned_re"),
     ("experiment=foo", "experiment=foo: unknown; choose one of thesis/"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of thesis/"),

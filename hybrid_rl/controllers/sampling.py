@@ -13,8 +13,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import sampling
-from hybrid_rl.types import Model, Objective, Params, Policy, Proposal, Spec
+from hybrid_rl.core import adjoint, sampling
+from hybrid_rl.types import Model, Objective, Params, Path, Policy, Proposal, Spec
 
 EXECUTE = ("mean", "sample")
 
@@ -31,7 +31,7 @@ class SamplingController:
     model: Model
     objective: Objective
     proposal: Proposal
-    policy: Policy | None = None  # only to log the policy's share
+    policy: Policy | None = None  # only to log how far the plan agrees with it
     horizon: int = 5  # T [decisions]
     samples: int = 20  # K
     temperature: float = 0.1  # lambda [return], or [deviations] with normalise
@@ -85,17 +85,36 @@ class SamplingController:
             "planner/planned_return": w[:, 0] @ returns[:, 0],
             "planner/planned_reward": w[:, 0]
             @ (returns[:, 0] - self.objective.discount * returns[:, 1]),
-            **self._share(params, x, action),
+            **self._agreement(params, x, plan),
         }
         return action, (sampling.shift(plan), carry), metrics
 
-    def _share(self, params: Params, x: Array, action: Array) -> dict[str, Array]:
-        """|mu| / (|mu| + |u - mu|): 1 where the policy alone acts, 0 where the model does."""
+    def _agreement(self, params: Params, x: Array, plan: Array) -> dict[str, Array]:
+        """How far the weighted mean is from what the policy would do.
+
+        The share |mu| / (|mu| + |u - mu|) is 1 where the policy alone acts, 0 where the model does.
+        """
         if self.policy is None:
             return {}
-        mean = self.policy.mean(params.policy, x)
-        own, correction = jnp.linalg.norm(mean), jnp.linalg.norm(action - mean)
-        return {"planner/policy_share": own / (own + correction + 1e-6)}
+        policy = self.policy
+
+        def step(x: Array, u: Array) -> Array:
+            return self.model.step(params.model, x, u)
+
+        def mean(x: Array) -> Array:
+            return policy.mean(params.policy, x)
+
+        def value(path: Path) -> Array:
+            return self.objective.reward_to_go(params, path)[0]
+
+        around = adjoint.adjoint(step, mean, value, adjoint.roll(step, mean, x, 0 * plan))
+        insertion = adjoint.mode_insertion_gradient(step, value, around, plan[0])
+        own = jnp.linalg.norm(mean(x))
+        correction = jnp.linalg.norm(plan[0] - mean(x))
+        return {
+            "planner/mode_insertion_gradient": insertion,
+            "planner/policy_share": own / (own + correction + 1e-6),
+        }
 
     def greedy(self) -> "SamplingController":
         """The weighted mean."""

@@ -11,7 +11,6 @@ from functools import partial
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import optax
 from flax import struct
 from jax import Array
@@ -95,6 +94,7 @@ class ModelLearner:
         weights = (model["weights"], reward["weights"])
         grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
         change, optimiser = self._optimiser().update(grads, state.optimiser, weights)
-        f, r = optax.apply_updates(weights, change)
+        new: Any = optax.apply_updates(weights, change)
+        f, r = new
         state = ModelState({**model, "weights": f}, {**reward, "weights": r}, optimiser)
         return state, {"model/loss": of_model, "model/reward_loss": of_reward}

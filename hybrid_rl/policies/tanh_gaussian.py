@@ -56,17 +56,22 @@ class TanhGaussian:
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """Mu and sigma [..., m] before the squashing, at x [..., n]."""
         if self.log_std_activation is None:
-            both = self._net(outputs(params["trunk"])).apply(params["trunk"], x)
+            both: Any = self._net(outputs(params["trunk"])).apply(params["trunk"], x)
             mu, log_std = jnp.split(both, 2, axis=-1)
         else:
             m = outputs(params["mean"])
             mu = self._net(m).apply(params["mean"], x)
-            log_std = self._net(m, self.log_std_activation).apply(params["log_std"], x)
+            log_std: Any = self._net(m, self.log_std_activation).apply(params["log_std"], x)
         return mu, jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
 
     def mean(self, params: dict[str, Any], x: Array) -> Array:
         """tanh(mu(x)) [..., m]."""
         return jnp.tanh(self.gaussian(params, x)[0])
+
+    def variance(self, params: dict[str, Any], x: Array) -> Array:
+        """Of the action [..., m], to first order around the mean: (1 - mean^2)^2 sigma^2."""
+        mu, sigma = self.gaussian(params, x)
+        return ((1 - jnp.tanh(mu) ** 2) * sigma) ** 2
 
     def sample(self, params: dict[str, Any], x: Array, noise: Array) -> tuple[Array, Array]:
         """U [..., m] ~ pi(.|x) for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""

@@ -89,7 +89,7 @@ class Agent:
         keys = jax.random.split(state.key, 3 + 2 * self.num_envs)
         key, at_random, recalling = keys[:3]
         deciding, renewing = jnp.split(keys[3:], 2)
-        params = self.params(state)
+        params = self.params(state)._replace(decisions=step)
         u, control, metrics = self._decide(params, state, step, at_random, deciding)
         now = jax.vmap(self.episode.step)(state.env, u)
         new = Transition(state.env.obs, u, now.reward, now.terminated, now.truncated, now.obs)

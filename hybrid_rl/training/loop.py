@@ -12,7 +12,7 @@ from jax import Array
 from hybrid_rl.training.agent import Agent, AgentState
 
 # On a CPU Eigen's matrix products take a sixth less time than those of YNNPACK, XLA's own choice.
-COMPILER_OPTIONS = {
+COMPILER_OPTIONS: dict[str, Any] = {
     "cpu": {"xla_cpu_experimental_ynn_fusion_type": "LIBRARY_FUSION_TYPE_REDUCE"},
 }
 

@@ -18,7 +18,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.training import checkpoint, provenance, rows
-from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.evaluate import evaluation_keys, returns
 from hybrid_rl.training.log import RunLog
 from hybrid_rl.training.loop import Loop
@@ -54,7 +53,7 @@ class Session:
     schedule: Schedule
     log: RunLog
     progress: Progress
-    state: AgentState | None = None
+    state: Any = None  # AgentState [S, ...], once begun
     step: int = 0  # decisions of each learner
     before_s: float = 0.0  # [s] in earlier sessions
     began: float = field(default_factory=monotonic)
@@ -183,7 +182,8 @@ class Session:
             pair = (row["step"], float(row["train/return"]))
             self.returns[seeds.index(row["seed"])].append(pair)
         means = rows.means(metrics, seeds, self.step)
-        self._write(episodes + [row | {"perf/env_steps_per_s": speed} for row in means])
+        perf = {"perf/env_steps_per_s": speed, "perf/compile_s": self.loop.compile_s}
+        self._write(episodes + [row | perf for row in means])
         newest = [pairs[-1][1] for pairs in self.returns if pairs]
         shown = {"train/return": float(np.mean(newest))} if newest else {}
         self._show(shown | {"perf/env_steps_per_s": speed})

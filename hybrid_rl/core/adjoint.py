@@ -1,0 +1,91 @@
+"""Adjoint core: how a return answers to small corrections of a policy, by the exact costate.
+
+    x_{t+1} = f(x_t, u_t),   u_t = pi(x_t) + v_t,   dJ = (J_x, J_u) = grad J(path)
+    rho_T = J_x[T],   g_t = J_u[t] + f_u' rho_{t+1},   rho_t = J_x[t] + pi_x' g_t + f_x' rho_{t+1}
+
+g is the gradient of J with respect to v; J is any functional of the path and is maximised.
+Source: thesis eq. (3.2)-(3.4) and Theorem 1, discrete in time, with the reward's own
+dependence on u, which is missing in print.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Path
+
+Step = Callable[[Array, Array], Array]
+Return = Callable[[Path], Array]
+
+
+class Adjoint(NamedTuple):
+    """A path and what its return answers to."""
+
+    path: Path  # x [T+1, n]; u [T, m]
+    costate: Array  # rho [T+1, n] [J / x]
+    gradient: Array  # g [T, m] [J / u]
+
+
+def roll(step: Step, policy: Callable[[Array], Array], x: Array, correction: Array) -> Path:
+    """The path from x [n] under `policy` plus `correction` v [T, m]."""
+
+    def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
+        u = policy(x) + v
+        after = step(x, u)
+        return after, (after, u)
+
+    xs, us = jax.lax.scan(forward, x, correction, unroll=True)[1]
+    return Path(jnp.concatenate([x[None], xs]), us)
+
+
+def adjoint(
+    step: Step,
+    policy: Callable[[Array], Array],
+    objective: Return,
+    path: Path,
+    bound: float | None = None,
+) -> Adjoint:
+    """Costate and gradient along `path`, which `roll` made with this `step` and `policy`.
+
+    `bound` clips every entry of rho to [-bound, bound] once it is complete, as the thesis'
+    author did; g is then no gradient.
+    """
+    of_path = jax.grad(objective)(path)
+
+    def pulled(after: Array, at: tuple[Array, ...]) -> tuple[Array, Array]:
+        x, u, j_x, j_u = at
+        f_x, f_u = jax.vjp(step, x, u)[1](after)
+        g = j_u + f_u
+        return j_x + jax.vjp(policy, x)[1](g)[0] + f_x, g
+
+    def back(after: Array, at: tuple[Array, ...]) -> tuple[Array, tuple[Array, Array]]:
+        rho, g = pulled(after, at)
+        return rho, (rho, g)
+
+    along = (path.x[:-1], path.u, of_path.x[:-1], of_path.u)
+    costate, gradient = jax.lax.scan(back, of_path.x[-1], along, reverse=True, unroll=True)[1]
+    costate = jnp.concatenate([costate, of_path.x[-1:]])
+    if bound is not None:
+        costate = jnp.clip(costate, -bound, bound)
+        gradient = jax.vmap(pulled)(costate[1:], along)[1]
+    return Adjoint(path, costate, gradient)
+
+
+def mode_insertion_gradient(step: Step, objective: Return, found: Adjoint, u: Array) -> Array:
+    """D J / d lambda [] where action u [m] replaces the path's first for a duration lambda -> 0.
+
+    lambda is counted in decisions: divide by the time between decisions for [J/s]. Thesis
+    eq. (3.1) with the jump of a reward that depends on the action,
+
+        r(x, u) - r(x, u_0) + rho_1' (f(x, u) - f(x, u_0)),
+
+    which is missing in print. Positive: the model would rather do u; zero: they agree.
+    """
+    path = found.path
+    other = path._replace(u=path.u.at[0].set(u))
+    jump = objective(other) - objective(path)
+    x = path.x[0]
+    return jump + found.costate[1] @ (step(x, u) - step(x, path.u[0]))

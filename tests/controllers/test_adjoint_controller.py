@@ -1,0 +1,116 @@
+"""The adjoint controller on problems whose answer is known."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.controllers.adjoint import AdjointController
+from hybrid_rl.types import Params, Path, Spec
+
+SPEC = Spec(obs=2, act=1, dt=0.1)
+
+
+@dataclass(frozen=True)
+class Cart:
+    """A mass on a line: x' = [p + 0.1 v, v + 0.1 u]."""
+
+    def lift(self, params: Any, obs: Array) -> Array:
+        """As it is."""
+        return obs
+
+    def step(self, params: Any, x: Array, u: Array) -> Array:
+        """One decision."""
+        return jnp.array([x[0] + 0.1 * x[1], x[1] + 0.1 * u[0]])
+
+
+@dataclass(frozen=True)
+class Speed:
+    """J = sum of speeds, less a price of action."""
+
+    price: float = 0.0
+    discount: float = 1.0
+
+    def reward_to_go(self, params: Any, path: Path) -> Array:
+        """Only its first entry is asked for."""
+        price = self.price * jnp.sum(path.u**2)
+        return jnp.full(len(path.x), jnp.sum(path.x[1:, 1]) - price)
+
+
+@dataclass(frozen=True)
+class Half:
+    """A policy of mean -0.2 and of variance 0.25."""
+
+    def mean(self, params: Any, x: Array) -> Array:
+        """Constant."""
+        return jnp.full(1, -0.2)
+
+    def variance(self, params: Any, x: Array) -> Array:
+        """Constant."""
+        return jnp.full(1, 0.25)
+
+
+def act(controller: AdjointController, decisions: int = 0, key: int = 0) -> tuple:
+    """One decision at rest."""
+    params = Params(decisions=jnp.asarray(decisions))
+    return controller.act(params, controller.init(SPEC), jnp.zeros(2), jax.random.key(key))
+
+
+def test_one_step_is_the_closed_form() -> None:
+    """U = mu + Sigma g: each of T decisions after it is 0.1 faster, so g = 0.1 T."""
+    for horizon in (1, 5):
+        controller = AdjointController(Cart(), Speed(), Half(), horizon, noise_decay=None)
+        u, _, metrics = act(controller)
+        assert float(u[0]) == pytest.approx(-0.2 + 0.25 * 0.1 * horizon, abs=1e-6)
+        inserted = 0.1 * horizon * (0.25 * 0.1 * horizon)
+        got = float(metrics["planner/mode_insertion_gradient"])
+        assert got == pytest.approx(inserted, abs=1e-6)
+
+
+def test_shooting_finds_the_optimum() -> None:
+    """sum of speeds - u^2: u_t = 0.1 (T - t) / 2, by many small steps."""
+    horizon = 6
+    controller = AdjointController(
+        Cart(), Speed(price=1.0), horizon=horizon, iterations=200, gain=0.1, noise_decay=None
+    )
+    u, plan, _ = act(controller)
+    wanted = 0.05 * np.arange(horizon, 0, -1)
+    np.testing.assert_allclose(plan[:, 0], wanted, atol=1e-5)
+    assert float(u[0]) == pytest.approx(wanted[0], abs=1e-5)
+
+
+def test_actions_stay_within_bounds() -> None:
+    """However steep the return."""
+    controller = AdjointController(
+        Cart(), Speed(), Half(), 20, iterations=5, gain=100.0, noise_decay=1.0
+    )
+    assert all(float(jnp.abs(act(controller, key=k)[0]).max()) <= 1 for k in range(20))
+
+
+def test_noise_fades_with_the_decisions_of_the_run() -> None:
+    """Its deviation is decay^decisions; the greedy controller has none."""
+    controller = AdjointController(Cart(), Speed(), Half(), 1, noise_decay=0.99)
+    quiet = float(act(controller.greedy())[0][0])
+    for decisions in (200, 400):
+        found = [float(act(controller, decisions, key)[0][0]) - quiet for key in range(300)]
+        assert np.std(found) == pytest.approx(0.99**decisions, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"horizon": 0}, "horizon=0"),
+        ({"iterations": 1.5}, "iterations=1.5"),
+        ({"gain": -1.0}, "gain=-1.0"),
+        ({"noise_decay": 2.0}, "noise_decay=2.0"),
+        ({"policy": None}, "gain=null needs a policy"),
+    ],
+)
+def test_bad_fields(change, words) -> None:
+    """One line that names the field."""
+    with pytest.raises(ValueError, match=words):
+        AdjointController(**{"model": Cart(), "objective": Speed(), "policy": Half(), **change})
