@@ -142,8 +142,8 @@ class Objective(Protocol):
 class Proposal(Protocol):
     """v ~ ?: where a sampling planner draws its candidates from."""
 
-    def init(self, spec: Spec) -> PyTree:
-        """Carry of one imagined path, before its first action."""
+    def init(self, spec: Spec, place: Array) -> PyTree:
+        """Carry of one imagined path before its first action; `place` [] in [0, 1) is k / K."""
 
     def __call__(
         self, params: Params, carry: PyTree, x: Array, plan: Array, noise: Array

@@ -52,7 +52,7 @@ EACH = [  # every method on one task, and one method on every task
 ]
 
 
-@pytest.mark.parametrize(("task", "algo"), EACH, ids="-".join)
+@pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
     """Eight decisions of two learners, with learning, all finite."""
     run = config.build(config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]))

@@ -29,8 +29,8 @@ PART = '''\
 
 from dataclasses import dataclass
 
-import jax
 import jax.numpy as jnp
+from jax.scipy.stats import norm
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class Anywhere:
 
     reach: float = 1.0
 
-    def init(self, spec):
+    def init(self, spec, place):
         return ()
 
-    def __call__(self, params, carry, x, plan, key):
-        v = jax.random.uniform(key, plan.shape, minval=-self.reach, maxval=self.reach)
+    def __call__(self, params, carry, x, plan, noise):
+        v = self.reach * (2 * norm.cdf(noise) - 1)
         return v, -jnp.log(2 * self.reach) * plan.size, carry
 '''
 PART_YAML = """\
@@ -99,7 +99,7 @@ def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (["proposal=toys"], "proposal=toys: unknown; choose one of noise, policy, toy"),
+        (["proposal=toys"], "proposal=toys: unknown; choose one of mixture, noise, policy, toy"),
         (["proposal=toy", "proposal.reach=far"], "proposal.reach=far: must be a number"),
         (["proposal=toy", "proposal.reech=1"], "proposal.reech: unknown key"),
         (["proposal=toy", "proposal._target_=my_part.Any"], "proposal._target_=my_part.Any: "),

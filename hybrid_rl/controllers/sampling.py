@@ -51,20 +51,22 @@ class SamplingController:
             raise ValueError(f"planner.execute={self.execute}: choose {' or '.join(EXECUTE)}")
 
     def init(self, spec: Spec) -> tuple[Array, Any]:
-        """The plan [T, m] at rest, and the first carry of the proposals."""
-        return jnp.zeros((self.horizon, spec.act)), self.proposal.init(spec)
+        """The plan [T, m] at rest, and the first carries [K, ...] of the proposals."""
+        places = jnp.arange(self.samples) / self.samples
+        carries = jax.vmap(lambda place: self.proposal.init(spec, place))(places)
+        return jnp.zeros((self.horizon, spec.act)), carries
 
     def act(
         self, params: Params, state: tuple[Array, Any], obs: Array, key: Array
     ) -> tuple[Array, tuple[Array, Any], dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
-        plan, carry = state
+        plan, carries = state
         rolling, choosing = jax.random.split(key)
         x = self.model.lift(params.model, obs)
         samples = sampling.imagine(
             lambda x, u: self.model.step(params.model, x, u),
             lambda *a: self.proposal(params, *a),
-            carry,
+            carries,
             x,
             plan,
             jax.random.normal(rolling, (self.samples, *plan.shape)),
@@ -87,7 +89,7 @@ class SamplingController:
             @ (returns[:, 0] - self.objective.discount * returns[:, 1]),
             **self._agreement(params, x, plan),
         }
-        return action, (sampling.shift(plan), carry), metrics
+        return action, (sampling.shift(plan), carries), metrics
 
     def _agreement(self, params: Params, x: Array, plan: Array) -> dict[str, Array]:
         """How far the weighted mean is from what the policy would do.

@@ -28,7 +28,7 @@ class Samples(NamedTuple):
 def imagine(
     step: Callable[[Array, Array], Array],
     propose: Callable[[Any, Array, Array, Array], tuple[Array, Array, Any]],
-    carry: Any,
+    carries: Any,
     x: Array,
     plan: Array,
     noise: Array,
@@ -36,11 +36,9 @@ def imagine(
     """Roll K paths of the model `step` from x [n] beside plan [T, m].
 
     `propose(carry, x, a_t, noise) -> (v, log_prob, carry)` makes the candidates of the
-    noise [K, T, m] ~ N(0, I); `carry` starts each path.
+    noise [K, T, m] ~ N(0, I); `carries` [K, ...] start the paths.
     """
-    samples = noise.shape[0]
-    start = jnp.broadcast_to(x, (samples, *x.shape))
-    carries = jax.tree.map(lambda c: jnp.broadcast_to(c, (samples, *jnp.shape(c))), carry)
+    start = jnp.broadcast_to(x, (noise.shape[0], *x.shape))
     propose_all = jax.vmap(propose, in_axes=(0, 0, None, 0))
 
     def forward(state: tuple[Array, Any], inputs: tuple[Array, Array]) -> tuple:

@@ -29,7 +29,7 @@ class NoiseProposal:
         if not 0 <= self.colour < 1:
             raise ValueError(f"proposal.colour={self.colour}: must lie in [0, 1)")
 
-    def init(self, spec: Spec) -> Array:
+    def init(self, spec: Spec, place: Array) -> Array:
         """No noise [m] before the first action."""
         return jnp.zeros(spec.act)
 

@@ -14,7 +14,7 @@ class PolicyProposal:
 
     policy: Policy
 
-    def init(self, spec: Spec) -> tuple[()]:
+    def init(self, spec: Spec, place: Array) -> tuple[()]:
         """Nothing is carried."""
         return ()
 

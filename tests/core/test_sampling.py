@@ -28,7 +28,7 @@ def test_imagine_is_the_plain_loop() -> None:
     """Given equal noise, every path is the one that a Python loop rolls."""
     x, plan = jnp.array([0.3, -0.2, 0.5]), jnp.arange(8.0).reshape(T, M) / 10
     noise = jax.random.normal(jax.random.key(3), (K, T, M))
-    got = sampling.imagine(step, propose, jnp.float32(0), x, plan, noise)
+    got = sampling.imagine(step, propose, jnp.zeros(K), x, plan, noise)
     for k in range(K):
         state, carry = x, jnp.float32(0)
         for t in range(T):

@@ -42,7 +42,7 @@ def test_in_the_air(task, implementation):
     assert _error(task, implementation, LIFTED) < 1e-4
 
 
-@pytest.mark.parametrize(("task", "implementation"), TOUCHING_BOUND, ids="-".join)
+@pytest.mark.parametrize(("task", "implementation"), TOUCHING_BOUND)
 def test_on_the_floor(task, implementation):
     assert _error(task, implementation, TOUCHING) < TOUCHING_BOUND[task, implementation]
 

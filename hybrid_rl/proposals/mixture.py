@@ -1,0 +1,45 @@
+"""A share of the candidates from one proposal, the rest from another.
+
+Policy and noise together: the planner works from the first decisions on, while the policy is
+still wrong, and leaves the field to the policy where that is better.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Params, Proposal, Spec
+
+
+@dataclass(frozen=True)
+class MixtureProposal:
+    """The first `share` of the K candidates from `first`, the others from `second`.
+
+    Raises:
+        ValueError: for a share outside [0, 1].
+    """
+
+    first: Proposal
+    second: Proposal
+    share: float = 0.5
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 <= self.share <= 1:
+            raise ValueError(f"proposal.share={self.share}: must lie in [0, 1]")
+
+    def init(self, spec: Spec, place: Array) -> tuple[Array, Any, Any]:
+        """Whose path this is, and what both carry."""
+        return place < self.share, self.first.init(spec, place), self.second.init(spec, place)
+
+    def __call__(
+        self, params: Params, carry: tuple[Array, Any, Any], x: Array, plan: Array, noise: Array
+    ) -> tuple[Array, Array, tuple[Array, Any, Any]]:
+        """V [m] and its log-density [] under the one that drew it."""
+        ours, a, b = carry
+        v, log_prob, a = self.first(params, a, x, plan, noise)
+        other_v, other_log_prob, b = self.second(params, b, x, plan, noise)
+        v, log_prob = jnp.where(ours, v, other_v), jnp.where(ours, log_prob, other_log_prob)
+        return v, log_prob, (ours, a, b)

@@ -1,0 +1,68 @@
+"""Where candidates come from."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.core import sampling
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.proposals.mixture import MixtureProposal
+from hybrid_rl.proposals.noise import NoiseProposal
+from hybrid_rl.proposals.policy import PolicyProposal
+from hybrid_rl.types import Params, Proposal, Spec
+
+SPEC = Spec(obs=2, act=1, dt=0.1)
+K, T = 8, 5
+POLICY = TanhGaussian(hidden=(8,))
+NOISE, BY_POLICY = NoiseProposal(std=0.3), PolicyProposal(POLICY)
+
+
+def imagined(proposal: Proposal, samples: int = K) -> sampling.Samples:
+    """Candidates in a world that moves with the action."""
+    params = Params(policy=POLICY.init(jax.random.key(0), SPEC))
+    carries = jax.vmap(lambda place: proposal.init(SPEC, place))(jnp.arange(samples) / samples)
+    noise = jax.random.normal(jax.random.key(1), (samples, T, SPEC.act))
+
+    def propose(*of_sample: Array) -> tuple:
+        return proposal(params, *of_sample)
+
+    def step(x: Array, u: Array) -> Array:
+        return x + u
+
+    plan = jnp.full((T, SPEC.act), 0.1)
+    return sampling.imagine(step, propose, carries, jnp.ones(SPEC.obs), plan, noise)
+
+
+@pytest.mark.parametrize(("share", "count"), [(0.0, 0), (0.25, 2), (0.5, 4), (1.0, 8)])
+def test_a_mixture_is_part_one_and_part_the_other(share, count) -> None:
+    """The first `share` of the paths are those of the first alone, the rest of the second."""
+    mixed = imagined(MixtureProposal(BY_POLICY, NOISE, share))
+    one, two = imagined(BY_POLICY), imagined(NOISE)
+    for got, first, second in zip(
+        jax.tree.leaves(mixed), jax.tree.leaves(one), jax.tree.leaves(two), strict=True
+    ):
+        np.testing.assert_array_equal(got[:count], first[:count])
+        np.testing.assert_array_equal(got[count:], second[count:])
+
+
+@pytest.mark.parametrize("colour", [0.0, 0.8])
+def test_noise_has_its_deviation_and_its_colour(colour) -> None:
+    """Neighbours in time correlate by `colour`; the deviation settles at std."""
+    samples = 20_000
+    found = imagined(NoiseProposal(std=0.2, colour=colour), samples)
+    e = np.asarray(found.path.u)[:, :, 0] - 0.1
+    assert e[:, -1].std() == pytest.approx(0.2 * np.sqrt(1 - colour ** (2 * T)), rel=0.03)
+    wanted = colour * np.sqrt((1 - colour ** (2 * T - 2)) / (1 - colour ** (2 * T)))
+    assert np.corrcoef(e[:, -1], e[:, -2])[0, 1] == pytest.approx(wanted, abs=0.02)
+
+
+def test_bad_fields() -> None:
+    """One line that names the field."""
+    with pytest.raises(ValueError, match=r"proposal.share=1.5: must lie in \[0, 1\]"):
+        MixtureProposal(BY_POLICY, NOISE, 1.5)
+    with pytest.raises(ValueError, match=r"proposal.std=0"):
+        NoiseProposal(std=0)
+    with pytest.raises(ValueError, match=r"proposal.colour=1.0"):
+        NoiseProposal(colour=1.0)
