@@ -31,12 +31,14 @@ class MLP(nn.Module):
     hidden: Sequence[int]
     out: int
     activation: str = "relu"
+    layer_norm: bool = False  # of every hidden layer, before its activation
 
     @nn.compact
     def __call__(self, x: Array) -> Array:
         """Y [..., out] for x [..., d]."""
         for width in self.hidden:
-            x = ACTIVATIONS[self.activation](nn.Dense(width, kernel_init=SPREAD)(x))
+            x = nn.Dense(width, kernel_init=SPREAD)(x)
+            x = ACTIVATIONS[self.activation](nn.LayerNorm()(x) if self.layer_norm else x)
         return nn.Dense(self.out, kernel_init=SPREAD)(x)
 
 

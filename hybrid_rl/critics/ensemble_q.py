@@ -21,6 +21,7 @@ class EnsembleQ:
     hidden: tuple[int, ...] = (256, 256)
     activation: str = "relu"
     members: int = 2
+    layer_norm: bool = False  # keeps many updates a decision stable (Hiraoka et al. 2022)
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -29,15 +30,16 @@ class EnsembleQ:
         if self.members < 1:
             raise ValueError(f"critic.members={self.members}: must be at least 1")
 
+    def _net(self) -> MLP:
+        return MLP(self.hidden, 1, self.activation, self.layer_norm)
+
     def init(self, key: Array, spec: Spec) -> Any:
         """First parameters, members on axis 0. The key is consumed."""
-        net = MLP(self.hidden, 1, self.activation)
-        return ensemble_init(net, key, self.members, jnp.zeros(spec.obs + spec.act))
+        return ensemble_init(self._net(), key, self.members, jnp.zeros(spec.obs + spec.act))
 
     def all(self, params: Any, x: Array, u: Array) -> Array:
         """Q of every member [members, ...] at x [..., n] and u [..., m]."""
-        net = MLP(self.hidden, 1, self.activation)
-        return ensemble_apply(net, params, jnp.concatenate([x, u], -1))[..., 0]
+        return ensemble_apply(self._net(), params, jnp.concatenate([x, u], -1))[..., 0]
 
     def value(self, params: Any, x: Array, u: Array) -> Array:
         """The smallest member's Q [...]."""

@@ -7,7 +7,6 @@ with u' the action that was executed at x' and no gradient through the target; o
 """
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import jax
@@ -85,12 +84,15 @@ class ModelLearner:
         def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array]]:
             f, r = weights
             at = (batch.obs, batch.action)
-            of_model = over_batch(self.model.loss)({**model, "weights": f}, *at, batch.next_obs)
-            of_reward = over_batch(self.reward.loss)({**reward, "weights": r}, *at, target)
+            of_model = over_batch(self.model.loss, 1)({**model, "weights": f}, *at, batch.next_obs)
+            paid = (target, batch.terminated)
+            of_reward = over_batch(self.reward.loss, 2)({**reward, "weights": r}, *at, *paid)
             of_model, of_reward = of_model.mean(), of_reward.mean()
             return of_model + of_reward, (of_model, of_reward)
 
-        over_batch = partial(jax.vmap, in_axes=(None, 0, 0, 0))
+        def over_batch(loss: Any, targets: int) -> Any:
+            return jax.vmap(loss, in_axes=(None, 0, 0, *[0] * targets))
+
         weights = (model["weights"], reward["weights"])
         grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
         change, optimiser = self._optimiser().update(grads, state.optimiser, weights)

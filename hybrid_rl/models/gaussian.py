@@ -70,9 +70,17 @@ class Gaussian:
         """Mean of the next planning state [n]."""
         return x + statistics.colour(params["change"], self.change(params, x, u))
 
+    def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, place: Array) -> Array:
+        """A next planning state [n] of the noise [n] ~ N(0, I); `place` chooses nothing here."""
+        change = self.change(params, x, u) + self._std(params) * noise
+        return x + statistics.colour(params["change"], change)
+
+    def _std(self, params: dict[str, Any]) -> Array:
+        return jnp.exp(jnp.clip(params["weights"]["log_std"], self.log_std_min, self.log_std_max))
+
     def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
         """Negative log-likelihood [] of next_x [n], mean over its entries."""
-        log_std = jnp.clip(params["weights"]["log_std"], self.log_std_min, self.log_std_max)
+        std = self._std(params)
         target = statistics.whiten(params["change"], next_x - x)
-        error = (target - self.change(params, x, u)) * jnp.exp(-log_std)
-        return jnp.mean(0.5 * error**2 + log_std + 0.5 * jnp.log(2 * jnp.pi))
+        error = (target - self.change(params, x, u)) / std
+        return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))

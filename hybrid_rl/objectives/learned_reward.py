@@ -1,4 +1,7 @@
-"""J(path) = sum_t r(x_t, u_t) [+ min_i Q_i(x_T, pi(x_T))]: the return that was learned.
+"""J(path) = sum_t c_t r(x_t, u_t) [+ c_T min_i Q_i(x_T, pi(x_T))]: the return that was learned.
+
+c_t is the discount so far, times the chance that the episode goes on where `ends` learns it from
+where episodes end: else a planner expects a robot that fell to go on earning.
 
 r is a network (thesis appendix B: two layers of 200). Its loss is
 0.5 (r + c (1 - end) r(x', u') - r(x, u))^2 with u' from the policy; c = 0 makes r a reward,
@@ -28,6 +31,7 @@ class LearnedReward:
     hidden: tuple[int, ...] = (200, 200)
     activation: str = "relu"
     normalise: bool = True
+    ends: bool = False  # learn where episodes end, after which nothing is earned
     discount: float = 1.0  # of imagined rewards, per decision
     critic: Any = None  # with `policy`: adds the critic's value of the last state
     policy: Policy | None = None
@@ -41,11 +45,13 @@ class LearnedReward:
         if not 0 < self.discount <= 1:
             raise ValueError(f"objective.discount={self.discount}: must lie in (0, 1]")
 
+    def _net(self) -> MLP:
+        return MLP(self.hidden, 1 + self.ends, self.activation)
+
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Weights, and the statistics that they are relative to. The key is consumed."""
-        net = MLP(self.hidden, 1, self.activation)
         return {
-            "weights": net.init(key, jnp.zeros(spec.obs + spec.act)),
+            "weights": self._net().init(key, jnp.zeros(spec.obs + spec.act)),
             "state": statistics.init(spec.obs),
         }
 
@@ -55,26 +61,37 @@ class LearnedReward:
             return params
         return {**params, "state": statistics.update(params["state"], x)}
 
-    def reward(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """R [...] at x [..., n] and u [..., m]."""
+    def outcome(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array]:
+        """Of u [m] at x [n]: the reward [], and the logit [] of the chance that it ends there."""
         inputs = jnp.concatenate([statistics.whiten(params["state"], x), u])
-        return MLP(self.hidden, 1, self.activation).apply(params["weights"], inputs)[0]
+        out: Any = self._net().apply(params["weights"], inputs)
+        return out[0], out[1] if self.ends else -jnp.inf
 
-    def loss(self, params: dict[str, Any], x: Array, u: Array, target: Array) -> Array:
-        """Half the squared error [] against target []."""
-        return 0.5 * (target - self.reward(params, x, u)) ** 2
+    def reward(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """R [] at x [n] and u [m]."""
+        return self.outcome(params, x, u)[0]
+
+    def loss(
+        self, params: dict[str, Any], x: Array, u: Array, target: Array, ended: Array
+    ) -> Array:
+        """Half the squared error [] against target [], and the cross entropy of `ended` []."""
+        r, logit = self.outcome(params, x, u)
+        error = 0.5 * (target - r) ** 2
+        return error + jax.nn.softplus(logit) - ended * logit if self.ends else error
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
-        rewards = jax.vmap(self.reward, (None, 0, 0))(params.reward, path.x[:-1], path.u)
+        rate = jax.vmap(self.outcome, (None, 0, 0))
+        rewards, ends = rate(params.reward, path.x[:-1], path.u)
         last = jnp.zeros(())
         if self.critic is not None and self.policy is not None:
             x = path.x[-1]
             last = self.critic.value(params.critic, x, self.policy.mean(params.policy, x))
 
-        def back(after: Array, r: Array) -> tuple[Array, Array]:
-            now = r + self.discount * after
+        def back(after: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:
+            r, end = at
+            now = r + self.discount * jax.nn.sigmoid(-end) * after
             return now, now
 
-        to_go = jax.lax.scan(back, last, rewards, reverse=True, unroll=True)[1]
+        to_go = jax.lax.scan(back, last, (rewards, ends), reverse=True, unroll=True)[1]
         return jnp.append(to_go, last)

@@ -85,3 +85,22 @@ def test_reward_to_go_is_the_sum_of_what_follows() -> None:
     rates = [float(reward.reward(params.reward, path.x[t], path.u[t])) for t in range(4)]
     want = [sum(0.9 ** (i - t) * rates[i] for i in range(t, 4)) for t in range(5)]
     np.testing.assert_allclose(reward.reward_to_go(params, path), want, rtol=1e-4, atol=1e-6)
+
+
+def test_where_episodes_end_is_learned_and_ends_the_return() -> None:
+    """Ended where x_0 > 0: nothing is earned after that."""
+
+    def ending(key: Array) -> Batch:
+        batch = draw(key)
+        return batch._replace(
+            reward=jnp.ones(128), terminated=(batch.obs[:, 0] > 0).astype(jnp.float32)
+        )
+
+    reward = LearnedReward(hidden=(32,), ends=True)
+    params = trained(ModelLearner(Gaussian(hidden=(8,)), reward), 2000, ending)
+    still = jnp.zeros(1)
+    for x, wanted in ((jnp.array([-1.0, 0.0]), 3), (jnp.array([1.0, 0.0]), 1)):
+        path = Path(jnp.tile(x, (4, 1)), jnp.tile(still, (3, 1)))
+        got = reward.reward_to_go(params, path)
+        assert float(got[0]) == pytest.approx(wanted, abs=0.1)
+        assert float(got[-1]) == 0
