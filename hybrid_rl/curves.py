@@ -30,6 +30,7 @@ class Curve:
     """One line of a figure."""
 
     task: str
+    metric: str
     label: str  # what sets it apart from the other lines
     seeds: tuple[int, ...]  # S learners, in the order of `each`
     runs: tuple[str, ...]  # the run folder of each learner
@@ -83,7 +84,9 @@ def curves(
     if not groups:
         known = ", ".join(sorted(names)) or "no metric yet"
         raise UsageError(f"metric={metric}: not in these runs; they have {known}")
-    return [_curve(task, label, groups[task, label], smooth) for task, label in sorted(groups)]
+    return [
+        _curve(task, metric, label, groups[task, label], smooth) for task, label in sorted(groups)
+    ]
 
 
 def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
@@ -111,6 +114,37 @@ def band(values: np.ndarray, resamples: int = RESAMPLES) -> tuple[np.ndarray, np
     draws = np.random.default_rng(0).integers(n, size=(resamples, n))
     low, high = np.percentile([iqm(values[draw]) for draw in draws], [2.5, 97.5], axis=0)
     return low, high
+
+
+def area(curve: Curve) -> np.ndarray:
+    """[S] mean of each learner's metric over the run: the area under its curve over its width.
+
+    Before its first row a learner has what it had there.
+    """
+    x, y = np.append(0.0, curve.x), np.concatenate([curve.each[:, :1], curve.each], axis=1)
+    return np.trapezoid(y, x, axis=1) / x[-1]
+
+
+def steps_to(curve: Curve, threshold: float) -> np.ndarray:
+    """[S] where each learner's metric first reaches `threshold`, infinite where it never does."""
+    reached = curve.each >= threshold
+    return np.where(reached.any(1), curve.x[reached.argmax(1)], np.inf)
+
+
+def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
+    """P(X > Y) of scores [n] and [m], ties counting half, and its 95% bootstrap band.
+
+    Source: Agarwal et al. 2021, probability of improvement (the Mann-Whitney U statistic).
+    """
+
+    def rate(x: np.ndarray, y: np.ndarray) -> float:
+        ahead, level = x[:, None] > y[None], x[:, None] == y[None]
+        return float(np.mean(ahead + 0.5 * level))
+
+    rng = np.random.default_rng(0)
+    draws = [rate(rng.choice(x, len(x)), rng.choice(y, len(y))) for _ in range(RESAMPLES)]
+    low, high = np.percentile(draws, [2.5, 97.5])
+    return rate(x, y), float(low), float(high)
 
 
 def _read(run: Path, metric: str, x: str) -> tuple[list[Learner], set[str]]:
@@ -142,7 +176,7 @@ def _name(run: Path, key: str) -> str:
     return str(said[key])
 
 
-def _curve(task: str, label: str, learners: list[Learner], smooth: float) -> Curve:
+def _curve(task: str, metric: str, label: str, learners: list[Learner], smooth: float) -> Curve:
     """Learners of one kind as one line."""
     ends = [learner.x[-1] for learner in learners]
     notes = []
@@ -157,7 +191,7 @@ def _curve(task: str, label: str, learners: list[Learner], smooth: float) -> Cur
     x, each = _common(learners, smooth)
     low, high = band(each)
     runs = tuple(str(learner.run) for learner in learners)
-    return Curve(task, label, seeds, runs, x, each, iqm(each), low, high, tuple(notes))
+    return Curve(task, metric, label, seeds, runs, x, each, iqm(each), low, high, tuple(notes))
 
 
 def _common(learners: list[Learner], smooth: float) -> tuple[np.ndarray, np.ndarray]:

@@ -2,20 +2,25 @@
 
     python -m hybrid_rl.figures runs="runs/halfcheetah/*/*" metric=train/return out=figure.png
 
-A panel for each task; a line for each algorithm: the interquartile mean over seeds
-with its 95% bootstrap band (see hybrid_rl.curves). The numbers drawn are written
-beside the picture, as JSON.
+A panel for each task; a line for each algorithm: the interquartile mean over seeds with its 95%
+bootstrap band (see hybrid_rl.curves). Several metrics, such as
+metric=train/return,planner/mode_insertion_gradient, are one row of panels each. The numbers drawn
+are written beside the picture, as JSON; what they come to is printed: last value, mean over the
+run (the area under the curve), decisions to threshold=, and who is ahead of whom.
 """
 
+import itertools
 import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from hybrid_rl import command
 from hybrid_rl.config import UsageError
-from hybrid_rl.curves import Curve, curves
+from hybrid_rl.curves import Curve, area, band, curves, improvement, iqm, steps_to
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,6 +33,7 @@ DEFAULTS = {
     "x": "step",
     "group": "algo",
     "smooth": "0",
+    "threshold": "",
 }
 SUFFIXES = (".png", ".pdf", ".svg")
 COLOURS = (  # Okabe and Ito: told apart by colour-blind readers too
@@ -46,6 +52,8 @@ LABELS = {
     "eval/return": "Evaluation return",
     "eval/policy_return": "Evaluation return, policy alone",
     "eval/planner_return": "Evaluation return, planner alone",
+    "planner/mode_insertion_gradient": "Mode insertion gradient",
+    "planner/policy_share": "Share of the policy in the action",
 }
 TIMES = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))  # [s]
 STYLE: dict[Any, Any] = {
@@ -65,23 +73,28 @@ STYLE: dict[Any, Any] = {
 }
 
 
-def plot(drawn: Sequence[Curve], metric: str = "train/return", x: str = "step") -> "Figure":
-    """A figure of `drawn`, one panel a task, at most three in a row."""
+def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
+    """A figure of `drawn`, one panel a task, at most three in a row; a row a metric if several."""
     import matplotlib
     from matplotlib.figure import Figure
 
+    metrics = list(dict.fromkeys(curve.metric for curve in drawn))
     tasks = sorted({curve.task for curve in drawn})
     labels = sorted({curve.label for curve in drawn})
-    across = min(3, len(tasks))
-    down = math.ceil(len(tasks) / across)
+    across = min(3, len(tasks)) if len(metrics) == 1 else len(tasks)
+    down = math.ceil(len(metrics) * len(tasks) / across)
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(4.4 * across, 3.3 * down), layout="constrained")
-        panels = figure.subplots(down, across, squeeze=False).flat
-        for axes, task in zip(panels, tasks, strict=False):
-            _panel(axes, [curve for curve in drawn if curve.task == task], labels, x)
-            axes.set_title(task)
-            axes.set_ylabel(LABELS.get(metric, metric))
-        for axes in list(panels)[len(tasks) :]:
+        panels = list(figure.subplots(down, across, squeeze=False).flat)
+        for axes, (metric, task) in zip(panels, itertools.product(metrics, tasks), strict=False):
+            of_panel = [curve for curve in drawn if (curve.metric, curve.task) == (metric, task)]
+            if of_panel:
+                _panel(axes, of_panel, labels, x)
+                axes.set_title(task)
+                axes.set_ylabel(LABELS.get(metric, metric))
+            else:  # nothing of this metric in this task
+                axes.set_axis_off()
+        for axes in panels[len(metrics) * len(tasks) :]:
             axes.remove()
     return figure
 
@@ -146,23 +159,51 @@ def _numbers(curve: Curve) -> dict:
     arrays = {name: getattr(curve, name) for name in ("x", "iqm", "low", "high", "each")}
     return {
         "task": curve.task,
+        "metric": curve.metric,
         "label": curve.label,
         "seeds": curve.seeds,
         "runs": curve.runs,
         "notes": curve.notes,
         **{name: array.astype("float32").tolist() for name, array in arrays.items()},
+        "area": area(curve).astype("float32").tolist(),
     }
 
 
-def _width(text: str) -> float:
-    """smooth= as a number."""
+def told(drawn: Sequence[Curve], threshold: float | None = None) -> list[str]:
+    """What the curves come to, a line each; then how often a method is ahead of another in area."""
+    lines = []
+    for curve in drawn:
+        ends = f"{curve.iqm[-1]:,.4g} [{curve.low[-1]:,.4g}, {curve.high[-1]:,.4g}]"
+        mean, (low, high) = iqm(area(curve)), band(area(curve))
+        line = (
+            f"{curve.task}, {curve.label}: {len(curve.seeds)} seeds, last {curve.metric} {ends}, "
+            f"mean {mean:,.4g} [{low:,.4g}, {high:,.4g}]"
+        )
+        if threshold is not None:
+            steps = steps_to(curve, threshold)
+            line += f", {threshold:,.10g} reached by {np.isfinite(steps).sum()} of {len(steps)}"
+            if np.isfinite(steps).all():
+                line += f" at {iqm(steps):,.0f}"
+        lines.append(line)
+    for one, other in itertools.combinations(drawn, 2):
+        if (one.task, one.metric) == (other.task, other.metric):
+            rate, low, high = improvement(area(one), area(other))
+            lines.append(
+                f"{one.task}, {one.metric}: {one.label} ahead of {other.label} "
+                f"in {rate:.0%} [{low:.0%}, {high:.0%}] of pairs"
+            )
+    return lines
+
+
+def _number(name: str, text: str, low: float, wanted: str) -> float:
+    """An argument as a number."""
     try:
-        width = float(text)
+        number = float(text)
     except ValueError:
-        width = math.nan
-    if not 0 <= width < math.inf:
-        raise UsageError(f"smooth={text}: must be a number of steps (or seconds), 0 or more")
-    return width
+        number = math.nan
+    if not (low <= number < math.inf and number > -math.inf):
+        raise UsageError(f"{name}={text}: must be a number{wanted}")
+    return number
 
 
 def main() -> None:
@@ -173,12 +214,16 @@ def main() -> None:
         raise UsageError('runs: not given; say runs="GLOB", such as runs="runs/*/*/*"')
     if Path(said["out"]).suffix not in SUFFIXES:
         raise UsageError(f"out={said['out']}: must end in {', '.join(SUFFIXES)}")
-    metric, x, group = said["metric"], said["x"], said["group"]
-    drawn = curves(said["runs"], metric, x, group, _width(said["smooth"]))
-    out = save(plot(drawn, metric, x), drawn, said["out"], metric=metric, x=x, group=group)
-    for curve in drawn:
-        ends = f"{curve.iqm[-1]:,.4g} [{curve.low[-1]:,.4g}, {curve.high[-1]:,.4g}]"
-        print(f"{curve.task}, {curve.label}: {len(curve.seeds)} seeds, last {metric} {ends}")
+    x, group = said["x"], said["group"]
+    smooth = _number("smooth", said["smooth"], 0, " of steps (or seconds), 0 or more")
+    threshold = None
+    if said["threshold"]:
+        threshold = _number("threshold", said["threshold"], -math.inf, " in the metric's unit")
+    metrics = [metric.strip() for metric in said["metric"].split(",")]
+    each = [curves(said["runs"], metric, x, group, smooth) for metric in metrics]
+    drawn = list(itertools.chain(*each))
+    out = save(plot(drawn, x), drawn, said["out"], metric=said["metric"], x=x, group=group)
+    print("\n".join(told(drawn, threshold)))
     for note in (note for curve in drawn for note in curve.notes):
         print(f"note: {note}")
     print(f"{out} and {out.with_suffix('.json')}")

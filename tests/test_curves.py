@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import trim_mean
 
 from hybrid_rl.config import UsageError
-from hybrid_rl.curves import band, curves, find, iqm
+from hybrid_rl.curves import area, band, curves, find, improvement, iqm, steps_to
 
 
 def run(folder, points, seed=0, task="hopper", algo="sac", metric="train/return", **config):
@@ -63,6 +63,18 @@ def test_seeds_with_common_steps_are_averaged_there(tmp_path):
     assert (curve.low <= curve.iqm).all()
     assert (curve.iqm <= curve.high).all()
     assert curve.notes == ()
+
+
+def test_area_steps_and_improvement(tmp_path):
+    """Of two learners whose curves are lines: y = x from 10 on, and y = 20."""
+    run(tmp_path / "a", [10.0, 20.0, 30.0], 0)
+    run(tmp_path / "b", [20.0, 20.0, 20.0], 1)
+    (curve,) = curves(tmp_path)
+    np.testing.assert_allclose(area(curve), [(10 * 10 + 15 * 10 + 25 * 10) / 30, 20])
+    assert steps_to(curve, 15).tolist() == [20, 10]
+    assert steps_to(curve, 25).tolist() == [30, np.inf]
+    assert improvement(np.array([1.0, 2]), np.array([1.0, 3]))[0] == (0.5 + 0 + 1 + 0) / 4
+    assert improvement(np.array([1.0, 2]), np.array([-1.0, 0])) == (1, 1, 1)
 
 
 def test_several_values_at_one_step_are_one_point(tmp_path):

@@ -12,12 +12,12 @@ from hybrid_rl.curves import Curve, iqm
 from hybrid_rl.figures import COLOURS, plot, save
 
 
-def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50):
+def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50, metric="train/return"):
     x = np.linspace(1000, 200_000, points)
     each = scale * (1 + np.arange(seeds))[:, None] * np.linspace(0, 1000, points)
     names = tuple(f"runs/{seed}" for seed in range(seeds))
     ends = each.min(0), each.max(0)
-    return Curve(task, label, tuple(range(seeds)), names, x, each, iqm(each), *ends, ())
+    return Curve(task, metric, label, tuple(range(seeds)), names, x, each, iqm(each), *ends, ())
 
 
 def runs(folder):
@@ -57,7 +57,7 @@ def test_a_panel_a_task_and_a_line_a_label_of_one_colour():
 
 
 def test_labels_carry_units_and_thousands():
-    figure = plot([curve(scale=-1)], "train/return")
+    figure = plot([curve(scale=-1)])
     figure.canvas.draw()
     (panel,) = figure.axes
     assert (panel.get_xlabel(), panel.get_ylabel()) == (
@@ -66,9 +66,23 @@ def test_labels_carry_units_and_thousands():
     )
     assert "200,000" in [text.get_text() for text in panel.get_xticklabels()]
     assert "\N{MINUS SIGN}1,600" in [text.get_text() for text in panel.get_yticklabels()]
-    (panel,) = plot([curve()], "sac/alpha", x="wall_s").axes
+    (panel,) = plot([curve(metric="sac/alpha")], x="wall_s").axes
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("Wall time [h]", "sac/alpha")
     assert panel.lines[0].get_xdata()[-1] == pytest.approx(200_000 / 3600)
+
+
+def test_several_metrics_are_rows():
+    """One column a task; a task without a metric leaves its place empty."""
+    drawn = [
+        curve("ant"),
+        curve("hopper"),
+        curve("hopper", metric="planner/mode_insertion_gradient"),
+    ]
+    axes = plot(drawn).axes
+    assert len(axes) == 4
+    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "", "hopper"]
+    assert axes[3].get_ylabel() == "Mode insertion gradient"
+    assert not axes[2].axison
 
 
 def test_more_lines_than_colours_stay_apart():
@@ -113,6 +127,7 @@ def test_the_command_draws_and_tells(tmp_path, monkeypatch, capsys):
     assert call(monkeypatch, f"runs={folder}/*/*", f"out={out}") == 0
     said = capsys.readouterr().out
     assert "hopper, nn_mppi: 2 seeds, last train/return 1,000 [1,000, 1,001]" in said
+    assert "hopper, train/return: nn_mppi ahead of sac in 50% [0%, 100%] of pairs" in said
     assert "sac (2 seeds)" in out.read_text()
     numbers = json.loads(out.with_suffix(".json").read_text())
     assert [entry["x"][-1] for entry in numbers["curves"]] == [1000, 1000]
@@ -126,6 +141,7 @@ def test_the_command_draws_and_tells(tmp_path, monkeypatch, capsys):
         (["runs=RUNS", "x=hours"], "x=hours: must be step or wall_s"),
         (["runs=RUNS", "out=a.jpg"], "out=a.jpg: must end in .png, .pdf, .svg"),
         (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
+        (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),
         (["runs=RUNS", "colour=red"], "colour=red: unknown argument"),
         ([], "runs: not given"),
     ],
