@@ -11,7 +11,6 @@ Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 """
 
 import os
-import threading
 from collections.abc import Callable
 from functools import cache, partial
 from typing import NamedTuple
@@ -34,39 +33,50 @@ class _Pool(NamedTuple):
     inputs: np.ndarray  # [N, D] float64: qpos, qvel, act, warmstart, ctrl
     sensors: np.ndarray  # [N, nsensordata] float64
     late: np.ndarray  # [nsensordata] bool: needs accelerations
-    lock: threading.Lock
 
 
 @cache
+def _idle(asset: str, worlds: int, threads: int) -> list[_Pool]:
+    """Pools that nobody uses now: several devices may call at once, each takes its own."""
+    return []
+
+
 def _pool(asset: str, worlds: int, threads: int) -> _Pool:
+    """A new pool; by default the devices of the host share its processors."""
     model = mjcf.load(asset)
-    batch = Batch(model, worlds, min(worlds, threads or os.cpu_count() or 1))
+    shared = max((os.cpu_count() or 1) // jax.local_device_count(), 1)
+    batch = Batch(model, worlds, min(worlds, threads or shared))
     sizes = (model.nq, model.nv, model.na, model.nv, model.nu)
     first = 1  # column 0 is the time
     inputs = batch.state[:, first : first + sum(sizes)]
     if model.nhistory:
         raise ValueError(f"{asset}: actuators or sensors with delay have no place in the state")
     late = np.repeat(model.sensor_needstage == _LATE, model.sensor_dim)
-    return _Pool(batch, inputs, batch.bind("sensordata"), late, threading.Lock())
+    return _Pool(batch, inputs, batch.bind("sensordata"), late)
 
 
 def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> None:
     """Fill y [N, D'] with what becomes of x [N, D] after `n` steps of physics."""
-    pool = _pool(asset, len(x), threads)
+    idle = _idle(asset, len(x), threads)
+    try:
+        pool = idle.pop()
+    except IndexError:
+        pool = _pool(asset, len(x), threads)
     moved = y.shape[1] - pool.sensors.shape[1]
     stage = _MOVED if pool.sensors.shape[1] else 0
     finite = np.isfinite(x.sum(1))
     ids = None if finite.all() else np.flatnonzero(finite)
-    with pool.lock:
-        pool.inputs[:] = x
-        if n:
-            pool.batch.step(ids, n, stage)
-        else:
-            pool.batch.forward(ids, stage)
-        y[:, :moved] = pool.inputs[:, :moved]
-        y[:, moved:] = pool.sensors
+    pool.inputs[:] = x
+    if n:
+        pool.batch.step(ids, n, stage)
+    else:
+        pool.batch.forward(ids, stage)
+    y[:, :moved] = pool.inputs[:, :moved]
+    y[:, moved:] = pool.sensors
+    late = pool.late
+    idle.append(pool)
     if not n:
-        y[:, moved:][:, pool.late] = 0.0
+        y[:, moved:][:, late] = 0.0
     if ids is not None:
         y[~finite] = np.nan
 

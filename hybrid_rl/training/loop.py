@@ -1,5 +1,9 @@
-"""Many learners in one compiled program: `vmap` over seeds around a loop over decisions."""
+"""Many learners in one compiled program: `vmap` over seeds around a loop over decisions.
 
+The learners are dealt out over the devices of the host; none needs to hear of another.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from time import perf_counter
@@ -7,7 +11,9 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
+from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from hybrid_rl.training.agent import Agent, AgentState
 
@@ -15,6 +21,10 @@ from hybrid_rl.training.agent import Agent, AgentState
 COMPILER_OPTIONS: dict[str, Any] = {
     "cpu": {"xla_cpu_experimental_ynn_fusion_type": "LIBRARY_FUSION_TYPE_REDUCE"},
 }
+
+SEEDS = PartitionSpec("seeds")
+ROWS = PartitionSpec(None, "seeds")
+SAME = PartitionSpec()
 
 
 @dataclass
@@ -30,15 +40,34 @@ class Loop:
     stride: int
     compile_s: float = 0.0  # [s] spent compiling so far
 
+    @property
+    def mesh(self) -> Mesh:
+        """The devices at work: as many of the host's as share the learners evenly."""
+        devices = jax.local_devices()
+        count = max(n for n in range(1, len(devices) + 1) if len(self.seeds) % n == 0)
+        return Mesh(np.array(devices[:count]), ("seeds",))
+
+    def spread(self, f: Callable[..., Any], takes: Any, gives: Any, **how: Any) -> Any:
+        """`jit(f)`, run on every device with its share of what has learners as an axis."""
+        parts: Any = jax.shard_map(
+            f, mesh=self.mesh, in_specs=takes, out_specs=gives, check_vma=False
+        )
+        return jax.jit(parts, **how)
+
+    def place(self, state: AgentState) -> AgentState:
+        """`state`, which was read from a file, on the devices."""
+        return jax.device_put(state, NamedSharding(self.mesh, SEEDS))
+
     def init(self) -> AgentState:
         """The stacked states [S, ...] before the first decision."""
         keys = jnp.stack([jax.random.key(seed) for seed in self.seeds])
-        return jax.jit(jax.vmap(self.agent.init))(keys)
+        return self.spread(jax.vmap(self.agent.init), SEEDS, SEEDS)(keys)
 
     def compile(self, state: AgentState) -> Any:
         """The program (state, first step, rounds) -> (state, metrics)."""
         began = perf_counter()
-        program = jax.jit(self._advance, donate_argnums=0)
+        parts = (SEEDS, SAME, SAME), (SEEDS, ROWS)
+        program = self.spread(self._advance, *parts, donate_argnums=0)
         zero = jnp.zeros((), jnp.int32)
         lowered = program.lower(state, zero, zero)
         try:

@@ -20,7 +20,7 @@ import numpy as np
 from hybrid_rl.training import checkpoint, provenance, rows
 from hybrid_rl.training.evaluate import evaluation_keys, returns
 from hybrid_rl.training.log import RunLog
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.loop import SEEDS, Loop
 from hybrid_rl.training.progress import Progress
 from hybrid_rl.types import Controller, Params
 
@@ -93,6 +93,7 @@ class Session:
             notes = [*notes, "no replay memory in checkpoints: it goes on, but not bit for bit"]
         for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
             self.progress.note(note)
+        self.state = self.loop.place(self.state)
         self.before_s = meta["wall_s"]
         self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
         self.progress.note(f"going on from step {self.step:,}")
@@ -125,7 +126,7 @@ class Session:
         if self.step >= self.schedule.total_steps:
             return
         with self._signals():
-            self.progress.note(f"compiling on {provenance.device()} ...")
+            self.progress.note(f"compiling on {provenance.device()} ...{self._idle()}")
             program = self.loop.compile(self.state)
             self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
             saved = None
@@ -140,6 +141,14 @@ class Session:
                     saved = self.step
             if saved != self.step:
                 self._save()
+
+    def _idle(self) -> str:
+        """What to say where the learners do not divide among the devices."""
+        used, there = self.loop.mesh.size, jax.local_device_count()
+        if used == there:
+            return ""
+        learners = len(self.loop.seeds)
+        return f" {learners} learners divide evenly over {used} of its {there} devices only"
 
     def _due(self, every: int) -> bool:
         """Whether a multiple of `every`, or the end, lies in the last round."""
@@ -206,7 +215,8 @@ class Session:
         if mode not in self.evaluators:
             began = perf_counter()
             one = partial(returns, self.loop.agent.episode, self.controllers[mode])
-            self.evaluators[mode] = jax.jit(jax.vmap(one)).lower(params, keys).compile()
+            program = self.loop.spread(jax.vmap(one), SEEDS, SEEDS)
+            self.evaluators[mode] = program.lower(params, keys).compile()
             self.loop.compile_s += perf_counter() - began
         return self.evaluators[mode]
 

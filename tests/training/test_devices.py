@@ -1,0 +1,64 @@
+"""Learners dealt out over several devices are the learners of one device."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from tiny import TINY, run
+
+SHORT = ["algo=hybrid_stochastic", "num_seeds=4", "total_steps=200"]
+
+
+def rows(folder):
+    """What was measured of each seed at each step, without times."""
+    found = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    kept = ("sac/q", "model/loss", "train/return", "eval/return", "planner/planned_return")
+    return {
+        (row["step"], row["seed"], name): row[name]
+        for row in found
+        for name in kept
+        if row.get(name) is not None
+    }
+
+
+def on_two_devices(*overrides):
+    """The command's output, where the host has two devices."""
+    flags = os.environ["XLA_FLAGS"] + " --xla_force_host_platform_device_count=2"
+    done = subprocess.run(
+        [sys.executable, "-m", "hybrid_rl.train", *TINY, *SHORT, *overrides],
+        env=os.environ | {"XLA_FLAGS": flags},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """A run on one device."""
+    folder = tmp_path_factory.mktemp("devices") / "one"
+    run(folder, *SHORT)
+    return folder
+
+
+def test_two_devices_have_the_learners_of_one(alone, tmp_path):
+    """And a run that one of them began goes on with both."""
+    said = on_two_devices(f"run_dir={tmp_path / 'two'}")
+    assert "of its" not in said
+    wanted, got = rows(alone), rows(tmp_path / "two")
+    assert wanted.keys() == got.keys()
+    assert len({seed for _, seed, _ in got}) == 4
+    for key, value in wanted.items():
+        np.testing.assert_allclose(got[key], value, rtol=1e-3, atol=1e-3, err_msg=str(key))
+    on_two_devices(f"resume={alone}", "total_steps=300")
+    assert json.loads((alone / "summary.json").read_text())["total_steps"] == 300
+
+
+def test_learners_that_do_not_divide_are_told(tmp_path):
+    """Three learners stay on one of two devices, and the user hears of it."""
+    said = on_two_devices("num_seeds=3", "total_steps=100", f"run_dir={tmp_path / 'three'}")
+    assert "3 learners divide evenly over 1 of its 2 devices only" in said
