@@ -154,6 +154,16 @@ def test_a_sweep_makes_a_folder_each(swept):
     assert [each["algo"] for each in said] == [folder.parent.name for folder in folders]
 
 
+def test_a_sweep_goes_to_a_cluster_by_one_override(tmp_path, monkeypatch):
+    """Submitit's local executor stands for Slurm: a process each, the same run folders."""
+    monkeypatch.chdir(tmp_path)
+    line = [*TINY, "algo=sac", "total_steps=300", "seed=0,1", "hydra/launcher=submitit_local"]
+    assert call_train("-m", *line) == 0
+    found = [summary(path) for path in (tmp_path / "runs" / "pendulum" / "sac").iterdir()]
+    assert sorted(said["seeds"] for said in found) == [[0], [1]]
+    assert all(said["finished"] for said in found)
+
+
 def test_figures_draw_a_sweep(swept, monkeypatch, capsys):
     monkeypatch.chdir(swept)
     given = ["runs=runs/pendulum/*/*", "out=curves.png"]
