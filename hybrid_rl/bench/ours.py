@@ -1,0 +1,130 @@
+"""What this library does, as contestants: worlds, planners, updates, whole loops.
+
+Every program is compiled before it is timed, and ends with a wait for its result.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl import config
+from hybrid_rl.bench.race import Contestant
+from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import EnvState, Params, Spec
+
+LEARNING = 200_000  # decisions into a run, where every part is at work
+
+
+@dataclass(frozen=True)
+class Still:
+    """A controller that costs nothing."""
+
+    actions: int
+
+    def init(self, spec: Spec) -> tuple[()]:
+        """Nothing."""
+        return ()
+
+    def act(
+        self, params: Params, state: tuple, obs: Array, key: Array
+    ) -> tuple[Array, tuple, dict]:
+        """Half of full actuation."""
+        return jnp.full(self.actions, 0.5), state, {}
+
+    def greedy(self) -> "Still":
+        """The same."""
+        return self
+
+
+def loop(name: str, agent: Agent, learners: int, decisions: int) -> tuple[Contestant, float]:
+    """`decisions` of each of `learners` in training; and the [s] that compiling took."""
+    made = Loop(agent, tuple(range(learners)), decisions)
+    state = made.init()
+    program = made.compile(state)
+    held = [state]
+    start, rounds = jnp.int32(LEARNING), jnp.int32(decisions)
+
+    def go() -> None:
+        held[0], _ = program(held[0], start, rounds)
+        jax.block_until_ready(held[0])
+
+    contestant = Contestant(name, go, learners * decisions, _memory(program))
+    return contestant, made.compile_s
+
+
+def shares(agent: Agent, learners: int, decisions: int) -> list[Contestant]:
+    """The whole loop, then the world alone, then the world with one of the learners."""
+    still = replace(agent, controller=Still(agent.spec.act), learners={})
+    parts = {"whole loop": agent, "world and memory": still}
+    for name, learner in agent.learners.items():
+        parts[f"world and {name} learner"] = replace(still, learners={name: learner})
+    return [loop(name, part, learners, decisions)[0] for name, part in parts.items()]
+
+
+def worlds(task: str, physics: str, count: int, decisions: int) -> Contestant:
+    """`decisions` in each of `count` worlds: reward, end and reset included; physics steps."""
+    episode = config.build(config.load([f"task={task}", f"physics={physics}"])).agent.episode
+    env: Any = episode.env
+    steps = round(env.spec.dt / env._body.model.opt.timestep) * episode.action_repeat
+    keys = jax.random.split(jax.random.key(0), count)
+    u = jax.random.uniform(jax.random.key(1), (count, env.spec.act), minval=-1, maxval=1)
+
+    def forward(_: int, state: EnvState) -> EnvState:
+        now = jax.vmap(episode.step)(state, u)
+        return jax.vmap(episode.renew)(now, keys)
+
+    def run(state: EnvState) -> EnvState:
+        return jax.lax.fori_loop(0, decisions, forward, state)
+
+    state = jax.jit(jax.vmap(episode.reset))(keys)
+    return compiled(f"ours, {physics}", run, state, work=count * decisions * steps)
+
+
+def plans(agent: Agent, learners: int, horizon: int, samples: int) -> Contestant:
+    """One plan of each learner: model steps."""
+    controller: Any = replace(agent.controller, horizon=horizon, samples=samples)  # type: ignore[type-var]
+    state = Loop(agent, tuple(range(learners)), 1).init()
+    params = jax.vmap(agent.params)(state)._replace(decisions=jnp.zeros(learners))
+    rest = jax.vmap(lambda _: controller.init(agent.spec))(jnp.arange(learners))
+    keys = jax.random.split(jax.random.key(0), learners)
+    repeats = 10
+
+    def run(params: Params, rest: Any, obs: Array, keys: Array) -> Any:
+        def again(_: int, held: tuple) -> tuple:
+            control, total = held
+            u, control, _metrics = jax.vmap(controller.act)(params, control, obs, keys)
+            return control, total + u
+
+        first = (rest, jnp.zeros((learners, agent.spec.act)))
+        return jax.lax.fori_loop(0, repeats, again, first)
+
+    name = f"{learners:,} learners, K {samples:,}, T {horizon}"
+    given = (params, rest, state.env.obs[:, 0], keys)
+    return compiled(name, run, *given, work=repeats * learners * horizon * samples)
+
+
+def compiled(name: str, run: Callable[..., Any], *given: Any, work: float) -> Contestant:
+    """`run(*given)`, compiled."""
+    program = jax.jit(run).lower(*given).compile()
+    return Contestant(name, lambda: jax.block_until_ready(program(*given)), work, _memory(program))
+
+
+def product(size: int = 2048) -> Contestant:
+    """A product of two square float32 matrices, which is what the chip can do; operations."""
+    a = jnp.ones((size, size))
+    return compiled("matrix product", lambda a: a @ a, a, work=2.0 * size**3)
+
+
+def _memory(program: Any) -> float | None:
+    """[bytes] of arguments and scratch; donated arguments count once."""
+    try:
+        used = program.memory_analysis()
+        kept = used.argument_size_in_bytes + used.output_size_in_bytes - used.alias_size_in_bytes
+        return float(kept + used.temp_size_in_bytes)
+    except (AttributeError, NotImplementedError, jax.errors.JaxRuntimeError):
+        return None

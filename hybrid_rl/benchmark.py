@@ -1,0 +1,218 @@
+"""How fast this machine is: worlds, planners, updates and whole loops, beside others' code.
+
+    python -m hybrid_rl.benchmark parts=physics,plan,shares,loop,compile out=benchmark.json
+
+physics   physics steps a second by task, implementation and number of worlds, beside bare loops
+plan      model steps a second of the planner, by learners, K and T
+shares    where a decision's time goes
+loop      decisions a second of the whole training loop, by number of learners
+compile   seconds from start to the first decision, with an empty cache and a filled one
+
+What is compared is run in turns (hybrid_rl.bench.race). A table is printed; the numbers are
+written as JSON, and drawn beside it.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from hybrid_rl import command, config
+from hybrid_rl.config import UsageError
+
+DEFAULTS = {
+    "parts": "physics,plan,shares,loop",
+    "tasks": "halfcheetah,hopper,cartpole",
+    "experiment": "thesis/fig_3_2_halfcheetah",  # of plan, shares, loop and compile
+    "algo": "hybrid_stochastic",
+    "physics": "",  # "": native on a CPU, native and mjx (and warp) elsewhere
+    "worlds": "",
+    "learners": "",
+    "plans": "",  # KxT, such as 20x10,64x20
+    "rounds": "5",
+    "out": "benchmark.json",
+}
+SIZES = {  # what is left empty, on a CPU and elsewhere
+    "cpu": {"physics": "native", "worlds": "1,64", "learners": "1,4", "plans": "20x10,64x20"},
+    "gpu": {
+        "physics": "mjx",
+        "worlds": "64,4096,65536",
+        "learners": "1,64,512",
+        "plans": "20x10,16384x32",
+    },
+}
+Table = dict[str, Any]
+
+
+def physics(said: dict[str, str], rounds: int) -> list[Table]:
+    """Worlds of every task, ours against bare loops."""
+    from hybrid_rl.bench import others, ours
+
+    tables = []
+    for task in said["tasks"].split(","):
+        for count in _counts(said, "worlds"):
+            decisions = max(1, 20_000 // count) if count < 1000 else 20
+            field = []
+            for implementation in said["physics"].split(","):
+                own = ours.worlds(task, implementation, count, decisions)
+                bare_steps = max(1, round(own.work / count))
+                if implementation == "native":
+                    bare = others.bare_native(task, count, bare_steps)
+                else:
+                    kind = {"mjx": "jax", "warp": "warp"}[implementation]
+                    bare = others.bare_mjx(task, count, bare_steps, kind)
+                field += [bare, own]
+            theirs = others.playground(count, decisions) if task == "halfcheetah" else None
+            field += [theirs] if theirs and said["physics"] != "native" else []
+            tables.append(_race("physics", f"{task}, {count:,} worlds", "steps/s", field, rounds))
+    return tables
+
+
+def plan(said: dict[str, str], rounds: int) -> list[Table]:
+    """The planner alone."""
+    from hybrid_rl.bench import ours
+
+    agent = _agent(said)
+    tables = []
+    for text in said["plans"].split(","):
+        samples, horizon = (command.count("plans", part) for part in text.split("x"))
+        most = 2**20 // samples  # a large plan is for few learners
+        field = [
+            ours.plans(agent, learners, horizon, samples)
+            for learners in _counts(said, "learners")
+            if learners <= max(most, 1)
+        ]
+        what = f"{said['algo']}, K {samples:,}, T {horizon}"
+        tables.append(_race("plan", what, "model steps/s", field, rounds))
+    return tables
+
+
+def shares(said: dict[str, str], rounds: int) -> list[Table]:
+    """The whole loop with parts left out, and what the chip can do."""
+    from hybrid_rl.bench import ours
+
+    agent, decisions = _agent(said), 500
+    most = 64  # enough to see; more is the business of `loop`
+    tables = [
+        _race(
+            "shares",
+            f"{said['algo']}, {count:,} learners",
+            "decisions/s",
+            ours.shares(agent, count, decisions),
+            rounds,
+        )
+        for count in _counts(said, "learners")
+        if count <= most
+    ]
+    return [*tables, _race("shares", "float32", "operations/s", [ours.product()], rounds)]
+
+
+def loop(said: dict[str, str], rounds: int) -> list[Table]:
+    """Training, by number of learners."""
+    from hybrid_rl.bench import ours
+
+    agent, decisions = _agent(said), 200
+    field = [
+        ours.loop(f"{count:,} learners", agent, count, decisions)[0]
+        for count in _counts(said, "learners")
+    ]
+    return [_race("loop", said["algo"], "decisions/s", field, rounds)]
+
+
+def compiling(said: dict[str, str], rounds: int) -> list[Table]:
+    """[1/s] of a start, from the command to its first decision, cold and cached."""
+    with tempfile.TemporaryDirectory() as place:
+        line = [sys.executable, "-m", "hybrid_rl.train", f"experiment={said['experiment']}"]
+        line += [f"algo={said['algo']}", "total_steps=1", "log_every=1", "eval_modes=[]"]
+        line += [f"compile_cache={place}/cache"]
+        rows = []
+        for name in ("cold", "cached"):
+            began = perf_counter()
+            subprocess.run([*line, f"run_dir={place}/{name}"], check=True, capture_output=True)
+            rows.append({"name": name, "seconds": perf_counter() - began})
+    for row in rows:
+        row |= {"rate": 1 / row["seconds"], "best": 1 / row["seconds"], "memory": None}
+        row["ratio"] = rows[0]["seconds"] / row["seconds"]
+    return [{"part": "compile", "what": said["algo"], "unit": "starts/s", "rows": rows}]
+
+
+PARTS = {"physics": physics, "plan": plan, "shares": shares, "loop": loop, "compile": compiling}
+
+
+def _agent(said: dict[str, str]) -> Any:
+    names = [f"experiment={said['experiment']}"] if said["experiment"] else []
+    steps = "total_steps=20000"  # bounds the replay memory of many learners
+    return config.build(config.load([*names, f"algo={said['algo']}", steps])).agent
+
+
+def _counts(said: dict[str, str], key: str) -> list[int]:
+    return [command.count(key, text) for text in said[key].split(",")]
+
+
+def _race(part: str, what: str, unit: str, field: list[Any], rounds: int) -> Table:
+    """One table, printed as it is done."""
+    from hybrid_rl.bench.race import race
+
+    rows = race(field, rounds)
+    print(f"\n{part}: {what} [{unit}]")
+    for row in rows:
+        memory = f"{row['memory'] / 1e6:12,.1f} MB" if row["memory"] else ""
+        print(f"  {row['name']:34} {row['rate']:16,.0f} {row['ratio']:9.2f} x {memory}", flush=True)
+    return {"part": part, "what": what, "unit": unit, "rows": rows}
+
+
+def draw(tables: list[Table], out: Path) -> None:
+    """A bar a row, a panel a table; logarithmic."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    from hybrid_rl.figures import COLOURS, STYLE
+
+    heights = [len(table["rows"]) + 1.5 for table in tables]
+    with rc_context(STYLE):
+        figure = Figure(figsize=(7, 0.3 * sum(heights)), layout="constrained")
+        panels = figure.subplots(len(tables), 1, squeeze=False, height_ratios=heights)[:, 0]
+        for axes, table in zip(panels, tables, strict=True):
+            names = [row["name"] for row in table["rows"]]
+            rates = [row["rate"] for row in table["rows"]]
+            bars = axes.barh(names, rates, color=COLOURS[0], height=0.6)
+            axes.bar_label(bars, [f"{rate:,.4g}" for rate in rates], padding=3, fontsize=8)
+            axes.set_xscale("log")
+            axes.set_xlim(min(rates) / 3, max(rates) * 5)
+            axes.invert_yaxis()
+            axes.set_title(f"{table['part']}: {table['what']} [{table['unit']}]", loc="left")
+        figure.savefig(out, dpi=150)
+
+
+def main() -> None:
+    """The command."""
+    import jax
+
+    from hybrid_rl.training import provenance
+
+    said = DEFAULTS | command.arguments(DEFAULTS)
+    out, rounds = Path(said["out"]), command.count("rounds", said["rounds"])
+    if out.suffix != ".json":
+        raise UsageError(f"out={out}: must end in .json")
+    unknown = sorted(set(said["parts"].split(",")) - set(PARTS))
+    if unknown:
+        raise UsageError(f"parts={','.join(unknown)}: unknown; choose of {', '.join(PARTS)}")
+    sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"]
+    said |= {key: value for key, value in sizes.items() if not said[key]}
+    machine = provenance.device()
+    print(f"{machine}; medians of {rounds} rounds, ratios to the first line of a table")
+    tables: list[Table] = []
+    for part in said["parts"].split(","):
+        tables += PARTS[part](said, rounds)
+        numbers = {"machine": machine, "versions": provenance.versions(), "asked": said}
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_text(json.dumps({**numbers, "tables": tables}, indent=1) + "\n")
+    draw(tables, out.with_suffix(".png"))
+    print(f"\n{out} and {out.with_suffix('.png')}")
+
+
+if __name__ == "__main__":
+    command.guarded(main)
