@@ -16,6 +16,7 @@ import json
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -80,8 +81,13 @@ def plan(said: dict[str, str], rounds: int) -> list[Table]:
     for text in said["plans"].split(","):
         samples, horizon = (command.count("plans", part) for part in text.split("x"))
         most = 2**20 // samples  # a large plan is for few learners
+        try:
+            planner = replace(agent.controller, horizon=horizon, samples=samples)
+        except TypeError as error:
+            raise UsageError(f"plan: {said['algo']} has no planner by samples") from error
+        planning = replace(agent, controller=planner)
         field = [
-            ours.plans(agent, learners, horizon, samples)
+            ours.plans(planning, learners)
             for learners in _counts(said, "learners")
             if learners <= max(most, 1)
         ]

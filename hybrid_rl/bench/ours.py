@@ -85,9 +85,10 @@ def worlds(task: str, physics: str, count: int, decisions: int) -> Contestant:
     return compiled(f"ours, {physics}", run, state, work=count * decisions * steps)
 
 
-def plans(agent: Agent, learners: int, horizon: int, samples: int) -> Contestant:
-    """One plan of each learner: model steps."""
-    controller: Any = replace(agent.controller, horizon=horizon, samples=samples)  # type: ignore[type-var]
+def plans(agent: Agent, learners: int) -> Contestant:
+    """Plans of each learner's sampling controller: model steps."""
+    controller: Any = agent.controller
+    samples, horizon = controller.samples, controller.horizon
     state = Loop(agent, tuple(range(learners)), 1).init()
     params = jax.vmap(agent.params)(state)._replace(decisions=jnp.zeros(learners))
     rest = jax.vmap(lambda _: controller.init(agent.spec))(jnp.arange(learners))

@@ -1,0 +1,65 @@
+"""The benchmark command: what is compared, and what it leaves behind."""
+
+import json
+import time
+
+import imageio.v3 as iio
+import pytest
+from tiny import call
+
+from hybrid_rl import benchmark, command
+from hybrid_rl.bench.race import Contestant, race
+
+
+def run(*arguments):
+    """Exit code of the command."""
+    return call(lambda: command.guarded(benchmark.main), *arguments)
+
+
+def test_a_race_takes_turns_and_divides_by_the_first():
+    """One that does three times the work in the time of the other is three times as fast."""
+    order = []
+
+    def go(name):
+        order.append(name)
+        time.sleep(0.01)
+
+    field = [Contestant(name, lambda n=name: go(n), work) for name, work in (("a", 1), ("b", 3))]
+    first, second = race(field, 3)
+    assert order == ["a", "b"] * 4  # the first turn warms up
+    assert first["ratio"] == 1
+    assert second["ratio"] == pytest.approx(3, rel=0.5)
+    assert 0 < second["rate"] <= second["best"] <= 300
+
+
+def test_the_command_measures_every_part(tmp_path, capsys):
+    """On the smallest of everything."""
+    out = tmp_path / "new" / "b.json"
+    small = ["tasks=cartpole", "worlds=2", "learners=1", "plans=4x2", "rounds=1"]
+    world = ["experiment=thesis/fig_3_2_pendulum", "parts=physics,plan,loop"]
+    assert run(*small, *world, f"out={out}") == 0
+    said = capsys.readouterr().out
+    assert "bare mujoco.rollout" in said
+    tables = json.loads(out.read_text())["tables"]
+    assert [table["part"] for table in tables] == ["physics", "plan", "loop"]
+    assert all(row["rate"] > 0 for table in tables for row in table["rows"])
+    assert iio.imread(out.with_suffix(".png")).shape[1] > 500
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ("parts=physic", "parts=physic: unknown; choose of physics, plan"),
+        ("rounds=0", "rounds=0: must be a whole number, 1 or more"),
+        ("out=table.txt", "out=table.txt: must end in .json"),
+        ("algo=sac parts=plan", "plan: sac has no planner by samples"),
+        ("speed=high", "speed=high: unknown argument"),
+    ],
+)
+def test_bad_usage_is_one_line_and_code_2(tmp_path, monkeypatch, capsys, given, line):
+    monkeypatch.chdir(tmp_path)
+    assert run(*given.split()) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert line in said
+    assert list(tmp_path.iterdir()) == []
