@@ -109,8 +109,7 @@ class SamplingController:
         def value(path: Path) -> Array:
             return self.objective.reward_to_go(params, path)[0]
 
-        around = adjoint.adjoint(step, mean, value, adjoint.roll(step, mean, x, 0 * plan))
-        insertion = adjoint.mode_insertion_gradient(step, value, around, plan[0])
+        insertion = adjoint.insertion_ahead(step, mean, value, x, plan[0], self.horizon)
         own = jnp.linalg.norm(mean(x))
         correction = jnp.linalg.norm(plan[0] - mean(x))
         return {

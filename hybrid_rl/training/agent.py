@@ -127,6 +127,7 @@ class Agent:
 
         if not self.random_steps:
             return plan()
+        plan = once(plan)
         shapes = jax.eval_shape(plan)
         draw = jax.random.uniform(at_random, shapes[0].shape, minval=-1, maxval=1)
         nothing = _zeros(shapes[2])
@@ -153,6 +154,7 @@ class Agent:
                 batch = self.replay.sample(memory, self.spec, learner.batch_size, drawing)
                 return learner.update(state, params, batch, updating)
 
+            @once
             def update(state: Any, k: Array, count: int = count, one: Any = one) -> Any:
                 rows = jax.random.split(k, (count, 2))
                 state, each = jax.lax.scan(one, state, rows, unroll=min(count, 4))
@@ -182,6 +184,11 @@ def _rhythm(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:
         f"{name}_learner.updates={learner.updates}: with num_envs={num_envs} this gives "
         f"{a_round:g} gradient steps a round; it must be a whole number, or one over one"
     )
+
+
+def once(f: Any) -> Any:
+    """`f`, which is traced once however often its shapes are asked for and it is called."""
+    return jax.jit(f, inline=True)
 
 
 def _zeros(shapes: Any) -> Any:

@@ -15,7 +15,7 @@ import numpy as np
 from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
-from hybrid_rl.training.agent import Agent, AgentState
+from hybrid_rl.training.agent import Agent, AgentState, once
 
 # On a CPU Eigen's matrix products take a sixth less time than those of YNNPACK, XLA's own choice.
 COMPILER_OPTIONS: dict[str, Any] = {
@@ -83,7 +83,7 @@ class Loop:
         self, state: AgentState, start: Array, rounds: Array
     ) -> tuple[AgentState, dict[str, Array]]:
         """State after `rounds` rounds, and metrics [stride, S, ...] of which these are filled."""
-        step = jax.vmap(self.agent.step, in_axes=(0, None))
+        step = once(jax.vmap(self.agent.step, in_axes=(0, None)))
         shapes = jax.eval_shape(step, state, start)[1]
         rows = jax.tree.map(lambda m: jnp.zeros((self.stride, *m.shape), m.dtype), shapes)
 

@@ -113,6 +113,20 @@ def test_mode_insertion_gradient_is_the_answer_to_a_short_switch(objective, othe
     slope = (switched(1e-6) - switched(-1e-6)) / 2e-6
     got = adjoint.mode_insertion_gradient(bent, objective, found, u)
     assert float(got) == pytest.approx(slope, rel=1e-6)
+    ahead = adjoint.insertion_ahead(bent, feedback, objective, jnp.asarray(X), u, T)
+    assert float(ahead) == pytest.approx(float(got), rel=1e-12)
+
+
+def test_insertion_into_a_single_decision() -> None:
+    """T = 1: J after the switch less J before, where J is linear in the state."""
+
+    def linear(path: Path) -> Array:
+        return path.x[-1] @ jnp.array([2.0, -1.0]) + 0.5 * path.u[0, 0] ** 3
+
+    x, u = jnp.asarray(X), jnp.array([0.9])
+    one, other = (Path(jnp.stack([x, bent(x, v)]), v[None]) for v in (feedback(x), u))
+    got = adjoint.insertion_ahead(bent, feedback, linear, x, u, 1)
+    assert float(got) == pytest.approx(float(linear(other) - linear(one)), rel=1e-12)
 
 
 def test_no_insertion_where_both_agree() -> None:
