@@ -51,8 +51,11 @@ def report(error: Exception) -> NoReturn:
         _fail(2, str(error))
     if isinstance(error, (HydraException, OmegaConfBaseException)):
         _fail(2, explain(error))
-    if isinstance(error, (OSError, DivergenceError)):
+    if isinstance(error, (OSError, DivergenceError, MemoryError)):
         _fail(1, str(error))
+    if str(error).startswith("RESOURCE_EXHAUSTED"):  # of XLA
+        what = str(error).splitlines()[0]
+        _fail(1, f"{what}; fewer num_seeds or num_envs, or a smaller replay.capacity, may fit")
     raise error
 
 

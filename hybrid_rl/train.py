@@ -1,6 +1,5 @@
 """`python -m hybrid_rl.train task=T algo=A [key=value ...]`: one run, or a sweep with -m."""
 
-import os
 import sys
 from collections.abc import Mapping
 from datetime import datetime
@@ -8,7 +7,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import jax
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
@@ -138,13 +136,13 @@ def _memory(run: Run) -> str:
     """
     replay, learners = run.agent.replay, len(run.seeds)
     each = replay.nbytes(run.agent.spec)
-    stats = jax.devices()[0].memory_stats() or {}
-    have = stats.get("bytes_limit") or os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    have = provenance.memory()
     if each * learners > have:
         fits = int(0.5 * have / learners / (each / replay.capacity))
         raise UsageError(
             f"replay.capacity={replay.capacity}: {learners} learners would take "
             f"{each * learners / 1e9:,.1f} GB and there are {have / 1e9:,.1f} GB; {fits} would fit"
+            + (f", or num_seeds={int(have // each)}" if have > each else "")
         )
     kept = "in checkpoints too" if run.config.checkpoint_replay else "not in checkpoints"
     return (

@@ -1,6 +1,7 @@
 """What goes wrong is one line, an exit code, and nothing lost."""
 
 import json
+import re
 import resource
 import shutil
 import subprocess
@@ -14,7 +15,7 @@ from tiny import TINY, call, call_train, contents, run
 from hybrid_rl import command, drawing, evaluate, figures, render
 from hybrid_rl import list as listed
 from hybrid_rl.envs.pendulum import Pendulum
-from hybrid_rl.training import checkpoint, manifest, session
+from hybrid_rl.training import checkpoint, manifest, provenance, session
 
 pytestmark = pytest.mark.xdist_group("errors")
 MAINS = {
@@ -288,3 +289,31 @@ def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
     assert said.startswith("hybrid_rl: seed 0, step 700: policy.")
     assert said.endswith(" is not finite\n")
     assert checkpoint.steps(copied / "checkpoints") == [500, 600]
+
+
+def test_learners_that_do_not_fit_are_counted(tmp_path, monkeypatch, capfd):
+    """Before the first decision, from what the compiled program needs."""
+    monkeypatch.setattr(provenance, "memory", lambda: 2e5)  # 16 replay memories, but no more
+    line = [*TINY, "algo=sac", "num_seeds=16", f"run_dir={tmp_path / 'many'}"]
+    assert call_train(*line) == 1
+    said = capfd.readouterr().err
+    assert said.count("\n") == 1
+    found = re.search(r"num_seeds=16: the program would take .*; about (\d+) would fit", said)
+    assert found is not None, said
+    fits = int(found[1])
+    assert 0 < fits < 16
+    monkeypatch.chdir(tmp_path)
+    assert call_train(*line[:-1], f"num_seeds={fits}", "run_dir=few", "total_steps=50") == 0
+
+
+def test_memory_that_runs_out_is_one_line(capfd):
+    """Where XLA itself finds out."""
+    out = RuntimeError("RESOURCE_EXHAUSTED: Out of memory allocating 12 bytes.\nand more")
+
+    def fail():
+        raise out
+
+    assert call(lambda: command.guarded(fail)) == 1
+    said = capfd.readouterr().err
+    assert said.count("\n") == 1
+    assert "allocating 12 bytes.; fewer num_seeds or num_envs" in said

@@ -53,7 +53,7 @@ def loop(name: str, agent: Agent, learners: int, decisions: int) -> tuple[Contes
         held[0], _ = program(held[0], start, rounds)
         jax.block_until_ready(held[0])
 
-    contestant = Contestant(name, go, learners * decisions, _memory(program))
+    contestant = Contestant(name, go, learners * decisions, made.memory(program))
     return contestant, made.compile_s
 
 
@@ -112,20 +112,10 @@ def plans(agent: Agent, learners: int) -> Contestant:
 def compiled(name: str, run: Callable[..., Any], *given: Any, work: float) -> Contestant:
     """`run(*given)`, compiled."""
     program = jax.jit(run).lower(*given).compile()
-    return Contestant(name, lambda: jax.block_until_ready(program(*given)), work, _memory(program))
+    return Contestant(name, lambda: jax.block_until_ready(program(*given)), work)
 
 
 def product(size: int = 2048) -> Contestant:
     """A product of two square float32 matrices, which is what the chip can do; operations."""
     a = jnp.ones((size, size))
     return compiled("matrix product", lambda a: a @ a, a, work=2.0 * size**3)
-
-
-def _memory(program: Any) -> float | None:
-    """[bytes] of arguments and scratch; donated arguments count once."""
-    try:
-        used = program.memory_analysis()
-        kept = used.argument_size_in_bytes + used.output_size_in_bytes - used.alias_size_in_bytes
-        return float(kept + used.temp_size_in_bytes)
-    except (AttributeError, NotImplementedError, jax.errors.JaxRuntimeError):
-        return None

@@ -79,6 +79,14 @@ class Loop:
         self.compile_s += perf_counter() - began
         return compiled
 
+    def memory(self, program: Any) -> float:
+        """[bytes] of a device that the compiled `program` takes, its state included; 0: unknown."""
+        used = program.memory_analysis()
+        if used is None:
+            return 0.0
+        arrays = used.argument_size_in_bytes + used.output_size_in_bytes - used.alias_size_in_bytes
+        return float(arrays + used.temp_size_in_bytes)
+
     def _advance(
         self, state: AgentState, start: Array, rounds: Array
     ) -> tuple[AgentState, dict[str, Array]]:

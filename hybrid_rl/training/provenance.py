@@ -51,6 +51,12 @@ def device() -> str:
     return f"{first.platform}: {several}{first.device_kind}"
 
 
+def memory() -> float:
+    """[bytes] of a device, or of the machine where the CPU is the device."""
+    stats = jax.local_devices()[0].memory_stats() or {}
+    return stats.get("bytes_limit") or os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
 def _processor() -> str:
     """The processor's name, as its maker writes it."""
     try:

@@ -122,6 +122,7 @@ class Session:
         Raises:
             DivergenceError: where a learner reached NaN or infinity.
             CheckpointError: where a checkpoint could not be written.
+            MemoryError: where a device has too little memory for the learners.
         """
         if self.step >= self.schedule.total_steps:
             return
@@ -129,6 +130,7 @@ class Session:
             self.progress.note(f"compiling on {provenance.device()} ...{self._idle()}")
             program = self.loop.compile(self.state)
             self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
+            self._check_memory(program)
             saved = None
             while self.step < self.schedule.total_steps and self.stop is None:
                 self._stride(program)
@@ -141,6 +143,16 @@ class Session:
                     saved = self.step
             if saved != self.step:
                 self._save()
+
+    def _check_memory(self, program: Any) -> None:
+        """Raise MemoryError, with how many learners would fit, where these do not."""
+        need, have = self.loop.memory(program), provenance.memory()
+        if need > have:
+            learners = len(self.loop.seeds)
+            raise MemoryError(
+                f"num_seeds={learners}: the program would take {need / 1e9:,.1f} GB of a device "
+                f"and there are {have / 1e9:,.1f} GB; about {int(learners * have / need)} would fit"
+            )
 
     def _idle(self) -> str:
         """What to say where the learners do not divide among the devices."""
