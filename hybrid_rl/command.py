@@ -4,6 +4,7 @@ Exit codes: 0 done; 2 bad usage; 130 and 143 after Ctrl-C and SIGTERM; 1 any oth
 """
 
 import os
+import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -32,6 +33,7 @@ def hydra_main(job: Callable[[DictConfig], None]) -> None:
     for key in (text.removesuffix("=null") for text in sys.argv if text.endswith("=null")):
         if key != "experiment" and options(key):
             _fail(2, f"{key}=null: choose one of {', '.join(options(key))}")
+    signal.signal(signal.SIGTERM, lambda *_: _fail(143, "terminated"))  # until a run listens
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()

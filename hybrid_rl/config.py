@@ -13,6 +13,7 @@ from hydra.errors import InstantiationException
 from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
+from hybrid_rl.envs.physics import resolve
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Controller
@@ -109,7 +110,7 @@ def build(config: DictConfig) -> Run:
     capacity = min(_whole(config.replay, "capacity", "replay."), rounds * config.num_envs)
     with _usage():
         controllers = {mode: _instantiate(node) for mode, node in config.controllers.items()}
-        env = _instantiate(config.env)
+        env = _instantiate({**config.env, **physics(config)})
         agent = Agent(
             Episode(env, config.episode.steps, config.episode.action_repeat),
             controllers["full"],
@@ -119,6 +120,13 @@ def build(config: DictConfig) -> Run:
             config.random_steps,
         )
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
+
+
+def physics(config: DictConfig) -> dict[str, str]:
+    """The world's `physics`, where it has any, with what auto means for the worlds of this run."""
+    if not isinstance(config.env.get("physics"), str):
+        return {}
+    return {"physics": resolve(config.env.physics, config.num_seeds * config.num_envs)}
 
 
 def _instantiate(node: Any) -> Any:

@@ -13,7 +13,6 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import command
 from hybrid_rl import config as configuration
 from hybrid_rl.config import UNKNOWN, Run, UsageError
-from hybrid_rl.envs.physics import resolve
 from hybrid_rl.training import checkpoint, provenance
 from hybrid_rl.training.log import RunLog
 from hybrid_rl.training.loop import Loop
@@ -171,7 +170,7 @@ def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
         "wall_s": session.wall_s,
         "compile_s": session.loop.compile_s,
         "env_steps_per_s": session.step * learners / session.wall_s,
-        "physics": resolve(config.physics),
+        "physics": configuration.physics(config).get("physics"),
         "device": provenance.device(),
         "matmul_precision": config.matmul_precision,
         "versions": provenance.versions(),

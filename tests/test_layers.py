@@ -27,6 +27,7 @@ ALLOWED = {
     "networks": {"types", "core"},
     "envs": {"types", "envs"},
     "training": {*SHARED, "data", "training"},
+    "bench": {"types", "training", "command", "bench"},  # measures whole runs
 }
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 

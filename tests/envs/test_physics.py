@@ -172,6 +172,15 @@ def test_auto_is_native_on_a_cpu():
     assert resolve("mjx") == "mjx"
 
 
+def test_auto_takes_what_is_fastest_for_so_many_worlds(monkeypatch):
+    """Beside a GPU: MuJoCo C for a few worlds, MJX for many or an unknown number."""
+    monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
+    monkeypatch.setattr("os.cpu_count", lambda: 16)
+    found = [resolve("auto", worlds) for worlds in (1, 1024, 1025, None)]
+    assert found == ["native", "native", "mjx", "mjx"]
+    assert resolve("mjx", 1) == "mjx"
+
+
 def test_unknown_asset_is_named():
     with pytest.raises(ValueError, match=r"no model .*unicorn\.xml.*halfcheetah\.xml"):
         Physics("unicorn.xml").reset(jnp.zeros(1), jnp.zeros(1))
