@@ -22,8 +22,13 @@ def path(asset: str) -> Path:
 
 @cache
 def text(asset: str) -> str:
-    """The MJCF text of `asset`."""
-    return path(asset).read_text(encoding="utf-8")
+    """The MJCF text of `asset`, with what it includes put in."""
+    plain = path(asset).read_text(encoding="utf-8")
+    if "<include" not in plain:
+        return plain
+    spec = mujoco.MjSpec.from_file(str(path(asset)))
+    spec.compile()
+    return spec.to_xml()
 
 
 @cache
