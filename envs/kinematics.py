@@ -2,7 +2,7 @@
 
     pose       p(q) [3], r(q) [4]: transforms multiplied along the chain, r a quaternion w x y z
     Jacobian   hinge: (a x (p - c), a),   slide: (a, 0);   a axis, c anchor, in the world
-    damped least squares   qd = J' (J J' + l^2 I)^-1 V,   V = (v, w) [6]
+    damped least squares   qd = q0 + J' (J J' + l^2 I)^-1 (V - J q0),   V = (v, w) [6]
 
 A formula of qpos and of the model's tables, hence the same in every implementation of the
 physics.
@@ -135,10 +135,14 @@ def _rows(asset: str, site: str) -> Rows:
     return Rows(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
-def damped(jacobian: Array, velocity: Array, damping: float) -> Array:
-    """Joint velocities [n] by which J [6, n] gives about `velocity` [6], bounded everywhere."""
+def damped(jacobian: Array, velocity: Array, damping: float, wish: Array) -> Array:
+    """Joint velocities [n] by which J [6, n] gives about `velocity` [6], nearest to `wish` [n].
+
+    They are bounded everywhere; near singular poses `damping` counts, and they give less.
+    """
     square = jacobian @ jacobian.T + damping**2 * jnp.eye(6)
-    return jacobian.T @ cho_solve(cho_factor(square), velocity)
+    missing = velocity - jacobian @ wish
+    return wish + jacobian.T @ cho_solve(cho_factor(square), missing)
 
 
 def hold(now: Array, wanted: Array, gain: float) -> Array:

@@ -5,9 +5,9 @@
 e, b, t: rod's tip, block, target in the plane of the table [m]; o = scale (b - e, b - t) [4];
 a: velocity of the tip along x and y, as fractions of 0.15 m/s. What is sent is low-passed,
 v <- 0.8 v + 0.2 a, and does not leave the workspace; height and orientation of the rod are
-held. Joint velocities follow by damped least squares, once a decision. A decision is 0.1 s:
-20 steps. The block starts in a disc, turned a little; the target lies in a box, away from the
-block.
+held. A decision is 0.1 s: 20 steps. Joint velocities follow by damped least squares, once a
+decision, as near as that allows to those that return to the first posture. The block starts in
+a disc, turned a little; the target lies in a box, away from the block.
 
 Source: thesis, section 3.4 and Appendix B, whose rewards are the author's own in metres
 (HybridLearning, experiments/sawyer_pusher.py: state, rate, filter, workspace, success). Where
@@ -55,6 +55,7 @@ class SawyerPush:
     target_high: tuple[float, ...] = (0.7, 0.2)  # [m]
     target_clear: float = 0.12  # [m] least distance from the block at the start
     hold: float = 5.0  # [1/s] gain on height and orientation
+    posture: float = 0.5  # [1/s] gain on the first posture
     damping: float = 0.02  # of the least squares [m, 1]
 
     def __post_init__(self) -> None:
@@ -110,7 +111,8 @@ class SawyerPush:
         planar = within(velocity, tip[:2], low, high)
         rise = self.hold * (home[2:] - tip[2:])
         twist = jnp.concatenate((planar, rise, hold(rotation, jnp.asarray(upright), self.hold)))
-        return damped(jacobian, twist, self.damping)
+        back = self.posture * (jnp.asarray(HOME, jnp.float32) - data.qpos[:7])
+        return damped(jacobian, twist, self.damping, back)
 
     def scene(self) -> str:
         """MJCF text of the world as it is drawn."""
