@@ -93,7 +93,7 @@ class Chain:
         start = (jnp.zeros(3), jnp.eye(4, dtype=jnp.float32)[0])
         (p, r), (a, c) = jax.lax.scan(along, start, (*tables, rows.hinge, moved))
         hinge = rows.hinge[:, None]
-        linear = jnp.where(hinge, jnp.cross(a, p - c), a)
+        linear = jnp.where(hinge, jnp.cross(a, p[None] - c), a)
         angular = jnp.where(hinge, a, 0.0)
         return p, r, jnp.concatenate((linear, angular), 1)[driven].T
 

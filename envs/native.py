@@ -24,7 +24,6 @@ from mujoco.batch import Batch
 from hybrid_rl.envs import foreign, mjcf
 
 _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
-_LATE = mujoco.mjtStage.mjSTAGE_ACC.value
 
 
 class _Pool(NamedTuple):
@@ -46,15 +45,15 @@ def _pool(asset: str, worlds: int, threads: int) -> _Pool:
     inputs = batch.state[:, first : first + sum(sizes)]
     if model.nhistory:
         raise ValueError(f"{asset}: actuators or sensors with delay have no place in the state")
-    late = np.repeat(model.sensor_needstage == _LATE, model.sensor_dim)
-    return _Pool(batch, inputs, batch.bind("sensordata"), late, threading.Lock())
+    sensors = batch.bind("sensordata")
+    return _Pool(batch, inputs, sensors, mjcf.late(asset), threading.Lock())
 
 
 def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> None:
     """Fill y [N, D'] with what becomes of x [N, D] after `n` steps of physics."""
     pool = _pool(asset, len(x), threads)
     moved = y.shape[1] - pool.sensors.shape[1]
-    stage = _MOVED if pool.sensors.shape[1] else 0
+    stage = 0 if pool.late.all() else _MOVED
     finite = np.isfinite(x.sum(1))
     ids = None if finite.all() else np.flatnonzero(finite)
     with pool.lock:

@@ -98,7 +98,9 @@ class Quadcopter:
 
     def pose(self, state: EnvState) -> Array:
         """Positions qpos [10] of the drawn world: of the quadcopter, and of the target."""
-        return jnp.concatenate((state.data.qpos, state.info["target"]))
+        hidden = jnp.asarray((0.0, 0.0, -99.0), jnp.float32)  # below the ground
+        target = state.info["target"] if self.task == "track" else hidden
+        return jnp.concatenate((state.data.qpos, target))
 
     def _state(self, data: PhysicsState, effort: Array, info: dict[str, Array]) -> EnvState:
         """effort: |u - u*|^2 of the decision."""

@@ -82,7 +82,7 @@ class SawyerPush:
         key_block, key_turn, key_target = jax.random.split(key, 3)
         home = jnp.asarray(HOME, jnp.float32)
         tip = jnp.asarray(TIP.at(HOME)[0][:2])
-        block = jnp.asarray(self.block, jnp.float32) + self.block_spread * _disc(key_block)
+        block = jnp.asarray(self.block, jnp.float32)[None] + self.block_spread * _disc(key_block)
         block = _first_far(block, tip[None], CLEAR)
         turn = jax.random.uniform(key_turn, (), jnp.float32, -self.block_turn, self.block_turn)
         low, high = (jnp.asarray(b, jnp.float32) for b in (self.target_low, self.target_high))
