@@ -10,7 +10,14 @@ from worlds import IMPLEMENTATIONS
 from hybrid_rl.envs import mjcf
 from hybrid_rl.envs.quadcopter import Quadcopter
 
-MASS, INERTIA, ARM, THRUST, MOMENT, GRAVITY = 0.6, np.array([0.04, 0.0375, 0.0675]), 0.2, 0.6, 0.15, 9.81
+MASS, INERTIA, ARM, THRUST, MOMENT, GRAVITY = (
+    0.6,
+    np.array([0.04, 0.0375, 0.0675]),
+    0.2,
+    0.6,
+    0.15,
+    9.81,
+)
 SLOWS = np.array([0.4, 0.4, 2.0]), np.array([2.0, 2.0, 0.4])  # [1/s] v, w
 
 
@@ -45,7 +52,9 @@ def _fly(env, state, actions):
         state = env.step(state, action)
         return state, state
 
-    return jax.jit(lambda s, a: jax.lax.scan(one, s, a)[1])(state, jnp.asarray(actions, jnp.float32))
+    return jax.jit(lambda s, a: jax.lax.scan(one, s, a)[1])(
+        state, jnp.asarray(actions, jnp.float32)
+    )
 
 
 @pytest.mark.parametrize("damping", [False, True])
@@ -124,9 +133,10 @@ def test_a_heavier_one_of_your_own(tmp_path):
     file.write_text(mjcf.text("quadcopter.xml").replace('mass="0.6"', 'mass="1.2"'))
     env = Quadcopter("native", asset=str(file))
     assert env.hovering == pytest.approx(4.905)
-    assert mujoco.MjModel.from_xml_string(env.scene()).nq == env.pose(
-        env.reset(jax.random.key(0))
-    ).shape[0]
+    assert (
+        mujoco.MjModel.from_xml_string(env.scene()).nq
+        == env.pose(env.reset(jax.random.key(0))).shape[0]
+    )
 
 
 def test_unknown_task_is_named():
