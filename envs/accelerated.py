@@ -36,4 +36,4 @@ def step(asset: str, impl: str, n: int, fields: dict[str, jax.Array]) -> mjx.Dat
     with jax.numpy_rank_promotion("allow"):
         data = data.replace(**fields)
         data = jax.lax.fori_loop(0, n, lambda _, d: mjx.step(model, d), data)
-        return _sense(model, data) if model.nsensordata else data
+        return data if mjcf.late(asset).all() else _sense(model, data)

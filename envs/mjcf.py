@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
 FOLDER = Path(__file__).parent / "assets"
 
@@ -22,8 +23,13 @@ def path(asset: str) -> Path:
 
 @cache
 def text(asset: str) -> str:
-    """The MJCF text of `asset`."""
-    return path(asset).read_text(encoding="utf-8")
+    """The MJCF text of `asset`, with what it includes put in."""
+    plain = path(asset).read_text(encoding="utf-8")
+    if "<include" not in plain:
+        return plain
+    spec = mujoco.MjSpec.from_file(str(path(asset)))
+    spec.compile()
+    return spec.to_xml()
 
 
 @cache
@@ -36,3 +42,11 @@ def load(asset: str) -> mujoco.MjModel:
             "reset a world that diverged in silence"
         )
     return model
+
+
+@cache
+def late(asset: str) -> np.ndarray:
+    """[nsensordata] bool: needs accelerations, and is left by a step as it was within it."""
+    model = load(asset)
+    stage = mujoco.mjtStage.mjSTAGE_ACC.value
+    return np.repeat(model.sensor_needstage == stage, model.sensor_dim)

@@ -23,7 +23,6 @@ from mujoco.batch import Batch
 from hybrid_rl.envs import foreign, mjcf
 
 _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
-_LATE = mujoco.mjtStage.mjSTAGE_ACC.value
 
 
 class _Pool(NamedTuple):
@@ -51,8 +50,8 @@ def _pool(asset: str, worlds: int, threads: int) -> _Pool:
     inputs = batch.state[:, first : first + sum(sizes)]
     if model.nhistory:
         raise ValueError(f"{asset}: actuators or sensors with delay have no place in the state")
-    late = np.repeat(model.sensor_needstage == _LATE, model.sensor_dim)
-    return _Pool(batch, inputs, batch.bind("sensordata"), late)
+    sensors = batch.bind("sensordata")
+    return _Pool(batch, inputs, sensors, mjcf.late(asset))
 
 
 def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> None:
@@ -63,7 +62,7 @@ def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> 
     except IndexError:
         pool = _pool(asset, len(x), threads)
     moved = y.shape[1] - pool.sensors.shape[1]
-    stage = _MOVED if pool.sensors.shape[1] else 0
+    stage = 0 if pool.late.all() else _MOVED
     finite = np.isfinite(x.sum(1))
     ids = None if finite.all() else np.flatnonzero(finite)
     pool.inputs[:] = x

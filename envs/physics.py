@@ -43,7 +43,7 @@ class PhysicsState:
     act: Array  # [na] actuator activations
     warmstart: Array  # [nv] accelerations, where the solver starts [m/s^2, rad/s^2]
     ctrl: Array  # [nu] controls held during the last step
-    sensors: Array  # [nsensordata]; positions and velocities are those of this state
+    sensors: Array  # [nsensordata] of this state; of the last step where they need accelerations
 
 
 def check(implementation: str) -> None:
@@ -93,7 +93,7 @@ class Physics:
         sizes = (model.na, model.nv, model.nu, model.nsensordata)
         zeros = [jnp.zeros(size, jnp.float32) for size in sizes]
         state = PhysicsState(*(jnp.asarray(q, jnp.float32) for q in (qpos, qvel)), *zeros)
-        return self._advance(state, 0) if model.nsensordata else state
+        return state if mjcf.late(self.asset).all() else self._advance(state, 0)
 
     def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:
         """The state `n` steps of physics later, with ctrl [nu] held."""

@@ -32,9 +32,9 @@ KEYS = (
     *("policy_learner.batch_size", "model_learner.batch_size"),
 )
 USAGE = [  # overrides of train, words of the line
-    ("task=cartpool", "task=cartpool: unknown; choose one of cartpole, halfcheetah"),
+    ("task=cartpool", "task=cartpool: unknown; choose one of ant, cartpole, halfcheetah"),
     ("algo=sacc", "algo=sacc: unknown; choose one of deterministic_mpc, hybrid_deterministic"),
-    ("task=null", "task=null: choose one of cartpole, halfcheetah"),
+    ("task=null", "task=null: choose one of ant, cartpole, halfcheetah"),
     ("env=null", "env=None: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),
     ("objective=foo", "objective=foo: unknown; choose one of learned_re"),

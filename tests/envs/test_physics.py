@@ -131,6 +131,13 @@ def test_without_sensors_a_reset_is_pure():
     assert "callback" not in text
 
 
+def test_sensors_of_forces_alone_leave_a_reset_pure():
+    panda = Physics("panda_stack.xml", "native")
+    text = str(jax.make_jaxpr(panda.reset)(panda.model.qpos0, jnp.zeros(21)))
+    assert "ffi_call" not in text
+    np.testing.assert_array_equal(panda.reset(panda.model.qpos0, np.zeros(21)).sensors, 0.0)
+
+
 def test_compiled_programs_can_be_kept():
     """JAX's persistent cache refuses programs that call Python by its own callbacks."""
     state, ctrl = _states(CHEETAH, 2)

@@ -30,6 +30,22 @@ def test_finite_and_never_truncated(env):
     assert not path.truncated.any()
 
 
+@pytest.mark.parametrize("task", ["ant", "quadcopter", "sawyer_push", "panda_stack"])
+def test_finite_for_long(task):
+    """Random decisions, and no end of an episode heeded."""
+    env = TASKS[task](physics="native")
+
+    def one(state, key):
+        action = jax.random.uniform(key, (4, env.spec.act), minval=-1, maxval=1)
+        state = jax.vmap(env.step)(state, action)
+        return state, (state.obs, state.reward)
+
+    key, *keys = jax.random.split(jax.random.key(0), 5)
+    state = jax.jit(jax.vmap(env.reset))(jax.numpy.stack(keys))
+    _, path = jax.jit(lambda s: jax.lax.scan(one, s, jax.random.split(key, 200)))(state)
+    assert all(np.isfinite(leaf).all() for leaf in path)
+
+
 def test_it_moves(env):
     obs = np.asarray(rollout(env).obs[TOUCHING])
     assert (np.abs(obs[-1] - obs[0]) > 1e-3).any()
@@ -58,7 +74,8 @@ def test_equal_by_value(env):
 
 def test_scene_shows_pose(env):
     model = mujoco.MjModel.from_xml_string(env.scene())
-    assert env.pose(env.reset(jax.random.key(0))).shape == (model.nq,)
+    pose = jax.eval_shape(lambda key: env.pose(env.reset(key)), jax.random.key(0))
+    assert pose.shape == (model.nq,)
     assert model.camera("track").id >= 0
 
 

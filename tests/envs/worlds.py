@@ -1,4 +1,4 @@
-"""The worlds under test, and one compiled rollout of each, shared by all tests."""
+"""The worlds under test, and one compiled program of each, shared by all tests."""
 
 from functools import cache
 from typing import NamedTuple
@@ -9,14 +9,29 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
+from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.pendulum import Pendulum
+from hybrid_rl.envs.quadcopter import Quadcopter
+from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 
 DECISIONS = 20
-TASKS = {"halfcheetah": HalfCheetah, "hopper": Hopper, "cartpole": Cartpole, "pendulum": Pendulum}
-SIMULATED = ("halfcheetah", "hopper", "cartpole")
+TASKS = {
+    "halfcheetah": HalfCheetah,
+    "hopper": Hopper,
+    "cartpole": Cartpole,
+    "pendulum": Pendulum,
+    "ant": Ant,
+    "quadcopter": Quadcopter,
+    "sawyer_push": SawyerPush,
+    "panda_stack": PandaStack,
+}
+FIELDS = {"ant": {"integrator": "euler"}, "quadcopter": {"task": "track", "damping": True}}
+SIMULATED = tuple(task for task in TASKS if task != "pendulum")
+ARMS = ("sawyer_push", "panda_stack")  # controls follow from states
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, world]
 IMPLEMENTATIONS = ("native", "mjx")
 
@@ -26,47 +41,97 @@ class Reference(NamedTuple):
 
     asset: str
     steps: int  # per decision
+    heights: tuple[int, ...] = ()  # in qpos: what is lifted
+    lift: float = 10.0  # [m]; more where a decision takes longer
 
 
 REFERENCE = {
-    "halfcheetah": Reference("halfcheetah.xml", 5),
-    "hopper": Reference("hopper.xml", 4),
+    "halfcheetah": Reference("halfcheetah.xml", 5, (1,)),
+    "hopper": Reference("hopper.xml", 4, (1,)),
     "cartpole": Reference("cartpole.xml", 1),
+    "ant": Reference("ant_euler.xml", 5, (2,)),
+    "quadcopter": Reference("quadcopter.xml", 1),
+    "sawyer_push": Reference("sawyer_push.xml", 20, (9,), 30.0),
+    "panda_stack": Reference("panda_stack.xml", 20, (11, 18), 30.0),
 }
 
 
 def make(task, implementation):
-    return TASKS[task](physics=implementation)
+    return TASKS[task](physics=implementation, **FIELDS.get(task, {}))
 
 
-def observe(task, qpos, qvel):
-    """The observation that the task's source defines."""
-    if task == "cartpole":
-        return np.array([qpos[0], qvel[0], np.cos(qpos[1]), np.sin(qpos[1]), qvel[1]])
+def task_of(env):
+    return next(name for name, kind in TASKS.items() if isinstance(env, kind))
+
+
+def observe(task, data, state):
+    """The observation that the task's source defines, of MuJoCo's `data`."""
+    qpos, qvel = data.qpos, data.qvel
+    match task:
+        case "cartpole":
+            return np.array([qpos[0], qvel[0], np.cos(qpos[1]), np.sin(qpos[1]), qvel[1]])
+        case "ant":
+            return np.concatenate([qpos[2:], qvel])
+        case "quadcopter":
+            turned = data.body("quadcopter").xmat.reshape(3, 3)  # of this qpos: see `reference`
+            away = np.asarray(state.info["target"]) - qpos[:3]
+            parts = turned.T @ [0, 0, -9.81], qvel[3:], turned.T @ qvel[:3], turned.T @ away
+            return np.concatenate(parts)
+        case "sawyer_push":
+            tip, target = data.site("tip").xpos[:2], np.asarray(state.info["target"])
+            return 10 * np.concatenate([qpos[7:9] - tip, qpos[7:9] - target])
+        case "panda_stack":
+            closed = data.ctrl[7:] < 0.02
+            return np.concatenate([data.site("tool").xpos, qpos[9:12], closed, data.sensordata])
     return np.concatenate([qpos[1:], np.clip(qvel, -10, 10) if task == "hopper" else qvel])
 
 
 def actions(env):
     """[2, 2, DECISIONS, m], the same for each lane; NaN in lane BROKEN from decision 5 on."""
     one = np.random.default_rng(0).uniform(-1, 1, (DECISIONS, env.spec.act))
+    if isinstance(env, SawyerPush):
+        one[:, 0] = np.abs(one[:, 0])  # the rod pushes ahead, at the block
+    if isinstance(env, PandaStack):
+        one[:, 3] = np.abs(one[:, 3])  # the hand holds the block
     every = np.tile(one, (2, 2, 1, 1)).astype(np.float32)
     every[BROKEN][5:] = np.nan
     return jnp.asarray(every)
 
 
+@cache
+def _first(task):
+    return jax.jit(make(task, "native").reset)(jax.random.key(7))
+
+
 def start(env):
-    """EnvState [2, 2]: 2 seeds x 2 worlds. Lanes start alike, LIFTED 10 m higher."""
-    first = env.reset(jax.random.key(7))
+    """EnvState [2, 2]: 2 seeds x 2 worlds. Lanes start alike, LIFTED high above the floor.
+
+    Sawyer's block stands before the rod, Panda's hangs between the fingers.
+    """
+    first = _first(task_of(env))
+    qpos = first.data.qpos if task_of(env) != "pendulum" else None
+    if isinstance(env, SawyerPush):
+        tip = TIP.pose(qpos)[0]
+        qpos = qpos.at[7:9].set(tip[:2] + jnp.array([0.04, 0.0])).at[10:].set(jnp.eye(4)[0])
+    if isinstance(env, PandaStack):
+        held = jnp.concatenate([jnp.full(2, 0.025), first.obs[:3], jnp.eye(4)[0]])
+        qpos = qpos.at[7:16].set(held)
+    if qpos is not None:
+        first = first.replace(data=first.data.replace(qpos=qpos))
     state = jax.tree.map(lambda a: jnp.tile(a, (2, 2) + (1,) * a.ndim), first)
-    if isinstance(env, HalfCheetah | Hopper):
-        qpos = state.data.qpos.at[(*LIFTED, 1)].add(10.0)
-        state = state.replace(data=state.data.replace(qpos=qpos))
+    if qpos is not None:
+        _, _, heights, lift = REFERENCE[task_of(env)]
+        lifted = state.data.qpos.at[(*LIFTED, jnp.array(heights, int))].add(lift)
+        state = state.replace(data=state.data.replace(qpos=lifted))
     return state
 
 
 @cache
-def rollout(env):
-    """EnvState [2, 2, DECISIONS]: scan inside vmap inside vmap inside jit, compiled once."""
+def program(env):
+    """States [2, 2], actions [2, 2, DECISIONS, m] -> states [2, 2, DECISIONS], compiled once.
+
+    A scan inside vmap inside vmap inside jit.
+    """
 
     def run(state, plan):
         def one(state, action):
@@ -75,20 +140,30 @@ def rollout(env):
 
         return jax.lax.scan(one, state, plan)[1]
 
-    return jax.jit(jax.vmap(jax.vmap(run)))(start(env), actions(env))
+    return jax.jit(jax.vmap(jax.vmap(run)))
 
 
 @cache
-def reference(task, lane):
-    """Observations [DECISIONS, o] of MuJoCo C in float64, stepped by mj_step alone."""
-    env = make(task, "native")
-    asset, steps = REFERENCE[task]
-    model, state = mjcf.load(asset), start(env)
+def rollout(env):
+    """EnvState [2, 2, DECISIONS] from `start` under `actions`."""
+    return program(env)(start(env), actions(env))
+
+
+def reference(task, implementation, lane):
+    """Observations [DECISIONS, o] of MuJoCo C in float64, stepped by mj_step alone.
+
+    Controls are the actions, or what the arm or vehicle made of them.
+    """
+    env = make(task, implementation)
+    asset, steps, *_ = REFERENCE[task]
+    model, state, path = mjcf.load(asset), start(env), rollout(env)
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = state.data.qpos[lane], state.data.qvel[lane]
-    path = []
-    for action in np.asarray(actions(env))[lane]:
-        data.ctrl[:] = action
+    controls = path.data.ctrl if task in (*ARMS, "quadcopter") else actions(env)
+    seen = []
+    for t, ctrl in enumerate(np.asarray(controls)[lane]):
+        data.ctrl[:] = ctrl
         mujoco.mj_step(model, data, steps)
-        path.append(observe(task, data.qpos, data.qvel))
-    return np.array(path)
+        mujoco.mj_kinematics(model, data)
+        seen.append(observe(task, data, jax.tree.map(lambda a, t=t: a[(*lane, t)], path)))
+    return np.array(seen)

@@ -1,0 +1,196 @@
+"""Arms against the tables of their makers, and their kinematics against MuJoCo C."""
+
+from math import pi
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+
+from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.kinematics import Chain, damped, hold, inverse, times, turn, within
+from hybrid_rl.envs.panda_stack import READY
+from hybrid_rl.envs.sawyer_push import HOME
+
+SAWYER, PANDA = "sawyer_push.xml", "panda_stack.xml"
+POSES = [  # asset, site, joints [rad], where the site is [m]: computed from the makers' tables
+    (SAWYER, "hand", (0, -1.18, 0, 2.18, 0, 0.57, 3.3161), (0.4496, 0.1603, 0.2158)),
+    (SAWYER, "hand", HOME, (0.5595, 0.0307, -0.0530)),
+    (SAWYER, "hand", (-0.2, -0.6, 0, 1.9, 0, 0.3, 1.571), (0.5358, 0.0550, 0.0230)),
+    (SAWYER, "hand", (0,) * 7, (1.0155, 0.1603, 0.3170)),
+    (PANDA, "tool", READY, (0.30689, 0, 0.48688)),
+    (PANDA, "tool", (0, 0, 0, -pi / 2, 0, pi / 2, -0.7853), (0.5545, 0, 0.5211)),
+    (PANDA, "tool", (0, 0.3, 0, -pi / 2, 0, 2, -0.7853), (0.6778, 0, 0.3785)),
+    (PANDA, "tool", (0, pi / 16, 0, -5 * pi / 6, 0, pi - 0.2, pi / 4), (0.4581, 0, 0.0922)),
+]
+MASSES = {  # [kg]: names, then masses
+    SAWYER: (
+        "base l0 l1 l2 l3 l4 l5 l6 rod cube",
+        (2.0687, 5.3213, 4.505, 1.745, 2.5097, 1.1136, 1.5625, 0.3292, 0.05, 0.1),
+    ),
+    PANDA: (
+        "link0 link1 link2 link3 link4 link5 link6 link7 hand left_finger right_finger block base",
+        (
+            *(0.629769, 4.970684, 0.646926, 3.228604, 3.587895, 1.225946, 1.666555, 0.735522),
+            *(0.73, 0.015, 0.015, 0.1, 0.1),
+        ),
+    ),
+}
+LIMITS = {  # least, greatest [rad]; velocity [rad/s]; torque [N m]
+    SAWYER: [
+        (-3.0503, 3.0503, 1.74, 80),
+        (-3.8095, 2.2736, 1.328, 80),
+        (-3.0426, 3.0426, 1.957, 40),
+        (-3.0439, 3.0439, 1.957, 40),
+        (-2.9761, 2.9761, 3.485, 9),
+        (-2.9761, 2.9761, 3.485, 9),
+        (-4.7124, 4.7124, 4.545, 9),
+    ],
+    PANDA: [
+        (-2.8973, 2.8973, 2.175, 87),
+        (-1.7628, 1.7628, 2.175, 87),
+        (-2.8973, 2.8973, 2.175, 87),
+        (-3.0718, -0.0698, 2.175, 87),
+        (-2.8973, 2.8973, 2.61, 12),
+        (-0.0175, 3.7525, 2.61, 12),
+        (-2.8973, 2.8973, 2.61, 12),
+    ],
+}
+PRINCIPAL = {  # moments of inertia [kg m^2], greatest first
+    "l0": (0.06516, 0.05109, 0.01862),
+    "l1": (0.02243, 0.02216, 0.00971),
+    "l2": (0.02579, 0.02551, 0.00293),
+    "l3": (0.01024, 0.00970, 0.00370),
+    "l4": (0.01365, 0.01355, 0.00127),
+    "l5": (0.00474, 0.00423, 0.00191),
+    "l6": (0.00036, 0.00031, 0.00021),
+}
+SINGULAR = {  # values of the Jacobian at the first pose
+    (SAWYER, "hand", HOME): (1.88, 1.81, 1.07, 0.357, 0.345, 0.243),
+    (PANDA, "tool", READY): (1.81, 1.68, 1.15, 0.342, 0.305, 0.221),
+}
+
+
+def _at(asset, joints):
+    """MuJoCo's data of `asset` at these joints."""
+    model = mjcf.load(asset)
+    data = mujoco.MjData(model)
+    data.qpos[: len(joints)] = joints
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+def _pose(asset, site, qpos):
+    return jax.jit(Chain(asset, site).pose)(jnp.asarray(qpos, jnp.float32))
+
+
+@pytest.mark.parametrize(("asset", "site", "joints", "place"), POSES)
+def test_poses_are_the_makers(asset, site, joints, place):
+    _, data = _at(asset, joints)
+    np.testing.assert_allclose(data.site(site).xpos, place, atol=6e-5)
+
+
+@pytest.mark.parametrize(("asset", "site", "joints", "place"), POSES)
+def test_chain_is_mujocos(asset, site, joints, place):
+    """Position, rotation and Jacobian, at this pose and at one that is nothing special."""
+    for shift in (0.0, 0.1):
+        model, data = _at(asset, np.add(joints, shift))
+        position, rotation, jacobian = _pose(asset, site, data.qpos)
+        expected = np.zeros((2, 3, model.nv))
+        mujoco.mj_jacSite(model, data, *expected, model.site(site).id)
+        matrix = jax.vmap(turn, (None, 0), 1)(rotation, jnp.eye(3))
+        np.testing.assert_allclose(position, data.site(site).xpos, atol=2e-6)
+        np.testing.assert_allclose(matrix, data.site(site).xmat.reshape(3, 3), atol=2e-6)
+        np.testing.assert_allclose(jacobian, expected.reshape(6, -1)[:, :7], atol=2e-6)
+
+
+def test_chain_of_slides_and_shifted_hinges(tmp_path):
+    file = tmp_path / "chain.xml"
+    inner = """<body pos="0.3 0 0" quat="1 2 0 0"><joint axis="0 1 0" pos="0.1 0.2 0"/>
+      <joint type="slide" axis="0 0.6 0.8" ref="0.5"/><geom size="0.1"/>
+      <site name="end" pos="0 0 1" quat="1 0 1 0"/></body>"""
+    file.write_text(
+        "<mujoco><option><flag autoreset='disable'/></option><worldbody><body>"
+        f"<joint type='slide'/><geom size='0.1'/>{inner}</body></worldbody></mujoco>"
+    )
+    model, data = _at(str(file), (0.4, 0.7, -0.2))
+    position, rotation, jacobian = _pose(str(file), "end", data.qpos)
+    expected = np.zeros((2, 3, model.nv))
+    mujoco.mj_jacSite(model, data, *expected, 0)
+    np.testing.assert_allclose(position, data.site("end").xpos, atol=1e-6)
+    np.testing.assert_allclose(jacobian, expected.reshape(6, -1), atol=1e-6)
+    place, quat = Chain(str(file), "end").at((0.4, 0.7, -0.2))
+    np.testing.assert_allclose(place, position, atol=1e-6)
+    np.testing.assert_allclose(np.abs(quat @ rotation), 1.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("asset", MASSES)
+def test_masses(asset):
+    model = mjcf.load(asset)
+    names = {model.body(i).name: model.body(i).mass[0] for i in range(1, model.nbody)}
+    expected, masses = MASSES[asset]
+    assert names == pytest.approx(dict(zip(expected.split(), masses, strict=True)))
+
+
+def test_moving_masses():
+    sawyer, panda = mjcf.load(SAWYER), mjcf.load(PANDA)
+    assert sawyer.body("l0").subtreemass[0] == pytest.approx(17.0863 + 0.05, abs=1e-3)
+    assert panda.body("link1").subtreemass[0] == pytest.approx(16.822, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", PRINCIPAL)
+def test_principal_inertia(name):
+    inertia = sorted(mjcf.load(SAWYER).body(name).inertia, reverse=True)
+    np.testing.assert_allclose(inertia, PRINCIPAL[name], atol=6e-6)
+
+
+@pytest.mark.parametrize("asset", LIMITS)
+def test_limits(asset):
+    model, (low, high, speed, torque) = mjcf.load(asset), np.transpose(LIMITS[asset])
+    np.testing.assert_allclose(model.jnt_range[:7], np.stack((low, high), 1))
+    np.testing.assert_allclose(model.actuator_ctrlrange[:7], np.stack((-speed, speed), 1))
+    np.testing.assert_allclose(model.actuator_forcerange[:7], np.stack((-torque, torque), 1))
+    assert model.jnt_limited[:7].all()
+    assert model.actuator_forcelimited[:7].all()
+
+
+@pytest.mark.parametrize(("asset", "site", "joints"), SINGULAR)
+def test_damped_least_squares(asset, site, joints):
+    _, data = _at(asset, joints)
+    jacobian = _pose(asset, site, data.qpos)[2]
+    values = np.linalg.svd(jacobian, compute_uv=False)
+    np.testing.assert_allclose(values, SINGULAR[asset, site, joints], atol=6e-3)
+    twist = np.array([0.1, -0.05, 0.02, 0.0, 0.1, 0.0])
+    wish = np.array([0.3, -0.2, 0.5, 0.1, -0.4, 0.2, 0.3])
+    inverted = np.linalg.pinv(jacobian)
+    exact = damped(jacobian, twist, 1e-4, jnp.zeros(7))
+    np.testing.assert_allclose(exact, inverted @ twist, atol=2e-4)
+    near = damped(jacobian, twist, 1e-4, wish)
+    free = wish - inverted @ (jacobian @ wish)  # what of the wish moves no site
+    np.testing.assert_allclose(near, inverted @ twist + free, atol=1e-3)
+    assert np.linalg.norm(free) > 0.1
+    straight = np.array([0.1, -0.05, 0.02, 0.0, 0.0, 0.0])
+    given = jacobian @ damped(jacobian, straight, 0.02, jnp.zeros(7))
+    assert np.linalg.norm(given - straight) < 0.01 * np.linalg.norm(straight)
+
+
+def test_rotations():
+    rng = np.random.default_rng(0)
+    r, s = (jnp.asarray(q / np.linalg.norm(q), jnp.float32) for q in rng.normal(size=(2, 4)))
+    v = jnp.asarray(rng.normal(size=3), jnp.float32)
+    product, turned = np.empty(4), np.empty(3)
+    mujoco.mju_mulQuat(product, np.asarray(r, float), np.asarray(s, float))
+    mujoco.mju_rotVecQuat(turned, np.asarray(v, float), np.asarray(r, float))
+    np.testing.assert_allclose(times(r, s), product, atol=1e-6)
+    np.testing.assert_allclose(turn(r, v), turned, atol=1e-6)
+    np.testing.assert_allclose(turn(inverse(r), turn(r, v)), v, atol=1e-6)
+    small = jnp.array([1.0, 0.005, -0.01, 0.002])  # 0.01, -0.02, 0.004 rad
+    wanted = times(small / jnp.linalg.norm(small), r)
+    np.testing.assert_allclose(hold(r, -wanted, 5.0), [0.05, -0.1, 0.02], atol=1e-4)
+
+
+def test_within_stops_only_what_leaves():
+    low, high = jnp.zeros(4), jnp.ones(4)
+    velocity, place = jnp.array([1.0, -1.0, 1.0, -1.0]), jnp.array([1.5, 1.5, -0.5, -0.5])
+    np.testing.assert_array_equal(within(velocity, place, low, high), [0.0, -1.0, 1.0, 0.0])

@@ -1,0 +1,176 @@
+"""What a hand does with a block: commands, rewards, starts, and scripts that succeed."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from worlds import DECISIONS, IMPLEMENTATIONS, make, program
+
+from hybrid_rl.envs.kinematics import hold
+from hybrid_rl.envs.panda_stack import TOOL, PandaStack
+from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
+from scripts import play, push, stack
+
+
+def test_the_rod_goes_where_it_is_told():
+    """2 s along y at 0.1 m/s: straight, level and upright."""
+    env = SawyerPush("native", smoothing=0.0)
+    state = env.reset(jax.random.key(0))
+    aside = state.data.qpos.at[7:9].set(jnp.array([0.7, 0.4]))
+    state = state.replace(data=state.data.replace(qpos=aside))
+    begin, upright = TIP.at(HOME)
+    step = jax.jit(env.step)
+    for _ in range(20):
+        state = step(state, jnp.array([0.0, 0.1 / 0.15]))
+    tip, rotation, _ = TIP.pose(state.data.qpos)
+    np.testing.assert_allclose(tip - begin, [0.0, 0.2, 0.0], atol=0.01)
+    assert abs(tip[2] - begin[2]) < 1e-3
+    assert jnp.abs(hold(rotation, jnp.asarray(upright), 1.0)).max() < np.radians(0.5)
+    for _ in range(40):
+        state = step(state, jnp.array([1.0, 1.0]))
+    tip = TIP.pose(state.data.qpos)[0]
+    np.testing.assert_allclose(tip[:2], env.high, atol=0.02)
+
+
+def test_the_filter_keeps_what_it_says():
+    sawyer, panda = SawyerPush("native"), PandaStack("native")
+    state = jax.jit(sawyer.reset)(jax.random.key(0))
+    state = jax.jit(sawyer.step)(state, jnp.array([1.0, -1.0]))
+    np.testing.assert_allclose(state.info["velocity"], [0.03, -0.03], rtol=1e-5)
+    state = jax.jit(sawyer.step)(state, jnp.zeros(2))
+    np.testing.assert_allclose(state.info["velocity"], [0.024, -0.024], rtol=1e-5)
+    state = jax.jit(panda.reset)(jax.random.key(0))
+    state = jax.jit(panda.step)(state, jnp.array([1.0, 0.0, 0.0, 1.0]))
+    np.testing.assert_allclose(state.info["velocity"][0], 0.15 * (1 - np.exp(-0.5)), rtol=1e-5)
+    assert state.info["closed"] == 1.0
+
+
+def _sawyer(tip_to_block, block_to_target, action, **fields):
+    """One decision that moves nothing, from a block and target so placed."""
+    env = SawyerPush("native", **fields)
+    state = env.reset(jax.random.key(0))
+    block = TIP.pose(state.data.qpos)[0][:2] + jnp.asarray(tip_to_block)
+    qpos = state.data.qpos.at[7:9].set(block)
+    info = {**state.info, "target": block + jnp.asarray(block_to_target)}
+    return env.step(state.replace(data=state.data.replace(qpos=qpos), info=info), action)
+
+
+def test_push_reward_by_hand():
+    state = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.zeros(2))
+    np.testing.assert_allclose(state.reward, -5 * 0.1 - 10 * 0.5, atol=2e-3)
+    np.testing.assert_allclose(state.obs, [3.0, 4.0, 0.0, -1.0], atol=2e-3)
+    acted = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]), speed=0.0)
+    np.testing.assert_allclose(acted.reward - state.reward, -0.01, atol=1e-4)
+    assert not state.terminated
+    assert _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2)).terminated
+    going_on = _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2), terminate=False)
+    assert going_on.metrics["success"] == 1.0
+    assert not going_on.terminated
+
+
+def test_push_starts_are_apart():
+    env = SawyerPush("native")
+    states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 500))
+    block, target = np.asarray(states.data.qpos[:, 7:9]), np.asarray(states.info["target"])
+    tip = TIP.at(HOME)[0][:2]
+    assert (np.linalg.norm(block - tip, axis=1) > 0.06).all()
+    assert (np.linalg.norm(block - env.block, axis=1) <= 0.08 + 1e-6).all()
+    assert (np.linalg.norm(block - target, axis=1) > 0.12).all()
+    assert (target >= env.target_low).all()
+    assert (target <= env.target_high).all()
+    assert (target.std(0) > [0.04, 0.08]).all()
+    np.testing.assert_allclose(states.data.qpos[:, 9], HEIGHT)
+    assert not states.terminated.any()
+
+
+def _panda(env, block, closed, fingers):
+    """The state that the task sees with the block so far from the hand [3]."""
+    state = env.reset(jax.random.key(0))
+    tool = TOOL.pose(state.data.qpos)[0]
+    held = jnp.concatenate([jnp.full(2, fingers), tool + jnp.asarray(block)])
+    data = state.data.replace(qpos=state.data.qpos.at[7:12].set(held))
+    info = {**state.info, "closed": jnp.float32(closed)}
+    return env._state(data, jnp.zeros(4), info), tool
+
+
+def test_stack_reward_by_hand():
+    env = PandaStack("native")
+    free, tool = _panda(env, (0.3, 0.0, -0.4), 0.0, 0.04)
+    np.testing.assert_allclose(free.reward, -0.5, rtol=1e-5)
+    held, _ = _panda(env, (0.0, 0.005, 0.01), 1.0, 0.0255)
+    goal = np.array([0.45, 0.12, 0.075])
+    np.testing.assert_allclose(held.reward, -1.25 * np.linalg.norm(tool - goal), rtol=1e-5)
+    assert held.metrics["grasped"] == 1.0
+    for block, closed, fingers in [
+        ((0.0, 0.005, 0.01), 0.0, 0.0255),  # told to open
+        ((0.0, 0.005, 0.01), 1.0, 0.03),  # not closed
+        ((0.0, 0.0, -0.03), 1.0, 0.025),  # beside the block
+    ]:
+        assert _panda(env, block, closed, fingers)[0].metrics["grasped"] == 0.0
+
+
+def test_stack_success_by_hand():
+    env = PandaStack("native")
+    _, tool = _panda(env, (0.0, 0.0, 0.0), 0.0, 0.04)
+    there = np.array([0.45, 0.12, 0.075]) - np.asarray(tool)
+    assert _panda(env, there, 0.0, 0.04)[0].terminated
+    assert not _panda(PandaStack("native", terminate=False), there, 0.0, 0.04)[0].terminated
+    for shift, closed in [((0.03, 0, 0), 0.0), ((0, 0, 0.015), 0.0), ((0, 0, 0), 1.0)]:
+        assert _panda(env, there + shift, closed, 0.04)[0].metrics["success"] == 0.0
+
+
+def test_a_base_anywhere_is_seen():
+    env = PandaStack("native", base_spread=0.03)
+    states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 50))
+    goal = np.asarray(states.data.qpos[:, 16:19]) + np.array([0, 0, 0.05])
+    assert states.obs.shape == (50, env.spec.obs) == (50, 16)
+    np.testing.assert_allclose(states.obs[:, 13:], goal, atol=1e-6)
+    assert (goal.std(0)[:2] > 0.01).all()
+
+
+@pytest.mark.parametrize("fields", [{"low": (0.0,)}, {"block": (1.0, 2.0, 3.0)}])
+@pytest.mark.parametrize("task", [SawyerPush, PandaStack])
+def test_wrong_sizes_are_named(task, fields):
+    (name,) = fields
+    with pytest.raises(ValueError, match=rf"{name}=\[.*must be \w+ numbers"):
+        task(**fields)
+
+
+def _replay(implementation, task, script, decisions):
+    """The last states [4] of `script` played natively, and of its actions here."""
+    first, actions, states = play(make(task, "native"), script, decisions, 4)
+    end = jax.tree.map(lambda a: a[:, -1], states)
+    if implementation == "native":
+        return end, states
+    now, run = (
+        jax.tree.map(lambda a: a.reshape(2, 2, *a.shape[1:]), first),
+        program(make(task, "mjx")),
+    )
+    actions = actions.reshape(2, 2, decisions, -1)
+    parts = []
+    for t in range(0, decisions, DECISIONS):
+        parts.append(run(now, actions[:, :, t : t + DECISIONS]))
+        now = jax.tree.map(lambda a: a[:, :, -1], parts[-1])
+    path = jax.tree.map(
+        lambda *a: jnp.concatenate(a, 2).reshape(4, decisions, *a[0].shape[3:]), *parts
+    )
+    return jax.tree.map(lambda a: a[:, -1], path), path
+
+
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+def test_a_script_pushes_the_block_home(implementation):
+    _, path = _replay(implementation, "sawyer_push", push, 100)
+    assert path.metrics["success"].any(1).all()
+    height = path.data.qpos[..., 9]
+    assert jnp.abs(height - HEIGHT).max() < 2e-3  # the block neither tips nor jumps
+    assert jnp.abs(path.data.qvel).max() < 5.0
+
+
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+def test_a_script_stacks_the_block(implementation):
+    end, path = _replay(implementation, "panda_stack", stack, 120)
+    assert path.metrics["success"].any(1).all()
+    np.testing.assert_array_equal(end.metrics["success"], 1.0)
+    assert (path.metrics["grasped"].sum(1) > 20).all()
+    moved = path.data.qpos[..., 16:19] - jnp.array([0.45, 0.12, 0.025])[None, None]
+    assert jnp.abs(moved).max() < 5e-3  # the base stays
