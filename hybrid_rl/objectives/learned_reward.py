@@ -64,6 +64,18 @@ class LearnedReward:
         """Half the squared error [] against target []."""
         return 0.5 * (target - self.reward(params, x, u)) ** 2
 
+    def begin(self, spec: Spec) -> tuple[()]:
+        """Nothing: what was earned earlier changes no decision."""
+        return ()
+
+    def look(self, params: Params, memory: tuple[()], x: Array, key: Array) -> tuple[()]:
+        """Still nothing."""
+        return memory
+
+    def value(self, params: Params, memory: tuple[()], path: Path) -> Array:
+        """J [] of `path`."""
+        return self.reward_to_go(params, path)[0]
+
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
         rewards = jax.vmap(self.reward, (None, 0, 0))(params.reward, path.x[:-1], path.u)

@@ -48,14 +48,13 @@ class Regulator:
         return ()
 
     def towards(self, x: Array, goal: Array) -> Array:
-        """The action [m] at x [o] that leads to deviation `goal` [d] instead of zero."""
-        e = self.world.deviation(x) - goal
-        gain = jnp.asarray(self.solve()[0], e.dtype)
-        return jnp.clip(self.world.rest()[1] - gain @ e, -1, 1)
+        """The action [m] at x [o] that leads to `goal` [o] instead of the equilibrium."""
+        e = self.world.deviation(x) - self.world.deviation(goal)
+        return jnp.clip(self.world.rest()[1] - jnp.asarray(self.solve()[0], e.dtype) @ e, -1, 1)
 
     def mean(self, params: Any, x: Array) -> Array:
         """The action [m] at x [o]."""
-        return self.towards(x, 0 * self.world.deviation(x))
+        return self.towards(x, self.world.rest()[0])
 
     def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
         """The same action, whatever the noise; its density is a point's, told as 0."""
