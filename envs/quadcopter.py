@@ -101,8 +101,11 @@ class Quadcopter:
     def pose(self, state: EnvState) -> Array:
         """Positions qpos [7] of the drawn world: place and quaternion."""
         R = state.data[3:12].reshape(3, 3)
-        x, y, z, w = jax.scipy.spatial.transform.Rotation.from_matrix(R).as_quat()
-        return jnp.concatenate([state.data[:3], jnp.stack([w, x, y, z])])
+        signs = jnp.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+        quat = 0.5 * jnp.sqrt(jnp.maximum(1 + signs @ jnp.diag(R), 0))
+        turn = jnp.stack([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+        quat = quat.at[1:].set(jnp.copysign(quat[1:], turn))
+        return jnp.concatenate([state.data[:3], quat / jnp.linalg.norm(quat)])
 
 
 def _hat(w: Array) -> Array:

@@ -32,7 +32,7 @@ KEYS = (
 )
 USAGE = [  # overrides of train, words of the line
     ("task=cartpool", "task=cartpool: unknown; choose one of cartpole, halfcheetah"),
-    ("algo=sacc", "algo=sacc: unknown; choose one of deterministic_mpc, hybrid_deterministic"),
+    ("algo=sacc", "algo=sacc: unknown; choose one of deterministic_mpc, fourier_ergodic"),
     ("task=null", "task=null: choose one of cartpole, halfcheetah"),
     ("env=null", "env=None: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),

@@ -9,13 +9,22 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.pendulum import Pendulum
+from hybrid_rl.envs.point_mass import PointMass
+from hybrid_rl.envs.quadcopter import Quadcopter
 
 DECISIONS = 20
-TASKS = {"halfcheetah": HalfCheetah, "hopper": Hopper, "cartpole": Cartpole, "pendulum": Pendulum}
+FORMULAS = {
+    "pendulum": Pendulum,
+    "point_mass": PointMass,
+    "cart_double_pendulum": CartDoublePendulum,
+    "quadcopter": Quadcopter,
+}
+TASKS = {"halfcheetah": HalfCheetah, "hopper": Hopper, "cartpole": Cartpole, **FORMULAS}
 SIMULATED = ("halfcheetah", "hopper", "cartpole")
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, world]
 IMPLEMENTATIONS = ("native", "mjx")
