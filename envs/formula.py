@@ -1,7 +1,7 @@
 """What worlds that are formulas share: one step of Runge and Kutta, and hills to search.
 
-    k_1 = f(x),  k_2 = f(x + k_1 dt/2),  k_3 = f(x + k_2 dt/2),  k_4 = f(x + k_3 dt)
-    x'  = x + (k_1 + 2 k_2 + 2 k_3 + k_4) dt / 6
+k_1 = f(x),  k_2 = f(x + k_1 dt/2),  k_3 = f(x + k_2 dt/2),  k_4 = f(x + k_3 dt)
+x'  = x + (k_1 + 2 k_2 + 2 k_3 + k_4) dt / 6
 """
 
 from collections.abc import Callable

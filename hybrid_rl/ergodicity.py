@@ -31,7 +31,7 @@ NAMES = {"kle3": "KL-ergodic", "fourier_ergodic": "Fourier", "kle3_jensen": "Jen
 GRID = 100  # cells a side
 VARIANCE = 0.005  # [m^2] of the average that the divergence is told of
 REACH = range(2, 13)  # dimensions whose cost is measured
-MOST = 5**8  # Fourier coefficients beyond which no memory is left
+MOST = 5**6  # Fourier coefficients beyond which no memory is left
 
 
 def paths(run: Run, seeds: int, steps: int) -> np.ndarray:
@@ -102,9 +102,7 @@ def averages(x: np.ndarray) -> dict[str, np.ndarray]:
     return {
         "raw: cells visited": np.kron(raw, np.ones((4, 4))) / raw.mean(),
         "Fourier, 20 cosines a side": _picture(fourier.features(s, *unit, 20) @ c),
-        "sum of Gaussians (6.1)": _picture(
-            jnp.exp(ergodic.log_sum(s, x, jnp.full(2, VARIANCE)))
-        ),
+        "sum of Gaussians (6.1)": _picture(jnp.exp(ergodic.log_sum(s, x, jnp.full(2, VARIANCE)))),
         "Jensen's bound (6.17)": _picture(jnp.exp(-0.5 * mean_apart / VARIANCE)),
     }
 
@@ -124,7 +122,9 @@ def control(seeds: int, steps: int) -> tuple[Any, dict]:
         panels[1][2].semilogy(t, middle, label=name)
         panels[1][2].fill_between(t, low, high, alpha=0.2, lw=0)
         if i < 2:
-            _show(panels[i][0], _picture(np.exp(_log_density(run, _grid()))), "target, path: " + name)
+            _show(
+                panels[i][0], _picture(np.exp(_log_density(run, _grid()))), "target, path: " + name
+            )
             panels[i][0].plot(*x[0].T, color="#D55E00", lw=0.7)
             _show(panels[i][1], averages(x[0])["sum of Gaussians (6.1)"], "its time average")
     panels[1][2].set(xlabel="Time [s]", title=f"D(p || q) [nat], {seeds} seeds")
@@ -143,7 +143,9 @@ def average(seeds: int, steps: int) -> tuple[Any, dict]:
     places = [panel for row in panels for panel in row]
     _show(places[0], np.full((GRID, GRID), np.nan), "path")
     places[0].plot(*x.T, color="#D55E00", lw=0.8)
-    for panel, (title, picture) in zip(places[1:], {"target": target, **pictures}.items(), strict=True):
+    for panel, (title, picture) in zip(
+        places[1:], {"target": target, **pictures}.items(), strict=True
+    ):
         _show(panel, picture, title)
     away = {name: float(np.abs(each - target).mean() / 2) for name, each in pictures.items()}
     negative = {name: float(-each[each < 0].sum() / each.size) for name, each in pictures.items()}
@@ -190,7 +192,9 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
             more = ["task=quadcopter", f"algo={algo}", "fourier_exploration.samples=100"]
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}
-        panels[0][0].semilogy(list(times), 1e3 * np.array(list(times.values())), "o-", label=NAMES[algo])
+        panels[0][0].semilogy(
+            list(times), 1e3 * np.array(list(times.values())), "o-", label=NAMES[algo]
+        )
     panels[0][0].set(xlabel="Dimension of the search space", ylabel="One plan [ms]")
     panels[0][0].legend()
     return figure, numbers

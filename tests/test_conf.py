@@ -73,11 +73,12 @@ def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
 def test_every_experiment_builds(experiment: str, algo: str) -> None:
     """The parts of an experiment accept their values, whatever the method that can do it."""
     given = config.load([f"experiment={experiment}", f"algo={algo}"])
-    try:
-        config.build(given)
-    except config.UsageError as error:
-        assert "needs a world that is a formula" in str(error)
-        assert given.task in ("cartpole", "halfcheetah", "hopper")
+    needs_a_formula = "'world'" in str(given.controllers)
+    if needs_a_formula and given.task in ("cartpole", "halfcheetah", "hopper"):
+        with pytest.raises(config.UsageError, match="needs a world that is a formula"):
+            config.build(given)
+        return
+    config.build(given)
 
 
 def test_thesis_parameters() -> None:

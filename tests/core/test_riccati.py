@@ -56,7 +56,7 @@ def test_point_mass_by_hand() -> None:
 
 def test_a_world_that_is_no_formula_is_named() -> None:
     """MuJoCo's cart and pole has no Jacobian here."""
-    with pytest.raises(ValueError, match="equilibrium.world=Cartpole: needs a world that is a"):
+    with pytest.raises(ValueError, match=r"equilibrium\.world=Cartpole: needs a world that is a"):
         Regulator(Cartpole("native"))
 
 
