@@ -95,14 +95,14 @@ def averages(x: np.ndarray) -> dict[str, np.ndarray]:
 
     from hybrid_rl.core import ergodic, fourier
 
-    s, x, unit = jnp.asarray(_grid()), jnp.asarray(x), ((0.0, 0.0), (1.0, 1.0))
+    s, at, unit = jnp.asarray(_grid()), jnp.asarray(x), ((0.0, 0.0), (1.0, 1.0))
     raw = np.histogram2d(x[:, 1], x[:, 0], bins=25, range=[[0, 1], [0, 1]])[0]
-    c = fourier.features(x, *unit, 20).mean(0)
-    mean_apart = jnp.mean(jnp.sum((s[:, None] - x[None]) ** 2, -1), 1)
+    c = fourier.features(at, *unit, 20).mean(0)
+    mean_apart = jnp.mean(jnp.sum((s[:, None] - at[None]) ** 2, -1), 1)
     return {
         "raw: cells visited": np.kron(raw, np.ones((4, 4))) / raw.mean(),
         "Fourier, 20 cosines a side": _picture(fourier.features(s, *unit, 20) @ c),
-        "sum of Gaussians (6.1)": _picture(jnp.exp(ergodic.log_sum(s, x, jnp.full(2, VARIANCE)))),
+        "sum of Gaussians (6.1)": _picture(jnp.exp(ergodic.log_sum(s, at, jnp.full(2, VARIANCE)))),
         "Jensen's bound (6.17)": _picture(jnp.exp(-0.5 * mean_apart / VARIANCE)),
     }
 

@@ -53,7 +53,8 @@ def plot(runs: str) -> tuple[Any, dict[str, Any]]:
     numbers: dict[str, Any] = {}
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(11.5, 3.2 + 1.9 * len(best)), layout="constrained")
-        above, below = figure.subfigures(2, 1, height_ratios=(3.2, 1.9 * len(best)))
+        halves: Any = figure.subfigures(2, 1, height_ratios=(3.2, 1.9 * len(best)))
+        above, below = halves
         found, stray = above.subplots(1, 2)
         looks = below.subplots(len(best), 2, squeeze=False)
         for (name, curve), (where, when) in zip(best.items(), looks, strict=True):
