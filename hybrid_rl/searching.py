@@ -35,10 +35,10 @@ def _seconds(curve: Curve) -> np.ndarray:
     return curve.x * build(config).agent.spec.dt
 
 
-def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str) -> None:
+def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str, colour: str) -> None:
     """Median and range of each [S, G] over trials."""
-    (line,) = axes.plot(x, np.median(each, 0), label=f"{name} ({len(each)} trials)")
-    axes.fill_between(x, each.min(0), each.max(0), color=line.get_color(), alpha=0.15, lw=0)
+    axes.plot(x, np.median(each, 0), color=colour, label=f"{name} ({len(each)} trials)")
+    axes.fill_between(x, each.min(0), each.max(0), color=colour, alpha=0.15, lw=0)
 
 
 def plot(runs: str) -> tuple[Any, dict[str, Any]]:
@@ -46,10 +46,11 @@ def plot(runs: str) -> tuple[Any, dict[str, Any]]:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from hybrid_rl.figures import STYLE
+    from hybrid_rl.figures import COLOURS, STYLE
 
     best, strayed = _by_label(runs, BEST), _by_label(runs, V)
     place, value = _by_label(runs, PLACE), _by_label(runs, VALUE)
+    colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(best)}
     numbers: dict[str, Any] = {}
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(11.5, 3.2 + 1.9 * len(best)), layout="constrained")
@@ -59,7 +60,7 @@ def plot(runs: str) -> tuple[Any, dict[str, Any]]:
         looks = below.subplots(len(best), 2, squeeze=False)
         for (name, curve), (where, when) in zip(best.items(), looks, strict=True):
             count = np.arange(1, curve.each.shape[1] + 1)
-            _band(found, count, curve.each, name)
+            _band(found, count, curve.each, name, colours[name])
             s, y = place[name].each[0], value[name].each[0]
             where.scatter(s, y, c=count, s=8, cmap="viridis")
             where.set(title=f"{name}: measurements, late ones light", xlim=(-1, 1), ylim=(0, 1.1))
@@ -67,9 +68,10 @@ def plot(runs: str) -> tuple[Any, dict[str, Any]]:
             when.set(title="where, by number", ylim=(-1, 1))
             numbers[name] = _said(curve.each)
         for name, curve in strayed.items():
-            _band(stray, _seconds(curve), curve.each, name)
+            _band(stray, _seconds(curve), curve.each, name, colours[name])
             peaks = curve.each.max(1)
-            numbers[name] |= {"V_peak": peaks.tolist(), "V_median": float(np.median(curve.each))}
+            numbers[name] |= {"V_peak": [round(float(peak), 1) for peak in peaks]}
+            numbers[name] |= {"V_median": round(float(np.median(curve.each)), 2)}
         found.set(xlabel="Measurements", title="Best value")
         stray.set(xlabel="Time [s]", title="Lyapunov function V", yscale="log")
         for axes in (found, stray):
@@ -83,7 +85,7 @@ def _said(each: np.ndarray) -> dict[str, Any]:
     late = [int(np.argmax(one > 0.95)) + 1 if one[-1] > 0.95 else None for one in each]
     return {
         "trials": len(each),
-        "median_best_after": {n: float(np.median(each[:, n - 1])) for n in marks},
+        "median_best_after": {n: round(float(np.median(each[:, n - 1])), 4) for n in marks},
         "measurements_to_95_percent": late,
     }
 
