@@ -26,6 +26,7 @@ SMALL = [
     "shooting_planner.iterations=2",
     "model_learner.batch_size=2",
     "policy_learner.batch_size=2",
+    "belief_learner.updates=1",
 ]
 PARTS = [
     path
