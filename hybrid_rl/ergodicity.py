@@ -22,7 +22,7 @@ from hybrid_rl.config import Run, UsageError, build, load
 DEFAULTS = {
     "view": "control",
     "out": "ergodicity.png",
-    "task": "quadcopter",  # of view=marginals
+    "task": "quadcopter_se3",  # of view=marginals
     "seeds": "10",
     "steps": "400",
 }
@@ -189,7 +189,7 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
             if algo == "fourier_ergodic" and 5**v > MOST:
                 break
             box = f"search.coordinates={order[:v]} search.low={[-1.0] * v} search.high={[1.0] * v}"
-            more = ["task=quadcopter", f"algo={algo}", "fourier_exploration.samples=100"]
+            more = ["task=quadcopter_se3", f"algo={algo}", "fourier_exploration.samples=100"]
             more.append("explorer.horizon=5")
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}

@@ -9,13 +9,13 @@ from scipy.integrate import solve_ivp
 
 from hybrid_rl.envs import cart_double_pendulum as cart
 from hybrid_rl.envs import formula, mjcf
-from hybrid_rl.envs import quadcopter as quad
+from hybrid_rl.envs import quadcopter_se3 as quad
 from hybrid_rl.envs.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.pendulum import Pendulum
 from hybrid_rl.envs.point_mass import DT, PUSH, PointMass
-from hybrid_rl.envs.quadcopter import Quadcopter
+from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
 
-EACH = [PointMass(), CartDoublePendulum(), Quadcopter(), Quadcopter(drag=False), Pendulum()]
+EACH = [PointMass(), CartDoublePendulum(), QuadcopterSE3(), QuadcopterSE3(drag=False), Pendulum()]
 over_worlds = pytest.mark.parametrize("world", EACH, ids=repr)
 
 
@@ -100,7 +100,7 @@ def twisted() -> np.ndarray:
     """A quadcopter [18] that turns and flies."""
     with jax.enable_x64(True):
         e = jnp.array([0.1, -0.2, 0.3, 0.2, -0.3, 0.1, 1.0, -0.5, 0.7, 2.0, -1.0, 1.5])
-        return np.asarray(Quadcopter().place(e))
+        return np.asarray(QuadcopterSE3().place(e))
 
 
 def test_quadcopter_against_an_accurate_integration() -> None:
@@ -125,7 +125,7 @@ def test_quadcopter_against_an_accurate_integration() -> None:
     start[12:15] = x[3:12].reshape(3, 3) @ x[12:15]
     end = solve_ivp(rate, (0, 0.5), start, rtol=1e-11, atol=1e-12).y[:, -1]
     end[12:15] = end[3:12].reshape(3, 3).T @ end[12:15]
-    got = follow(Quadcopter(drag=False), x, np.tile(u, (100, 1)))[-1]
+    got = follow(QuadcopterSE3(drag=False), x, np.tile(u, (100, 1)))[-1]
     np.testing.assert_allclose(got, end, atol=1e-6)
 
 
@@ -134,14 +134,14 @@ def test_quadcopter_falls_with_its_energy_and_drag_takes_some() -> None:
         fall = quad.MASS * (0.5 * np.sum(x[12:15] ** 2) + quad.G * x[2])
         return fall + 0.5 * np.sum(quad.INERTIA * x[15:] ** 2)
 
-    for world, loses in ((Quadcopter(drag=False), False), (Quadcopter(), True)):
+    for world, loses in ((QuadcopterSE3(drag=False), False), (QuadcopterSE3(), True)):
         path = follow(world, twisted(), np.zeros((100, 4)))
         lost = energy(path[0]) - energy(path[-1])
         assert (lost > 0.1) if loses else abs(lost) < 1e-6
 
 
 def test_quadcopter_stays_a_rotation() -> None:
-    R = follow(Quadcopter(), twisted(), np.full((1200, 4), 0.2))[-1, 3:12].reshape(3, 3)
+    R = follow(QuadcopterSE3(), twisted(), np.full((1200, 4), 0.2))[-1, 3:12].reshape(3, 3)
     np.testing.assert_allclose(R.T @ R, np.eye(3), atol=1e-9)
 
 
@@ -162,9 +162,9 @@ def test_scenes_show_the_same_body() -> None:
     np.testing.assert_allclose(data.body("upper").xpos, elbow, atol=1e-6)
     up = data.body("upper").xmat.reshape(3, 3)[:, 2]
     np.testing.assert_allclose(up, [np.sin(-0.3), 0, np.cos(-0.3)], atol=1e-6)
-    model = mjcf.load("quadcopter.xml")
+    model = mjcf.load("quadcopter_se3.xml")
     data, x = mujoco.MjData(model), twisted()
-    data.qpos[:] = Quadcopter().pose(formula.state(jnp.asarray(x), jnp.zeros(())))
+    data.qpos[:] = QuadcopterSE3().pose(formula.state(jnp.asarray(x), jnp.zeros(())))
     mujoco.mj_forward(model, data)
     np.testing.assert_allclose(data.body("frame").xmat, x[3:12], atol=1e-5)
 
@@ -183,4 +183,4 @@ def test_falling_ends_the_episode() -> None:
     assert world.step(lying, jnp.zeros(1)).terminated
     assert not world.step(world.reset(jax.random.key(0)), jnp.zeros(1)).terminated
     over = formula.state(jnp.asarray(twisted()).at[11].set(-0.5), jnp.zeros(()))
-    assert Quadcopter().step(over, jnp.zeros(4)).terminated
+    assert QuadcopterSE3().step(over, jnp.zeros(4)).terminated

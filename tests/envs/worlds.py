@@ -15,14 +15,14 @@ from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.pendulum import Pendulum
 from hybrid_rl.envs.point_mass import PointMass
-from hybrid_rl.envs.quadcopter import Quadcopter
+from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
 
 DECISIONS = 20
 FORMULAS = {
     "pendulum": Pendulum,
     "point_mass": PointMass,
     "cart_double_pendulum": CartDoublePendulum,
-    "quadcopter": Quadcopter,
+    "quadcopter_se3": QuadcopterSE3,
 }
 TASKS = {"halfcheetah": HalfCheetah, "hopper": Hopper, "cartpole": Cartpole, **FORMULAS}
 SIMULATED = ("halfcheetah", "hopper", "cartpole")

@@ -30,7 +30,7 @@ DRAG_V, DRAG_W = (0.4, 0.4, 2.0), (2.0, 2.0, 0.4)  # [1/s]
 
 
 @dataclass(frozen=True)
-class Quadcopter:
+class QuadcopterSE3:
     """Hovers. `physics` is accepted as everywhere, and changes nothing."""
 
     physics: str = "auto"
@@ -96,7 +96,7 @@ class Quadcopter:
 
     def scene(self) -> str:
         """MJCF text of the world as it is drawn."""
-        return mjcf.text("quadcopter.xml")
+        return mjcf.text("quadcopter_se3.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Positions qpos [7] of the drawn world: place and quaternion."""
