@@ -53,8 +53,23 @@ class Pendulum:
         u = TORQUE * jnp.clip(action[0], -1.0, 1.0)
         error = (theta + jnp.pi) % (2 * jnp.pi) - jnp.pi
         reward = -(error**2 + 0.1 * w**2 + 0.001 * u**2)
-        w = jnp.clip(w + (15.0 * jnp.sin(theta) + 3.0 * u) * DT, -SPEED, SPEED)
-        return _state(jnp.stack((theta + w * DT, w)), reward)
+        return _state(_next(theta, w, u), reward)
+
+    def flow(self, x: Array, u: Array) -> Array:
+        """The observation [3] that follows x [3] under u [1]."""
+        return _obs(_next(jnp.arctan2(x[1], x[0]), x[2], TORQUE * u[0]))
+
+    def rest(self) -> tuple[Array, Array]:
+        """Upright."""
+        return jnp.array([1.0, 0.0, 0.0]), jnp.zeros(1)
+
+    def deviation(self, x: Array) -> Array:
+        """Theta and w [2]."""
+        return jnp.stack((jnp.arctan2(x[1], x[0]), x[2]))
+
+    def place(self, e: Array) -> Array:
+        """The observation [3] at deviation e [2]."""
+        return _obs(e)
 
     def scene(self) -> str:
         """MJCF text of the world as it is drawn."""
@@ -65,8 +80,18 @@ class Pendulum:
         return state.data[:1]
 
 
+def _next(theta: Array, w: Array, u: Array) -> Array:
+    """Theta and w [2] one decision after theta [] and w [] under the torque u [] [N m]."""
+    w = jnp.clip(w + (15.0 * jnp.sin(theta) + 3.0 * u) * DT, -SPEED, SPEED)
+    return jnp.stack((theta + w * DT, w))
+
+
+def _obs(x: Array) -> Array:
+    """x: [2] theta [rad], w [rad/s]."""
+    return jnp.stack((jnp.cos(x[0]), jnp.sin(x[0]), x[1]))
+
+
 def _state(x: Array, reward: Array) -> EnvState:
     """x: [2] theta [rad], w [rad/s]."""
     no = jnp.zeros((), bool)
-    obs = jnp.stack((jnp.cos(x[0]), jnp.sin(x[0]), x[1]))
-    return EnvState(x, obs, reward, no, no, {}, {})
+    return EnvState(x, _obs(x), reward, no, no, {}, {})

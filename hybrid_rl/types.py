@@ -3,7 +3,8 @@
 Shapes, once for the whole project:
 
     o observation   n planning state   m action   T planning horizon [decisions]
-    K samples       B batch            E parallel worlds   C replay capacity
+    K samples       B batch            E parallel worlds   C capacity
+    s search state  v its size         N points of it
 
 Everything is written for ONE world and ONE sample; `jax.vmap` adds E, K, B and
 the seeds. Actions u lie in [-1, 1]^m everywhere; a world scales them to its own
@@ -104,6 +105,25 @@ class Env(Protocol):
         """Qpos [nq] of `scene` that shows `state`."""
 
 
+class Formula(Env, Protocol):
+    """A world whose motion is known in full: its observation is its whole state.
+
+    Around its equilibrium it has coordinates e [d], zero there, in which it can be linearised.
+    """
+
+    def flow(self, x: Array, u: Array) -> Array:
+        """The observation [o] that follows x [o] under u [m]."""
+
+    def rest(self) -> tuple[Array, Array]:
+        """The equilibrium: x [o] and u [m] with flow(x, u) = x."""
+
+    def deviation(self, x: Array) -> Array:
+        """e [d] of x [o]."""
+
+    def place(self, e: Array) -> Array:
+        """x [o] of e [d]; the inverse of `deviation`."""
+
+
 class Model(Protocol):
     """x' = f(x, u)."""
 
@@ -131,12 +151,39 @@ class Policy(Protocol):
 
 
 class Objective(Protocol):
-    """J(path), a return: what a planner maximises."""
+    """J(path), a return: what a planner maximises. It may couple all times, and the past."""
+
+    def begin(self, spec: Spec) -> PyTree:
+        """What it remembers before the first decision of an episode."""
+
+    def look(self, params: Params, memory: PyTree, x: Array, key: Array) -> PyTree:
+        """Memory at the planning state x [n] of now, with all chance that J needs, from `key`."""
+
+    def value(self, params: Params, memory: PyTree, path: Path) -> Array:
+        """J [] of a path that begins at that state."""
+
+
+class Staged(Objective, Protocol):
+    """An objective that is a sum over time."""
 
     discount: float  # per decision
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1]: the return from each time on. S[0] is J, S[T] the value of the last state."""
+
+
+class Target(Protocol):
+    """p(s): where in the search space there is something to learn."""
+
+    def log_density(self, params: Params, s: Array) -> Array:
+        """log p(s) [] at s [v], up to a constant."""
+
+
+class Lyapunov(Protocol):
+    """V(x) that falls under a policy."""
+
+    def lyapunov(self, x: Array) -> Array:
+        """V [] at x [n]."""
 
 
 class Proposal(Protocol):

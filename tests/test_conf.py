@@ -26,6 +26,7 @@ SMALL = [
     "shooting_planner.iterations=2",
     "model_learner.batch_size=2",
     "policy_learner.batch_size=2",
+    "belief_learner.updates=1",
 ]
 PARTS = [
     path
@@ -63,7 +64,7 @@ def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
     assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(run.agent.params(state)))
     assert int(state.env.info["decision"][0, 0]) == 8
     learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
-    assert learned
+    assert learned or not run.agent.learners
     for name in learned:
         assert jnp.isfinite(metrics[name][-1]).all()
 
@@ -71,8 +72,14 @@ def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
 @pytest.mark.parametrize("experiment", options("experiment"))
 @pytest.mark.parametrize("algo", options("algo"))
 def test_every_experiment_builds(experiment: str, algo: str) -> None:
-    """The parts of an experiment accept their values, whatever the method."""
-    config.build(config.load([f"experiment={experiment}", f"algo={algo}"]))
+    """The parts of an experiment accept their values, whatever the method that can do it."""
+    given = config.load([f"experiment={experiment}", f"algo={algo}"])
+    needs_a_formula = "'world'" in str(given.controllers)
+    if needs_a_formula and given.task in ("cartpole", "halfcheetah", "hopper"):
+        with pytest.raises(config.UsageError, match="needs a world that is a formula"):
+            config.build(given)
+        return
+    config.build(given)
 
 
 def test_thesis_parameters() -> None:

@@ -32,12 +32,12 @@ KEYS = (
     *("policy_learner.batch_size", "model_learner.batch_size"),
 )
 USAGE = [  # overrides of train, words of the line
-    ("task=cartpool", "task=cartpool: unknown; choose one of ant, cartpole, halfcheetah"),
-    ("algo=sacc", "algo=sacc: unknown; choose one of deterministic_mpc, hybrid_deterministic"),
-    ("task=null", "task=null: choose one of ant, cartpole, halfcheetah"),
+    ("task=cartpool", "task=cartpool: unknown; choose one of ant, anywhere"),
+    ("algo=sacc", "algo=sacc: unknown; choose one of bayesopt, deterministic_mpc"),
+    ("task=null", "task=null: choose one of ant, anywhere"),
     ("env=null", "env=None: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),
-    ("objective=foo", "objective=foo: unknown; choose one of learned_re"),
+    ("objective=foo", "objective=foo: unknown; choose one of climb, fourier_ergodic"),
     ("experiment=foo", "experiment=foo: unknown; choose one of thesis/"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of thesis/"),
     ("sed=3", "sed: unknown key; `python -m hybrid_rl.train --cfg job` shows"),

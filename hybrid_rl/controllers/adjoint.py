@@ -1,21 +1,38 @@
 """Receding-horizon control by the adjoint: correct the policy along the gradient of the return.
 
-    v <- clip(v + W_t g_t),   u = clip(pi(x_0) + v_0 + e),   e ~ N(0, s^2),  s = decay^decisions
+    v <- clip(v + W_t g_t),   u = clip(pi(x) + v_t + e),   e ~ N(0, s^2),  s = decay^decisions
 
 One iteration from v = 0 with W = Sigma(x), the policy's variance, is deterministic hybrid
 learning: u* = Sigma (f_u' rho_{t+1} + r_u) + mu (thesis Algorithm 2 and Theorem 1). Without a
 policy, with a warm start and several iterations, it is shooting model-predictive control.
+Around an equilibrium policy, with an ergodic objective and W = R^-1 / dt, it is KL-E3 (thesis
+Algorithm 6 and eq. 6.10). `apply` chooses the time tau and the duration lambda of the correction:
+
+    first    plan at every decision, tau = now, lambda = one decision
+    horizon  plan every T decisions, tau = now, lambda = T
+    search   plan every T decisions, tau and lambda of greatest return; the policy else
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, sampling
-from hybrid_rl.types import Model, Objective, Params, Path, Policy, Spec
+from hybrid_rl.core import adjoint, lyapunov, sampling
+from hybrid_rl.types import Lyapunov, Model, Objective, Params, Path, Policy, Spec
+
+APPLY = ("first", "horizon", "search")
+WINDOWS = 8  # places of tau, and lengths of lambda, that a search tells apart
+
+
+class Held(NamedTuple):
+    """What goes from one decision to the next."""
+
+    v: Array  # [T, m] the corrections that acted last, from then on
+    age: Array  # [] decisions since they were planned; 0: plan anew
+    memory: Any  # the objective's
 
 
 @dataclass(frozen=True)
@@ -36,6 +53,9 @@ class AdjointController:
     normalise: bool = False  # g by its root mean square over the horizon; W is then [u]
     costate_bound: float | None = None  # the author's clip of rho, 1
     noise_decay: float | None = 0.999  # of the executed noise, per decision of the run; None: none
+    apply: str = "first"  # first | horizon | search
+    lyapunov: Lyapunov | None = None  # whose record is logged; None: none
+    level: float | None = None  # the policy takes over where V would exceed it; None: never
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -49,64 +69,135 @@ class AdjointController:
             raise ValueError(f"adjoint planner: gain={self.gain}: must be above 0")
         if self.noise_decay is not None and not 0 < self.noise_decay <= 1:
             raise ValueError(f"adjoint planner: noise_decay={self.noise_decay}: must lie in (0, 1]")
+        if self.apply not in APPLY:
+            raise ValueError(f"adjoint planner: apply={self.apply}: choose {', '.join(APPLY)}")
+        if self.level is not None and (self.lyapunov is None or self.policy is None):
+            raise ValueError(f"adjoint planner: level={self.level}: needs lyapunov and policy")
 
-    def init(self, spec: Spec) -> Array:
-        """No correction [T, m]."""
-        return jnp.zeros((self.horizon, spec.act))
+    def init(self, spec: Spec) -> Held:
+        """No correction, nothing seen."""
+        v = jnp.zeros((self.horizon, spec.act))
+        return Held(v, jnp.zeros((), jnp.int32), self.objective.begin(spec))
 
     def act(
-        self, params: Params, state: Array, obs: Array, key: Array
-    ) -> tuple[Array, Array, dict[str, Array]]:
+        self, params: Params, state: Held, obs: Array, key: Array
+    ) -> tuple[Array, Held, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
+        looking, noising = jax.random.split(key)
         x = self.model.lift(params.model, obs)
-        v = sampling.shift(state) if self.warm_start else jnp.zeros_like(state)
-
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
-
-        def default(x: Array) -> Array:
-            if self.policy is None:
-                return jnp.zeros(v.shape[1])
-            return self.policy.mean(params.policy, x)
-
-        def value(path: Path) -> Array:
-            return self.objective.reward_to_go(params, path)[0]
-
-        def better(v: Array, _: None) -> tuple[Array, None]:
-            path = adjoint.roll(step, default, x, v)
-            g = adjoint.adjoint(step, default, value, path, self.costate_bound).gradient
-            if self.normalise:
-                g = g / (jnp.sqrt(jnp.mean(g**2)) + 1e-6)
-            u = path.u + self._gain(params, path.x[:-1]) * g
-            return jnp.clip(u, -1, 1) - (path.u - v), None
-
-        v = jax.lax.scan(better, v, None, length=self.iterations)[0]
-        mean = default(x)
-        action = mean + v[0]
-        nominal = adjoint.roll(step, default, x, jnp.zeros_like(v))
-        around = adjoint.adjoint(step, default, value, nominal)
-        metrics = {
-            "planner/mode_insertion_gradient": adjoint.mode_insertion_gradient(
-                step, value, around, action
-            ),
-            "planner/planned_return": value(adjoint.roll(step, default, x, v)),
-        }
-        if self.policy is not None:
-            own, correction = jnp.linalg.norm(mean), jnp.linalg.norm(action - mean)
-            metrics["planner/policy_share"] = own / (own + correction + 1e-6)
+        memory = self.objective.look(params, state.memory, x, looking)
+        plan = _Plan(self, params, memory, x, state.v.shape[1])
+        left = sampling.shift(state.v)
+        held = left if self.warm_start else jnp.where(state.age > 0, left, 0)
+        if self.apply == "first":
+            v, age = plan.better(held), state.age
+        else:
+            v = jax.lax.cond(state.age == 0, lambda v: plan.window(plan.better(v)), _same, held)
+            age = (state.age + 1) % self.horizon
+        action, metrics = plan.mean(x) + v[0], plan.metrics(v)
         if self.noise_decay is not None:
             decisions: Any = params.decisions
-            spread = self.noise_decay**decisions
-            action = action + spread * jax.random.normal(key, action.shape)
-        return jnp.clip(action, -1, 1), v, metrics
-
-    def _gain(self, params: Params, x: Array) -> Array | float:
-        """W at x [T, n]."""
-        if self.gain is not None:
-            return self.gain
-        policy: Any = self.policy  # of which __post_init__ made sure
-        return jax.vmap(policy.variance, (None, 0))(params.policy, x)
+            action += self.noise_decay**decisions * jax.random.normal(noising, action.shape)
+        action = jnp.clip(action, -1, 1)
+        if self.level is not None:
+            out = plan.leaves(action, self.level)
+            action = jnp.where(out, jnp.clip(plan.mean(x), -1, 1), action)
+            metrics["planner/handed_over"] = out.astype(jnp.float32)
+        return action, Held(v, age, memory), metrics
 
     def greedy(self) -> "AdjointController":
         """Without noise."""
         return replace(self, noise_decay=None)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """The problem of one decision, at x [n]."""
+
+    of: AdjointController
+    params: Params
+    memory: Any
+    x: Array
+    act: int  # m
+
+    def step(self, x: Array, u: Array) -> Array:
+        """The model."""
+        return self.of.model.step(self.params.model, x, u)
+
+    def mean(self, x: Array) -> Array:
+        """What is corrected."""
+        if self.of.policy is None:
+            return jnp.zeros(self.act)
+        return self.of.policy.mean(self.params.policy, x)
+
+    def value(self, path: Path) -> Array:
+        """J []."""
+        return self.of.objective.value(self.params, self.memory, path)
+
+    def roll(self, v: Array) -> Path:
+        """The path under corrections v [T, m]."""
+        return adjoint.roll(self.step, self.mean, self.x, v)
+
+    def better(self, v: Array) -> Array:
+        """Corrections [T, m] of more return than v [T, m]."""
+
+        def once(v: Array, _: None) -> tuple[Array, None]:
+            path, bound = self.roll(v), self.of.costate_bound
+            g = adjoint.adjoint(self.step, self.mean, self.value, path, bound).gradient
+            if self.of.normalise:
+                g = g / (jnp.sqrt(jnp.mean(g**2)) + 1e-6)
+            u = path.u + self._gain(path.x[:-1]) * g
+            return jnp.clip(u, -1, 1) - (path.u - v), None
+
+        return jax.lax.scan(once, v, None, length=self.of.iterations)[0]
+
+    def _gain(self, x: Array) -> Array | float:
+        """W at x [T, n]."""
+        if self.of.gain is not None:
+            return self.of.gain
+        policy: Any = self.of.policy  # of which __post_init__ made sure
+        return jax.vmap(policy.variance, (None, 0))(self.params.policy, x)
+
+    def window(self, v: Array) -> Array:
+        """V [T, m], or with `search` the part of it, zero elsewhere, that earns most."""
+        if self.of.apply != "search":
+            return v
+        T = len(v)
+        marks = sorted({round(T * i / WINDOWS) for i in range(WINDOWS + 1)})
+        begin, end = jnp.array([(a, b) for a in marks for b in marks if a < b]).T
+        t = jnp.arange(T)[None]
+        inside = (begin[:, None] <= t) & (t < end[:, None])
+        parts = jnp.where(inside[:, :, None], v[None], 0)
+        returns = jax.vmap(lambda v: self.value(self.roll(v)))(parts)
+        return parts[jnp.argmax(returns)]
+
+    def leaves(self, u: Array, level: float) -> Array:
+        """[] bool: whether u [m] leads out of the level set."""
+        inside: Any = self.of.lyapunov
+        return lyapunov.leaves(inside.lyapunov, self.step, self.x, u, level)
+
+    def metrics(self, v: Array) -> dict[str, Array]:
+        """What is logged of corrections v [T, m]."""
+        mean, path, nominal = self.mean(self.x), self.roll(v), self.roll(0 * v)
+        action = mean + v[0]
+        around = adjoint.adjoint(self.step, self.mean, self.value, nominal)
+        insertion = adjoint.mode_insertion_gradient(self.step, self.value, around, action)
+        found = {
+            "planner/mode_insertion_gradient": insertion,
+            "planner/planned_return": self.value(path),
+        }
+        if self.of.policy is not None:
+            own, correction = jnp.linalg.norm(mean), jnp.linalg.norm(action - mean)
+            found["planner/policy_share"] = own / (own + correction + 1e-6)
+        if self.of.lyapunov is not None:
+            kept = lyapunov.record(self.of.lyapunov.lyapunov, self.step, self.mean, path)
+            found |= {
+                "planner/lyapunov": kept.now,
+                "planner/lyapunov_rate": kept.rate,
+                "planner/lyapunov_bound": kept.bound,
+            }
+        return found
+
+
+def _same(v: Array) -> Array:
+    return v

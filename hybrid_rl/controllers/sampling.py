@@ -14,7 +14,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, sampling
-from hybrid_rl.types import Model, Objective, Params, Path, Policy, Proposal, Spec
+from hybrid_rl.types import Model, Params, Path, Policy, Proposal, Spec, Staged
 
 EXECUTE = ("mean", "sample")
 
@@ -29,7 +29,7 @@ class SamplingController:
     """
 
     model: Model
-    objective: Objective
+    objective: Staged
     proposal: Proposal
     policy: Policy | None = None  # only to log how far the plan agrees with it
     horizon: int = 5  # T [decisions]

@@ -79,6 +79,18 @@ class LearnedReward:
         error = 0.5 * (target - r) ** 2
         return error + jax.nn.softplus(logit) - ended * logit if self.ends else error
 
+    def begin(self, spec: Spec) -> tuple[()]:
+        """Nothing: what was earned earlier changes no decision."""
+        return ()
+
+    def look(self, params: Params, memory: tuple[()], x: Array, key: Array) -> tuple[()]:
+        """Still nothing."""
+        return memory
+
+    def value(self, params: Params, memory: tuple[()], path: Path) -> Array:
+        """J [] of `path`."""
+        return self.reward_to_go(params, path)[0]
+
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
         rate = jax.vmap(self.outcome, (None, 0, 0))

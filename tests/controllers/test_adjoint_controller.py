@@ -33,12 +33,18 @@ class Speed:
     """J = sum of speeds, less a price of action."""
 
     price: float = 0.0
-    discount: float = 1.0
 
-    def reward_to_go(self, params: Any, path: Path) -> Array:
-        """Only its first entry is asked for."""
-        price = self.price * jnp.sum(path.u**2)
-        return jnp.full(len(path.x), jnp.sum(path.x[1:, 1]) - price)
+    def begin(self, spec: Spec) -> tuple[()]:
+        """Nothing is remembered."""
+        return ()
+
+    def look(self, params: Any, memory: Any, x: Array, key: Array) -> Any:
+        """Nothing is drawn."""
+        return memory
+
+    def value(self, params: Any, memory: Any, path: Path) -> Array:
+        """J []."""
+        return jnp.sum(path.x[1:, 1]) - self.price * jnp.sum(path.u**2)
 
 
 @dataclass(frozen=True)
@@ -83,7 +89,7 @@ def test_shooting_finds_the_optimum() -> None:
     controller = AdjointController(
         Cart(), Speed(price=1.0), horizon=horizon, iterations=200, gain=0.1, noise_decay=None
     )
-    u, plan, _ = act(controller)
+    u, (plan, *_), _ = act(controller)
     wanted = 0.05 * np.arange(horizon, 0, -1)
     np.testing.assert_allclose(plan[:, 0], wanted, atol=1e-5)
     assert float(u[0]) == pytest.approx(wanted[0], abs=1e-5)

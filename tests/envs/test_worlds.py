@@ -4,9 +4,19 @@ import jax
 import mujoco
 import numpy as np
 import pytest
-from worlds import BROKEN, DECISIONS, IMPLEMENTATIONS, OTHER, TASKS, TOUCHING, make, rollout
+from worlds import (
+    BROKEN,
+    DECISIONS,
+    FORMULAS,
+    IMPLEMENTATIONS,
+    OTHER,
+    TASKS,
+    TOUCHING,
+    make,
+    rollout,
+)
 
-CASES = [(t, i) for t in TASKS for i in IMPLEMENTATIONS if (t, i) != ("pendulum", "mjx")]
+CASES = [(t, i) for t in TASKS for i in IMPLEMENTATIONS if t not in FORMULAS or i == "native"]
 
 
 @pytest.fixture(params=CASES, ids="-".join)

@@ -10,27 +10,36 @@ import numpy as np
 
 from hybrid_rl.envs import mjcf
 from hybrid_rl.envs.ant import Ant
+from hybrid_rl.envs.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.pendulum import Pendulum
+from hybrid_rl.envs.point_mass import PointMass
 from hybrid_rl.envs.quadcopter import Quadcopter
+from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 
 DECISIONS = 20
+FORMULAS = {
+    "pendulum": Pendulum,
+    "point_mass": PointMass,
+    "cart_double_pendulum": CartDoublePendulum,
+    "quadcopter_se3": QuadcopterSE3,
+}
 TASKS = {
     "halfcheetah": HalfCheetah,
     "hopper": Hopper,
     "cartpole": Cartpole,
-    "pendulum": Pendulum,
     "ant": Ant,
     "quadcopter": Quadcopter,
     "sawyer_push": SawyerPush,
     "panda_stack": PandaStack,
+    **FORMULAS,
 }
 FIELDS = {"ant": {"integrator": "euler"}, "quadcopter": {"task": "track", "damping": True}}
-SIMULATED = tuple(task for task in TASKS if task != "pendulum")
+SIMULATED = tuple(task for task in TASKS if task not in FORMULAS)
 ARMS = ("sawyer_push", "panda_stack")  # controls follow from states
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, world]
 IMPLEMENTATIONS = ("native", "mjx")
@@ -109,7 +118,7 @@ def start(env):
     Sawyer's block stands before the rod, Panda's hangs between the fingers.
     """
     first = _first(task_of(env))
-    qpos = first.data.qpos if task_of(env) != "pendulum" else None
+    qpos = first.data.qpos if task_of(env) in SIMULATED else None
     if isinstance(env, SawyerPush):
         tip = TIP.pose(qpos)[0]
         qpos = qpos.at[7:9].set(tip[:2] + jnp.array([0.04, 0.0])).at[10:].set(jnp.eye(4)[0])

@@ -1,0 +1,75 @@
+"""The regulator."""
+
+import jax
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from hybrid_rl.core import riccati
+from hybrid_rl.envs.cart_double_pendulum import FORCE, CartDoublePendulum
+from hybrid_rl.envs.cartpole import Cartpole
+from hybrid_rl.envs.point_mass import PointMass
+from hybrid_rl.policies.regulator import Regulator
+
+
+def test_value_is_the_cost_of_the_regulator() -> None:
+    """e' P e is the sum over a long time."""
+    A, B = np.array([[1.0, 0.1], [0.3, 1.1]]), np.array([[0.0], [0.2]])
+    Q, R = np.diag([1.0, 2.0]), np.array([[0.5]])
+    K, P = riccati.regulator(A, B, Q, R)
+    first, cost = np.array([0.7, -0.2]), 0.0
+    e = first
+    for _ in range(500):
+        u = -K @ e
+        cost += e @ Q @ e + u @ R @ u
+        e = A @ e + B @ u
+    assert cost == pytest.approx(first @ P @ first, rel=1e-9)
+
+
+def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
+    """Bogdanov 2004: +4.10 and +10.39 [1/s], and their mirror images."""
+    A = riccati.around_rest(CartDoublePendulum())[0]
+    poles = np.sort(np.log(np.linalg.eigvals(A).real) / 0.01)
+    np.testing.assert_allclose(poles, [-10.39, -4.10, 0, 0, 4.10, 10.39], atol=0.01)
+
+
+def test_slow_gains_are_those_of_continuous_time() -> None:
+    """K [N per unit] for Q diag(5 50 50 20 700 700), R 1: within a decision's delay."""
+    weights = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)
+    policy = Regulator(CartDoublePendulum(), weights, (FORCE**2,))
+    K = FORCE * policy.solve()[0][0]
+    continuous = np.array([2.236, -492.6, 570.9, 8.246, -18.98, 88.29])
+    A, B = riccati.around_rest(policy.world)
+    held = np.abs(np.linalg.eigvals(A - B * K / FORCE)).max()
+    assert held < 1
+    np.testing.assert_array_equal(np.sign(K), np.sign(continuous))
+    np.testing.assert_allclose(K, continuous, rtol=0.35)
+
+
+def test_point_mass_by_hand() -> None:
+    """Its Jacobians are those of two double integrators."""
+    A, B = riccati.around_rest(PointMass())
+    block = expm(0.1 * np.array([[0, 1.0, 0], [0, 0, 2.0], [0, 0, 0]]))
+    np.testing.assert_allclose(A[np.ix_([0, 2], [0, 2])], block[:2, :2], atol=1e-12)
+    np.testing.assert_allclose(B[[0, 2], 0], block[:2, 2], atol=1e-12)
+
+
+def test_a_world_that_is_no_formula_is_named() -> None:
+    """MuJoCo's cart and pole has no Jacobian here."""
+    with pytest.raises(ValueError, match=r"equilibrium\.world=Cartpole: needs a world that is a"):
+        Regulator(Cartpole("native"))
+
+
+@pytest.mark.parametrize("weights", [(1.0, 2.0), (0.0,)])
+def test_weights_that_do_not_fit_are_named(weights) -> None:
+    """Too many, or not positive."""
+    with pytest.raises(ValueError, match="state_weights"):
+        Regulator(CartDoublePendulum(), weights).solve()
+
+
+def test_solved_inside_a_compiled_program() -> None:
+    """Nothing of it is traced."""
+    policy = Regulator(PointMass(), (2.0,))
+    x = np.array([0.9, 0.1, 0.3, 0.0])
+    inside = jax.jit(lambda x: policy.mean((), x))(x)
+    np.testing.assert_allclose(inside, policy.mean((), x), rtol=1e-6)

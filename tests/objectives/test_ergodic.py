@@ -1,0 +1,144 @@
+"""Ergodic objectives against finite differences, grids, and what is known of their optima."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
+from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic
+from hybrid_rl.targets.mixture import Mixture
+from hybrid_rl.types import Params, Path, Spec
+
+SPEC = Spec(obs=3, act=1, dt=0.1)
+MEANS = np.array([[0.3, 0.2], [-0.4, -0.1]])
+TARGET = Mixture(tuple(map(tuple, MEANS)), (0.2, 0.3), (1.0, 2.0))
+BOX = {"coordinates": (2, 0), "low": (-1.0, -0.8), "high": (1.0, 1.2)}
+KL = KLErgodic(TARGET, **BOX, samples=50, variance=(0.05, 0.1), memory=4, floor=1e-3, barrier=2.0)
+EACH = {
+    "kl": KL,
+    "jensen": JensenErgodic(TARGET, **BOX, samples=50, variance=(0.1,), barrier=2.0),
+    "fourier": FourierErgodic(TARGET, **BOX, samples=50, modes=4, barrier=2.0),
+}
+
+
+def walk(length: int, seed: int = 0) -> np.ndarray:
+    """States [length, 3], partly outside of the box."""
+    return np.cumsum(np.random.default_rng(seed).normal(0, 0.4, (length, 3)), 0)
+
+
+def seen(objective, past: np.ndarray):
+    """Its memory after the states `past` [P, 3]."""
+    memory = objective.begin(SPEC)
+    for i, x in enumerate(past):
+        memory = objective.look(Params(), memory, jnp.asarray(x), jax.random.key(i))
+    return memory
+
+
+def p_of(s: np.ndarray) -> np.ndarray:
+    """The target's density at s [N, 2], by SciPy."""
+    each = [
+        w * np.prod(norm.pdf(s, mean, std), -1)
+        for w, mean, std in zip((1 / 3, 2 / 3), MEANS, (0.2, 0.3), strict=True)
+    ]
+    return np.sum(each, 0)
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_gradient_is_that_of_finite_differences(name) -> None:
+    """For every state of a path, with a past, a floor and a barrier."""
+    with jax.enable_x64(True):
+        objective, x = EACH[name], walk(6)
+        memory = seen(objective, walk(6, seed=1))
+
+        def value(x):
+            return objective.value(Params(), memory, Path(x, jnp.zeros((5, 1))))
+
+        got, wanted = jax.grad(value)(jnp.asarray(x)), np.zeros_like(x)
+        for place in np.ndindex(*x.shape):
+            step = np.zeros_like(x)
+            step[place] = 1e-6
+            wanted[place] = (value(x + step) - value(x - step)) / 2e-6
+    assert np.abs(wanted[:, [0, 2]]).max() > 1e-3
+    np.testing.assert_allclose(got, wanted, rtol=1e-5, atol=1e-7)
+    np.testing.assert_array_equal(got[:, 1], 0)  # not searched
+
+
+def test_measure_is_the_divergence_on_a_grid() -> None:
+    """D(p || q), with p normalised over the box, of the last states and the path together."""
+    objective = replace(KL, samples=200_000, floor=0.0, barrier=0.0)
+    past, path = 0.5 * walk(7, seed=2), 0.5 * walk(6)
+    path[0] = past[-1]
+    memory = seen(objective, past)
+    got = -objective.value(Params(), memory, Path(jnp.asarray(path), jnp.zeros((5, 1))))
+    sides = [np.linspace(a, b, 401) for a, b in zip(BOX["low"], BOX["high"], strict=True)]
+    s = np.stack(np.meshgrid(*[(v[1:] + v[:-1]) / 2 for v in sides], indexing="ij"), -1)
+    s, cell = s.reshape(-1, 2), 2.0 / 400 * 2.0 / 400
+    counted = np.concatenate([past[2:-1], path])[:, [2, 0]]  # M = 4, and the path with today
+    q = np.mean([np.prod(norm.pdf(s, x, np.sqrt([0.05, 0.1])), -1) for x in counted], 0)
+    p = p_of(s) / (p_of(s).sum() * cell)
+    assert float(got) == pytest.approx(float(np.sum(p * np.log(p / q)) * cell), rel=0.01)
+
+
+def test_the_bound_follows_the_mean_alone() -> None:
+    """Two targets of one mean give one gradient, towards it; the measure tells them apart."""
+    x = jnp.array([[0.1, 0.0, 0.2]] * 3)
+    grads = {}
+    for apart in (0.05, 0.5):
+        target = Mixture(((apart, 0.2), (-apart, 0.2)), (0.1, 0.1), (1.0, 1.0))
+        for name in ("jensen", "kl"):
+            objective = replace(EACH[name], target=target, samples=100_000, barrier=0.0)
+            memory = seen(objective, x[:1])
+            path = Path(x, jnp.zeros((2, 1)))
+            slope = jax.grad(lambda p, o=objective, m=memory: o.value(Params(), m, p))(path)
+            grads[name, apart] = np.asarray(slope.x)[:, [2, 0]]
+    wanted = -(np.array([0.2, 0.1]) - [0.0, 0.2]) / 0.1 / 3
+    for apart in (0.05, 0.5):
+        np.testing.assert_allclose(grads["jensen", apart][0], wanted, atol=0.02)
+    assert np.abs(grads["kl", 0.05] - grads["kl", 0.5]).max() > 0.1
+
+
+def test_fourier_metric_vanishes_on_a_path_that_is_the_target() -> None:
+    """A path through draws of p has p's coefficients; one that stands still has not."""
+    objective = replace(EACH["fourier"], samples=100_000, barrier=0.0)
+    rng = np.random.default_rng(0)
+    which = rng.random(40_000) < 1 / 3
+    s = np.where(which[:, None], MEANS[0], MEANS[1])
+    s = s + rng.normal(size=s.shape) * np.where(which, 0.2, 0.3)[:, None]
+    x = np.zeros((len(s), 3))
+    x[:, 2], x[:, 0] = s[:, 0], s[:, 1]
+    memory = seen(objective, x[:1])
+    values = [
+        float(objective.value(Params(), memory, Path(jnp.asarray(x), jnp.zeros((1, 1)))))
+        for x in (x, 0 * x)
+    ]
+    assert -1e-3 < values[0] <= 0
+    assert values[1] < 100 * values[0]
+
+
+def test_fourier_memory_is_the_mean_over_all_states() -> None:
+    """In one piece or step by step: the same coefficients."""
+    objective, x = EACH["fourier"], jnp.asarray(walk(9))
+    memory = seen(objective, x[:5])
+    got = objective.average(memory, Path(x[4:], jnp.zeros((4, 1))))
+    np.testing.assert_allclose(got, objective.features(x[:, jnp.array([2, 0])]).mean(0), atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"low": (-1.0,)}, "of one length"),
+        ({"low": (2.0, -1.0)}, r"low=\[2.0, -1.0\] must lie below"),
+        ({"variance": (0.1, 0.1, 0.1)}, "variance"),
+        ({"variance": (0.0,)}, "variance"),
+        ({"samples": 0}, "samples must be 1 or more"),
+        ({"floor": -1.0}, "floor and barrier"),
+    ],
+)
+def test_bad_fields(change, words) -> None:
+    """One line that names the field."""
+    with pytest.raises(ValueError, match=words):
+        replace(KL, **change)

@@ -1,0 +1,48 @@
+"""Targets against SciPy and by hand."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from hybrid_rl.targets.mixture import Mixture
+from hybrid_rl.targets.upper_bound import UpperBound
+from hybrid_rl.types import Params
+
+
+def test_mixture_is_scipys() -> None:
+    """Weights of any sum; means continued into more dimensions."""
+    target = Mixture(((0.1, 0.4), (-0.3, 0.2)), (0.2, 0.5), (1.0, 3.0))
+    for size in (1, 2, 4):
+        s = np.linspace(-0.2, 0.3, size)
+        wanted = 0.0
+        for w, mean, std in zip((0.25, 0.75), target.means, target.stds, strict=True):
+            centre = [*mean, mean[-1], mean[-1]][:size]
+            wanted += w * multivariate_normal.pdf(s, centre, std**2 * np.eye(size))
+        got = target.log_density(Params(), jnp.asarray(s, jnp.float32))
+        assert float(got) == pytest.approx(np.log(wanted), rel=1e-4)
+
+
+@dataclass(frozen=True)
+class Flat:
+    """Mean 2, deviation 0.5."""
+
+    def predict(self, known: Any, s: Any) -> tuple:
+        """The same everywhere."""
+        return jnp.float32(2.0), jnp.float32(0.5)
+
+
+def test_upper_bound_by_hand() -> None:
+    """c (mean + kappa std)."""
+    target = UpperBound(Flat(), kappa=3.0, sharpness=4.0)
+    assert float(target.log_density(Params(), jnp.zeros(1))) == pytest.approx(4 * 3.5)
+
+
+@pytest.mark.parametrize("change", [{"stds": (0.1,)}, {"weights": (0.0, 1.0)}])
+def test_bad_mixtures_are_named(change) -> None:
+    """Lengths and signs."""
+    with pytest.raises(ValueError, match=next(iter(change))):
+        Mixture(**change)
