@@ -268,7 +268,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
     assert call_train(f"resume={folder}") == 0
     theirs, ours = (copied / "metrics.jsonl", folder / "metrics.jsonl")
     last = [json.loads(path.read_text().splitlines()[-1]) for path in (theirs, ours)]
-    assert last[0]["eval/return"] == last[1]["eval/return"]
+    assert last[0]["eval/return"] == pytest.approx(last[1]["eval/return"], rel=1e-3)
 
 
 def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
