@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import pytest
 from hydra.utils import get_class
 from omegaconf import OmegaConf
+from tiny import demonstrate
 
 from hybrid_rl import config
 from hybrid_rl.command import options
@@ -27,6 +28,8 @@ SMALL = [
     "model_learner.batch_size=2",
     "policy_learner.batch_size=2",
     "belief_learner.updates=1",
+    "cloning_learner.batch_size=2",
+    "cloning_learner.updates=1",
 ]
 PARTS = [
     path
@@ -54,9 +57,12 @@ EACH = [  # every method on one task, and one method on every task
 
 
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
-def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
+def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite."""
-    run = config.build(config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]))
+    given = [f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]
+    if config.load(given).head_start:
+        given += ["head_start=2", demonstrate(tmp_path, config.load(given))]
+    run = config.build(config.load(given))
     loop = Loop(run.agent, run.seeds, stride=8)
     state = loop.init()
     program = loop.compile(state)
@@ -71,9 +77,12 @@ def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
 
 @pytest.mark.parametrize("experiment", options("experiment"))
 @pytest.mark.parametrize("algo", options("algo"))
-def test_every_experiment_builds(experiment: str, algo: str) -> None:
+def test_every_experiment_builds(experiment: str, algo: str, tmp_path: Path) -> None:
     """The parts of an experiment accept their values, whatever the method that can do it."""
-    given = config.load([f"experiment={experiment}", f"algo={algo}"])
+    line = [f"experiment={experiment}", f"algo={algo}"]
+    given = config.load(line)
+    if given.replay.demonstrations is not None:
+        given = config.load([*line, demonstrate(tmp_path, given)])
     needs_a_formula = "'world'" in str(given.controllers)
     if needs_a_formula and given.task in ("cartpole", "halfcheetah", "hopper"):
         with pytest.raises(config.UsageError, match="needs a world that is a formula"):
@@ -96,6 +105,16 @@ def test_thesis_parameters() -> None:
         assert got == (horizon, steps, samples, temperature)
         assert c.task == task
         assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
+    robots = {  # figure -> task, H, T, K, lambda, policy
+        "fig_3_3": ("sawyer_push", 10, 100, 10, 0.01, [128, 128]),
+        "fig_3_5": ("ant", 20, 400, 40, 1.0, [128, 64]),
+        "fig_3_6": ("panda_stack", 40, 200, 40, 1.0, [32, 24]),
+    }
+    for figure, row in robots.items():
+        c = config.load([f"experiment=thesis/{figure}"])
+        p = c.planner
+        got = (c.task, p.horizon, c.episode.steps, p.samples, p.temperature, c.policy.hidden)
+        assert got == row
 
 
 def test_two_copies_are_equal_by_value() -> None:
