@@ -1,7 +1,8 @@
-"""`python -m hybrid_rl.demonstrate task=T [episodes=10] [out=FILE]`: what an expert does, as a file.
+"""`python -m hybrid_rl.demonstrate task=T [episodes=10] [out=FILE]`: an expert in a file.
 
-FILE is demonstrations/T.npz where nothing else is said. The expert is the task's own, by hand; with run=DIR it is what was learned there (mode: full,
-policy or planner; the first seed), without exploration. Episode i begins by the key i of `seed`.
+FILE is demonstrations/T.npz if nothing else is said. The expert is the task's own, by hand; with
+run=DIR it is what was learned there (mode: full, policy or planner; the first seed), without
+exploration. Episode i begins by the key i of `seed`.
 """
 
 from dataclasses import dataclass

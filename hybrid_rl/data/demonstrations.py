@@ -47,7 +47,7 @@ def load(file: Path | str) -> dict[str, np.ndarray]:
     if not Path(file).is_file():
         raise ValueError(f"{said} no such file; `python -m hybrid_rl.demonstrate` records one")
     try:
-        with np.load(file, allow_pickle=False) as held:
+        with Path(file).open("rb") as data, np.load(data, allow_pickle=False) as held:
             found = {name: held[name] for name in held.files}
     except UNREADABLE as error:
         raise ValueError(f"{said} is damaged, cut short, or no .npz file") from error
@@ -128,4 +128,5 @@ class Demonstrations:
         wanted = episode[-1] + 1 if self.episodes is None else self.episodes
         if wanted > episode[-1] + 1:
             raise ValueError(f"num_demonstrations={wanted}: {self.file} has {episode[-1] + 1}")
-        return Transition(*(found[name][episode < wanted] for name in ROWS))
+        rows: Any = (found[name][episode < wanted] for name in ROWS)
+        return Transition(*rows)

@@ -34,7 +34,7 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "deep" / "file.npz"
 
 
-def recalled(file: Path, **fields: object) -> Transition:
+def recalled(file: Path, /, **fields: object) -> Transition:
     """What a task takes from it."""
     return Demonstrations(
         **{"file": str(file), "task": "pendulum", "world": Pendulum()} | fields
