@@ -101,7 +101,7 @@ class Demonstrations:
     file: str
     task: str
     world: Env
-    action_repeat: int = 1
+    episode: Any = None  # its `action_repeat`, as in the configuration; None: 1
     episodes: int | None = None  # None: all
 
     def __post_init__(self) -> None:
@@ -121,7 +121,7 @@ class Demonstrations:
         ):
             if has != needs:
                 raise ValueError(f"{said} {name} has {has} numbers, this {self.task} has {needs}")
-        dt = spec.dt * self.action_repeat
+        dt = spec.dt * (self.episode or {"action_repeat": 1})["action_repeat"]
         if not np.isclose(found["dt"], dt):
             raise ValueError(f"{said} decides every {found['dt']:g} s, this {self.task} {dt:g} s")
         _, episode = np.unique(found["episode"], return_inverse=True)

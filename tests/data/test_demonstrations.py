@@ -63,7 +63,7 @@ def test_the_first_episodes_are_taken(file: Path, episodes: int) -> None:
         ({"task": "cartpole"}, "is of task pendulum, not of cartpole"),
         ({"episodes": 4}, "num_demonstrations=4: .* has 3"),
         ({"episodes": 0}, "num_demonstrations=0: must be 1 or more"),
-        ({"action_repeat": 4}, "decides every 0.05 s, this pendulum 0.2 s"),
+        ({"episode": {"action_repeat": 4}}, "decides every 0.05 s, this pendulum 0.2 s"),
         ({"file": "nowhere.npz"}, "nowhere.npz: no such file; `python -m hybrid_rl.demonstrate`"),
     ],
 )
