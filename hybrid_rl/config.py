@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
@@ -107,19 +107,34 @@ def build(config: DictConfig) -> Run:
     """
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
-    capacity = min(_whole(config.replay, "capacity", "replay."), rounds * config.num_envs)
+    _whole(config.replay, "capacity", "replay.")
     with _usage():
         controllers = {mode: _instantiate(node) for mode, node in config.controllers.items()}
         env = _instantiate({**config.env, **physics(config)})
+        replay = _instantiate(config.replay)
+        longest = (rounds + replay.given(config.num_envs)) * config.num_envs
         agent = Agent(
             Episode(env, config.episode.steps, config.episode.action_repeat),
             controllers["full"],
             {name: _instantiate(node) for name, node in config.learners.items()},
-            _instantiate({**config.replay, "capacity": capacity}),
+            replace(replay, capacity=min(replay.capacity, max(longest, replay.given(1)))),
             config.num_envs,
             config.random_steps,
+            config.head_start,
         )
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
+
+
+def expert(config: DictConfig) -> Controller:
+    """The task's expert that was written by hand.
+
+    Raises:
+        UsageError: where it has none.
+    """
+    if config.expert is None:
+        raise UsageError(f"task={config.task}: nobody wrote an expert; give run=DIR, a trained one")
+    with _usage():
+        return _instantiate(config.expert)
 
 
 def physics(config: DictConfig) -> dict[str, str]:

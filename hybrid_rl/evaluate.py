@@ -33,6 +33,7 @@ DEFAULTS = {"run": "", "episodes": "10", "mode": "full"}
 class Trained:
     """A run, read back."""
 
+    task: str
     episode: Episode
     controllers: dict[str, Controller]  # mode -> controller without exploration
     params: Params  # [S, ...]
@@ -60,7 +61,9 @@ def load(folder: Path) -> Trained:
     like = like.replace(env=None, control=None, memory=None, key=None)
     step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
     params = jax.vmap(run.agent.params)(state)
-    return Trained(run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes))
+    return Trained(
+        config.task, run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes)
+    )
 
 
 def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> np.ndarray:

@@ -9,6 +9,7 @@ import pytest
 from hydra import compose, initialize_config_dir
 from hydra.utils import get_class
 from omegaconf import OmegaConf
+from tiny import demonstrate
 
 from hybrid_rl import config
 from hybrid_rl.command import CONF, options
@@ -28,6 +29,8 @@ SMALL = [
     "model_learner.batch_size=2",
     "policy_learner.batch_size=2",
     "belief_learner.updates=1",
+    "cloning_learner.batch_size=2",
+    "cloning_learner.updates=1",
 ]
 PARTS = [
     path
@@ -55,9 +58,12 @@ EACH = [  # every method on one task, and one method on every task
 
 
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
-def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
+def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite."""
-    run = config.build(config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]))
+    given = [f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]
+    if config.load(given).head_start:
+        given += ["head_start=2", demonstrate(tmp_path, config.load(given))]
+    run = config.build(config.load(given))
     loop = Loop(run.agent, run.seeds, stride=8)
     state = loop.init()
     program = loop.compile(state)
@@ -71,13 +77,17 @@ def test_every_method_and_every_task_learn(task: str, algo: str) -> None:
 
 
 @pytest.mark.parametrize("experiment", options("experiment"))
-def test_every_experiment_builds(experiment: str) -> None:
+def test_every_experiment_builds(experiment: str, tmp_path: Path) -> None:
     """The parts of an experiment accept its values, for every method that it compares."""
     with initialize_config_dir(str(CONF), version_base="1.3"):
         whole = compose("train", [f"experiment={experiment}"], return_hydra_config=True)
     compared = OmegaConf.select(whole, "hydra.sweeper.params.algo")
     for algo in compared.split(",") if compared else [whole.algo]:
-        config.build(config.load([f"experiment={experiment}", f"algo={algo}"]))
+        line = [f"experiment={experiment}", f"algo={algo}"]
+        given = config.load(line)
+        if given.replay.demonstrations is not None:
+            given = config.load([*line, demonstrate(tmp_path, given)])
+        config.build(given)
 
 
 @pytest.mark.parametrize("algo", ["kle3", "kle3_bayesopt"])
@@ -101,6 +111,16 @@ def test_thesis_parameters() -> None:
         assert got == (horizon, steps, samples, temperature)
         assert c.task == task
         assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
+    robots = {  # figure -> task, H, T, K, lambda, policy
+        "fig_3_3": ("sawyer_push", 10, 100, 10, 0.01, [128, 128]),
+        "fig_3_5": ("ant", 20, 400, 40, 1.0, [128, 64]),
+        "fig_3_6": ("panda_stack", 40, 200, 40, 1.0, [32, 24]),
+    }
+    for figure, row in robots.items():
+        c = config.load([f"experiment=thesis/{figure}"])
+        p = c.planner
+        got = (c.task, p.horizon, c.episode.steps, p.samples, p.temperature, c.policy.hidden)
+        assert got == row
 
 
 def test_two_copies_are_equal_by_value() -> None:

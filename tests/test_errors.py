@@ -12,13 +12,14 @@ import jax.numpy as jnp
 import pytest
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, drawing, evaluate, figures, render
+from hybrid_rl import command, demonstrate, drawing, evaluate, figures, render
 from hybrid_rl import list as listed
 from hybrid_rl.envs.pendulum import Pendulum
 from hybrid_rl.training import checkpoint, manifest, provenance, session
 
 pytestmark = pytest.mark.xdist_group("errors")
 MAINS = {
+    "demonstrate": demonstrate.main,
     "evaluate": evaluate.main,
     "render": render.main,
     "figures": figures.main,
@@ -33,7 +34,7 @@ KEYS = (
 )
 USAGE = [  # overrides of train, words of the line
     ("task=cartpool", "task=cartpool: unknown; choose one of ant, anywhere"),
-    ("algo=sacc", "algo=sacc: unknown; choose one of bayesopt, deterministic_mpc"),
+    ("algo=sacc", "algo=sacc: unknown; choose one of bayesopt, bc, deterministic_mpc"),
     ("task=null", "task=null: choose one of ant, anywhere"),
     ("env=null", "env=None: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),
@@ -64,6 +65,11 @@ USAGE = [  # overrides of train, words of the line
     ("checkpoint_replay=0", "checkpoint_replay=0: must be true or false"),
     ("matmul_precision=low", "matmul_precision=low: choose one of highest, high, default"),
     ("replay.capacity=1000000000000 total_steps=1000000000000", "learners would take"),
+    ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
+    ("algo=bc demonstrations=null", "demonstrations.file=None: must be a word"),
+    ("algo=bc num_demonstrations=0", "num_demonstrations=0: must be 1 or more"),
+    ("head_start=3", "head_start=3: there is nothing to learn from before the first decision"),
+    ("head_start=-1", "head_start=-1: must be a whole number, 0 or more"),
     ("resume=nowhere", "resume=nowhere: no run folder there"),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
@@ -77,6 +83,11 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
     ("evaluate {trained}", 2, "unknown argument; give key=value"),
+    ("demonstrate", 2, "task, run: give one of them"),
+    ("demonstrate task=ant", 2, "task=ant: nobody wrote an expert; give run=DIR"),
+    ("demonstrate task=aunt", 2, "task=aunt: unknown; choose one of"),
+    ("demonstrate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
+    ("demonstrate run={trained} out=file.csv", 2, "out=file.csv: must end in .npz"),
     ("render run=nowhere", 2, "run=nowhere: no run folder there"),
     ("render run={trained} out=film.avi", 2, "out=film.avi: must end in .mp4 or .gif"),
     ("figures runs=nowhere/*", 2, "runs=nowhere/*: no run there"),

@@ -5,9 +5,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
+from hydra.utils import instantiate
+from omegaconf import DictConfig
 
 from hybrid_rl import command, config, train
+from hybrid_rl.data.demonstrations import save
+from hybrid_rl.types import Transition
 
 TINY = [
     "task=pendulum",
@@ -33,6 +38,18 @@ TINY = [
 def run(folder: Path, *overrides: str) -> dict:
     """The summary of a tiny run into `folder`, as a notebook makes it."""
     return train.train(config.load([*TINY, f"run_dir={folder}", *overrides]))
+
+
+def demonstrate(folder: Path, given: DictConfig, episodes: int = 10) -> str:
+    """The override that names a file of random decisions, for the task of a configuration."""
+    spec, rng = instantiate(given.env, _convert_="all").spec, np.random.default_rng(0)
+    count = 4 * episodes
+    obs, after = rng.normal(size=(2, count, spec.obs))
+    flags = np.zeros((2, count))
+    rows = Transition(obs, rng.uniform(-1, 1, (count, spec.act)), obs[:, 0], *flags, after)
+    file, dt = folder / f"{given.task}.npz", spec.dt * given.episode.action_repeat
+    save(file, given.task, dt, rows, np.arange(count) // 4)
+    return f"demonstrations={file}"
 
 
 def call(main: Callable[[], None], *arguments: str | Path) -> int:

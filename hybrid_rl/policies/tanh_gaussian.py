@@ -77,6 +77,17 @@ class TanhGaussian:
         """U [..., m] ~ pi(.|x) for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
         mu, sigma = self.gaussian(params, x)
         z = mu + sigma * noise
-        log_normal = -0.5 * noise**2 - jnp.log(sigma) - 0.5 * jnp.log(2 * jnp.pi)
-        log_jacobian = 2 * (jnp.log(2.0) - z - jax.nn.softplus(-2 * z))
-        return jnp.tanh(z), jnp.sum(log_normal - log_jacobian, axis=-1)
+        return jnp.tanh(z), _log_density(z, noise, sigma)
+
+    def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """Log pi(u|x) [...] of u [..., m] inside (-1, 1), at x [..., n]."""
+        mu, sigma = self.gaussian(params, x)
+        z = jnp.arctanh(u)
+        return _log_density(z, (z - mu) / sigma, sigma)
+
+
+def _log_density(z: Array, noise: Array, sigma: Array) -> Array:
+    """Of tanh(z), z = mu + sigma noise; all [..., m], summed over m."""
+    log_normal = -0.5 * noise**2 - jnp.log(sigma) - 0.5 * jnp.log(2 * jnp.pi)
+    log_jacobian = 2 * (jnp.log(2.0) - z - jax.nn.softplus(-2 * z))
+    return jnp.sum(log_normal - log_jacobian, axis=-1)

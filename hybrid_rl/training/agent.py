@@ -30,7 +30,8 @@ class Agent:
     """A method at work in `num_envs` worlds.
 
     Each learner makes `updates` gradient steps a decision once `random_steps` decisions were
-    drawn uniformly and its batch is full.
+    drawn uniformly and its batch is full, and `head_start` of them before the first decision,
+    on what the memory was given.
 
     Raises:
         ValueError: for counts out of range, or updates that do not divide into decisions.
@@ -42,14 +43,22 @@ class Agent:
     replay: Replay
     num_envs: int = 1
     random_steps: int = 0
+    head_start: int = 0  # gradient steps of each learner before the first decision
     first_update: int = 0  # decisions before any learning, where the memory starts empty later on
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if not isinstance(self.num_envs, int) or self.num_envs < 1:
             raise ValueError(f"num_envs={self.num_envs}: must be a whole number, 1 or more")
-        if not isinstance(self.random_steps, int) or self.random_steps < 0:
-            raise ValueError(f"random_steps={self.random_steps}: must be a whole number, 0 or more")
+        for name in ("random_steps", "head_start"):
+            value = getattr(self, name)
+            if not isinstance(value, int) or value < 0:
+                raise ValueError(f"{name}={value}: must be a whole number, 0 or more")
+        if self.head_start and not self.replay.given(self.num_envs):
+            raise ValueError(
+                f"head_start={self.head_start}: there is nothing to learn from before the first "
+                "decision; give replay.demonstrations, or 0"
+            )
         for name, learner in self.learners.items():
             _rhythm(name, learner, self.num_envs)
 
@@ -62,23 +71,40 @@ class Agent:
         """The state before the first decision. The key is consumed."""
         run, world, *learning = jax.random.split(key, 2 + len(self.learners))
         env = jax.vmap(self.episode.reset)(jax.random.split(world, self.num_envs))
-        return AgentState(
-            env,
-            self._at_rest(),
-            self.replay.init(self.spec, self.num_envs),
-            {
-                name: learner.init(k, self.spec)
-                for (name, learner), k in zip(self.learners.items(), learning, strict=True)
-            },
-            run,
-        )
+        memory = self.replay.init(self.spec, self.num_envs)
+        learners = {
+            name: learner.init(k, self.spec)
+            for (name, learner), k in zip(self.learners.items(), learning, strict=True)
+        }
+        if self.head_start:
+            learners = self._ahead(learners, memory, jax.random.fold_in(run, self.head_start))
+        return AgentState(env, self._at_rest(), memory, learners, run)
 
     def params(self, state: AgentState) -> Params:
         """What all learners know."""
+        return self._known(state.learners)
+
+    def _known(self, states: dict[str, Any]) -> Params:
+        """The same, from the learners' states."""
         known: dict[str, Any] = {}
         for name, learner in self.learners.items():
-            known |= learner.params(state.learners[name])
+            known |= learner.params(states[name])
         return Params(**known)
+
+    def _ahead(self, states: dict[str, Any], memory: Memory, key: Array) -> dict[str, Any]:
+        """The learners after their head start. The key is consumed."""
+
+        def one(states: dict[str, Any], key: Array) -> tuple[dict[str, Any], None]:
+            params, learned = self._known(states), {}
+            keys = jax.random.split(key, (len(states), 2))
+            for (drawing, updating), (name, learner) in zip(
+                keys, self.learners.items(), strict=True
+            ):
+                batch = self.replay.sample(memory, self.spec, learner.batch_size, drawing)
+                learned[name] = learner.update(states[name], params, batch, updating)[0]
+            return learned, None
+
+        return jax.lax.scan(one, states, jax.random.split(key, self.head_start))[0]
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """One decision in every world, `step` [] decisions into the run; metrics name -> [].
@@ -147,7 +173,8 @@ class Agent:
         for k, (name, learner) in zip(keys, self.learners.items(), strict=True):
             count, every = _rhythm(name, learner, self.num_envs)
             full = learner.batch_size + self.num_envs
-            start = max(self.random_steps, full, self.first_update + full)
+            given = self.replay.given(self.num_envs) * self.num_envs
+            start = max(self.random_steps, self.first_update + full - given)
 
             def one(state: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
                 drawing, updating = keys

@@ -41,6 +41,13 @@ def rollout(
     episode: Episode, controller: Controller, params: Params, key: Array, steps: int
 ) -> EnvState:
     """The states [steps+1, ...] of one episode, from its reset; it stands still once done."""
+    return acted(episode, controller, params, key, steps)[1]
+
+
+def acted(
+    episode: Episode, controller: Controller, params: Params, key: Array, steps: int
+) -> tuple[Array, EnvState]:
+    """The actions [steps, m] of one episode and its states [steps+1, ...]."""
     start, key = jax.random.split(key)
     env = episode.reset(start)
 
@@ -49,11 +56,12 @@ def rollout(
         u, control, _ = controller.act(params, control, env.obs, key)
         after = episode.step(env, u)
         env = jax.tree.map(lambda old, new: jnp.where(env.done, old, new), env, after)
-        return (env, control), env
+        return (env, control), (u, env)
 
     carry = (env, controller.init(episode.spec))
-    _, states = jax.lax.scan(decide, carry, jax.random.split(key, steps))
-    return jax.tree.map(lambda first, rest: jnp.concatenate([first[None], rest]), env, states)
+    _, (actions, states) = jax.lax.scan(decide, carry, jax.random.split(key, steps))
+    join = jax.tree.map(lambda first, rest: jnp.concatenate([first[None], rest]), env, states)
+    return actions, join
 
 
 def evaluation_keys(seed: int, episodes: int) -> Array:

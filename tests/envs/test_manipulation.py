@@ -1,4 +1,4 @@
-"""What a hand does with a block: commands, rewards, starts, and scripts that succeed."""
+"""What a hand does with a block: commands, rewards, starts, and experts that succeed."""
 
 import jax
 import jax.numpy as jnp
@@ -9,7 +9,7 @@ from worlds import DECISIONS, IMPLEMENTATIONS, make, program
 from hybrid_rl.envs.kinematics import hold
 from hybrid_rl.envs.panda_stack import TOOL, PandaStack
 from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
-from scripts import play, push, stack
+from scripts import EXPERTS, play
 
 
 def test_the_rod_goes_where_it_is_told():
@@ -136,9 +136,9 @@ def test_wrong_sizes_are_named(task, fields):
         task(**fields)
 
 
-def _replay(implementation, task, script, decisions):
-    """The last states [4] of `script` played natively, and of its actions here."""
-    first, actions, states = play(make(task, "native"), script, decisions, 4)
+def _replay(implementation, task, decisions):
+    """The last states [4] of the task's expert played natively, and of its actions here."""
+    first, actions, states = play(make(task, "native"), EXPERTS[task], decisions, 4)
     end = jax.tree.map(lambda a: a[:, -1], states)
     if implementation == "native":
         return end, states
@@ -158,8 +158,8 @@ def _replay(implementation, task, script, decisions):
 
 
 @pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
-def test_a_script_pushes_the_block_home(implementation):
-    _, path = _replay(implementation, "sawyer_push", push, 100)
+def test_the_expert_pushes_the_block_home(implementation):
+    _, path = _replay(implementation, "sawyer_push", 100)
     assert path.metrics["success"].any(1).all()
     height = path.data.qpos[..., 9]
     assert jnp.abs(height - HEIGHT).max() < 2e-3  # the block neither tips nor jumps
@@ -167,8 +167,8 @@ def test_a_script_pushes_the_block_home(implementation):
 
 
 @pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
-def test_a_script_stacks_the_block(implementation):
-    end, path = _replay(implementation, "panda_stack", stack, 120)
+def test_the_expert_stacks_the_block(implementation):
+    end, path = _replay(implementation, "panda_stack", 120)
     assert path.metrics["success"].any(1).all()
     np.testing.assert_array_equal(end.metrics["success"], 1.0)
     assert (path.metrics["grasped"].sum(1) > 20).all()

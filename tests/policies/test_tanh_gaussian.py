@@ -25,6 +25,7 @@ def test_log_density_is_that_of_the_squashed_normal(policy: TanhGaussian) -> Non
     z = np.arctanh(np.asarray(u, np.float64))
     normal = np.exp(-0.5 * ((z - mu) / sigma) ** 2) / (sigma * np.sqrt(2 * np.pi))
     assert float(log_prob) == pytest.approx(np.log(normal / (1 - np.tanh(z) ** 2)).sum(), abs=1e-3)
+    assert float(policy.log_prob(params, x, u)) == pytest.approx(float(log_prob), abs=1e-3)
     assert (np.abs(policy.mean(params, x)) < 1).all()
 
 

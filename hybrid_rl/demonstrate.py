@@ -1,0 +1,95 @@
+"""`python -m hybrid_rl.demonstrate task=T [episodes=10] [out=FILE]`: an expert in a file.
+
+FILE is demonstrations/T.npz if nothing else is said. The expert is the task's own, by hand; with
+run=DIR it is what was learned there (mode: full, policy or planner; the first seed), without
+exploration. Episode i begins by the key i of `seed`.
+"""
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jax
+import numpy as np
+
+from hybrid_rl import command
+from hybrid_rl import config as configuration
+from hybrid_rl.config import UsageError
+from hybrid_rl.data.demonstrations import save
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.evaluate import acted
+from hybrid_rl.types import Controller, Params, Transition
+
+DEFAULTS = {"task": "", "run": "", "mode": "full", "episodes": "10", "seed": "0", "out": ""}
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What an expert did: N decisions, of M episodes."""
+
+    decisions: Transition  # [N, ...]
+    episode: np.ndarray  # [N] 0, 0, ..., M - 1
+    returns: np.ndarray  # [M]
+    success: np.ndarray | None  # [M] 1 where it succeeded at last; None: the task has no measure
+
+
+def record(
+    episode: Episode, controller: Controller, params: Params, episodes: int, seed: int = 0
+) -> Recording:
+    """`episodes` episodes of a controller that knows `params`."""
+    keys = jax.random.split(jax.random.key(seed), episodes)
+    one = partial(acted, episode, controller, params, steps=episode.steps)
+    actions, states = jax.tree.map(np.asarray, jax.jit(jax.vmap(one))(keys))
+    before, after = (jax.tree.map(lambda a, s=s: a[:, s], states) for s in np.s_[:-1, 1:])
+    flags = after.reward, after.terminated, after.truncated
+    rows = Transition(before.obs, actions, *flags, after.obs)
+    lived = ~before.done  # [M, T]
+    success = states.metrics.get("success")
+    return Recording(
+        Transition(*(row[lived] for row in rows)),
+        np.nonzero(lived)[0],
+        states.info["return"][:, -1],
+        None if success is None else success[:, -1],
+    )
+
+
+def _expert(given: dict[str, str]) -> tuple[str, Episode, Controller, Params]:
+    """(task, episode, controller, what it knows) that the arguments name."""
+    if bool(given["task"]) == bool(given["run"]):
+        raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
+    if given["task"]:
+        config = configuration.load([f"task={given['task']}", "algo=sac"])
+        expert = configuration.expert(config)
+        return config.task, configuration.build(config).agent.episode, expert, Params()
+    from hybrid_rl.evaluate import load
+
+    trained, mode = load(Path(given["run"])), given["mode"]
+    if mode not in trained.controllers:
+        raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
+    params: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
+    return trained.task, trained.episode, trained.controllers[mode], params
+
+
+def main() -> None:
+    """The command."""
+    given = DEFAULTS | command.arguments(DEFAULTS)
+    episodes = command.count("episodes", given["episodes"])
+    seed = command.count("seed", given["seed"], least=0)
+    task, world, controller, params = _expert(given)
+    out = Path(given["out"] or f"demonstrations/{task}.npz")
+    if out.suffix != ".npz":
+        raise UsageError(f"out={out}: must end in .npz")
+    found = record(world, controller, params, episodes, seed)
+    save(out, task, world.spec.dt, found.decisions, found.episode)
+    told = f"{out}: {episodes} episodes, {len(found.episode):,} decisions, seed {seed}, return "
+    told += (
+        f"{found.returns.mean():,.1f} ({found.returns.min():,.1f} to {found.returns.max():,.1f})"
+    )
+    if found.success is not None:
+        told += f", {int(found.success.sum())} succeeded"
+    print(told)
+
+
+if __name__ == "__main__":
+    command.guarded(main)

@@ -1,0 +1,161 @@
+"""The file of demonstrations: what goes in comes out, and what is wrong with it is one line."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import jax
+import numpy as np
+import pytest
+
+from hybrid_rl.data.demonstrations import Demonstrations, load, save
+from hybrid_rl.data.replay import Replay
+from hybrid_rl.envs.pendulum import Pendulum
+from hybrid_rl.types import Transition
+
+LENGTHS = (4, 5, 3)  # of the episodes
+EPISODE = np.repeat(np.arange(3), LENGTHS)
+N = len(EPISODE)
+LAST = np.cumsum(LENGTHS) - 1
+
+
+def decisions() -> Transition:
+    """Three episodes of numbers told apart: one terminates, one is truncated, one just ends."""
+    rng = np.random.default_rng(0)
+    flags = np.zeros((2, N))
+    flags[0, LAST[0]] = flags[1, LAST[1]] = 1
+    obs, after = rng.normal(size=(2, N, 3))
+    return Transition(obs, rng.uniform(-1, 1, (N, 1)), rng.normal(size=N), *flags, after)
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """A sound file."""
+    save(tmp_path / "deep" / "file.npz", "pendulum", 0.05, decisions(), EPISODE)
+    return tmp_path / "deep" / "file.npz"
+
+
+def recalled(file: Path, /, **fields: object) -> Transition:
+    """What a task takes from it."""
+    return Demonstrations(
+        **{"file": str(file), "task": "pendulum", "world": Pendulum()} | fields
+    ).recall()
+
+
+def test_what_was_saved_is_recalled(file: Path) -> None:
+    """In float32, and the episode that ended with neither flag is truncated."""
+    got, put = recalled(file), decisions()
+    put.truncated[LAST[2]] = 1
+    for a, b in zip(got, put, strict=True):
+        np.testing.assert_array_equal(a, b.astype(np.float32))
+
+
+@pytest.mark.parametrize("episodes", [1, 2, 3])
+def test_the_first_episodes_are_taken(file: Path, episodes: int) -> None:
+    """All of their decisions, and no more."""
+    got = recalled(file, episodes=episodes)
+    count = sum(LENGTHS[:episodes])
+    np.testing.assert_array_equal(got.obs, decisions().obs[:count].astype(np.float32))
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"task": "cartpole"}, "is of task pendulum, not of cartpole"),
+        ({"episodes": 4}, "num_demonstrations=4: .* has 3"),
+        ({"episodes": 0}, "num_demonstrations=0: must be 1 or more"),
+        ({"episode": {"action_repeat": 4}}, "decides every 0.05 s, this pendulum 0.2 s"),
+        ({"file": "nowhere.npz"}, "nowhere.npz: no such file; `python -m hybrid_rl.demonstrate`"),
+    ],
+)
+def test_a_file_that_does_not_fit_is_refused(file: Path, fields: dict, words: str) -> None:
+    """Another task, rate or number."""
+    with pytest.raises(ValueError, match=words):
+        recalled(file, **fields)
+
+
+def _changed(**arrays: object) -> dict:
+    """What a sound file holds, some of it replaced; None: left out."""
+    whole = {**decisions()._asdict(), "episode": EPISODE, "task": "pendulum", "sizes": (3, 1)}
+    whole |= {"dt": 0.05} | arrays
+    return {name: value for name, value in whole.items() if value is not None}
+
+
+def _with(array: np.ndarray, at: int, value: float) -> np.ndarray:
+    array = np.array(array, float)
+    array[at] = value
+    return array
+
+
+@pytest.mark.parametrize(
+    ("arrays", "words"),
+    [
+        ({"reward": None}, "lacks reward"),
+        ({"obs": np.zeros((N, 4))}, r"obs is \(12, 4\), not \(12, 3\)"),
+        ({"episode": EPISODE[:-1]}, r"episode is \(11,\), not \(12,\)"),
+        ({"episode": EPISODE[::-1]}, "episodes must follow one another"),
+        ({"obs": _with(decisions().obs, 7, np.nan)}, "obs is not finite in row 7"),
+        ({"reward": _with(decisions().reward, 2, np.inf)}, "reward is not finite in row 2"),
+        ({"action": _with(decisions().action, 5, 1.5)}, r"action must lie in \[-1, 1\]"),
+        ({"truncated": _with(np.zeros(N), 1, 1)}, "goes on after its end, in row 1"),
+        ({"reward": np.full(N, "a")}, "reward is not made of numbers"),
+        ({"obs": np.array([object()])}, "is damaged, cut short, or no .npz file"),
+        ({"reward": np.zeros(0)}, "holds no decision"),
+        (
+            {"sizes": (4, 1), "obs": np.zeros((N, 4)), "next_obs": np.zeros((N, 4))},
+            "obs has 4 numbers, this pendulum has 3",
+        ),
+    ],
+    ids=lambda given: "" if isinstance(given, dict) else given[:20],
+)
+def test_a_file_that_contradicts_itself_is_refused(
+    tmp_path: Path, arrays: dict, words: str
+) -> None:
+    """And its fault is named."""
+    np.savez(tmp_path / "bad.npz", **_changed(**arrays))
+    with pytest.raises(ValueError, match=words):
+        recalled(tmp_path / "bad.npz")
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
+def test_a_file_cut_short_is_refused(file: Path, share: float) -> None:
+    """Wherever it was cut."""
+    data = file.read_bytes()
+    file.write_bytes(data[: int(share * len(data))])
+    with pytest.raises(ValueError, match=r"is damaged, cut short, or no \.npz"):
+        load(file)
+
+
+def test_other_bytes_and_bare_arrays_are_refused(tmp_path: Path) -> None:
+    """Nothing but an .npz is read."""
+    (tmp_path / "a.npz").write_text("obs, action\n")
+    np.save(tmp_path / "b.npy", np.zeros(3))
+    for name in ("a.npz", "b.npy"):
+        with pytest.raises(ValueError, match=r"no \.npz file"):
+            load(tmp_path / name)
+
+
+@pytest.mark.parametrize("worlds", [1, 2])
+def test_a_memory_begins_with_them(file: Path, worlds: int) -> None:
+    """Every draw is a demonstrated decision with its successor, and cut stretches end."""
+    shown = Demonstrations(str(file), "pendulum", Pendulum())
+    replay, spec = Replay(100, shown), Pendulum().spec
+    memory = replay.init(spec, worlds)
+    assert int(memory.count) == replay.given(worlds) == N // worlds
+    batch = replay.sample(memory, spec, 400, jax.random.key(0))
+    put = recalled(file)
+    row = np.abs(np.asarray(batch.obs)[:, None] - put.obs[None]).sum(-1).argmin(1)
+    last = np.arange(1, worlds + 1) * (N // worlds) - 1
+    assert set(row) == set(range(N)) - set(last)  # their successors are not known yet
+    for name in ("obs", "action", "reward", "terminated", "truncated", "next_obs"):
+        np.testing.assert_array_equal(getattr(batch, name), getattr(put, name)[row])
+    np.testing.assert_array_equal(batch.next_action, put.action[row + 1])
+    truncated = np.asarray(memory.rows)[N // worlds - 1, :, 3 + 1 + 2]
+    np.testing.assert_array_equal(truncated, 1 - put.terminated[last])
+
+
+def test_a_memory_smaller_than_them_is_refused(file: Path) -> None:
+    """Rather than to forget some of them silently."""
+    shown = Demonstrations(str(file), "pendulum", Pendulum())
+    with pytest.raises(ValueError, match=r"replay\.capacity=11: the demonstrations alone are 12"):
+        Replay(11, shown)
+    assert Replay(8, replace(shown, episodes=1)).given(1) == 4

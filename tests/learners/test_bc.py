@@ -1,0 +1,83 @@
+"""Behaviour cloning: a known policy is found again, and experience changes nothing of it."""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.learners.bc import BehaviourCloning, CloningState
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.types import Batch, Params, Spec, Transition
+
+SPEC = Spec(obs=3, act=2, dt=0.1)
+GAIN = np.array([[0.5, -0.3, 0.2], [-0.4, 0.1, 0.6]])
+STD = 0.2  # of the expert's hand before the squashing
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What an expert does who follows u = tanh(GAIN x + noise)."""
+
+    count: int = 4000
+
+    def recall(self) -> Transition:
+        """Its decisions; only states and actions count."""
+        rng = np.random.default_rng(0)
+        x = rng.normal(size=(self.count, 3)).astype(np.float32)
+        z = x @ GAIN.T + STD * rng.normal(size=(self.count, 2))
+        nothing = np.full(self.count, np.nan, np.float32)
+        return Transition(x, np.tanh(z).astype(np.float32), nothing, nothing, nothing, x * np.nan)
+
+
+def train(learner: BehaviourCloning, steps: int, fill: float = jnp.nan) -> CloningState:
+    """The state after `steps` updates beside experience that is all `fill`."""
+    shapes = {"obs": (3,), "next_obs": (3,), "action": (2,), "next_action": (2,)}
+    batch = Batch(*(jnp.full((4, *shapes.get(name, ())), fill) for name in Batch._fields))
+
+    def one(state: CloningState, key: jax.Array) -> tuple:
+        return learner.update(state, Params(), batch, key)[0], None
+
+    keys = jax.random.split(jax.random.key(1), steps)
+    return jax.jit(lambda s: jax.lax.scan(one, s, keys)[0])(learner.init(jax.random.key(0), SPEC))
+
+
+def test_a_linear_policy_is_found_again() -> None:
+    """Its mean, and the deviation of its hand."""
+    policy = TanhGaussian(hidden=(32,), log_std_activation="relu")
+    known = train(BehaviourCloning(policy, Shown(), learning_rate=3e-3), 3000).policy
+    x = np.random.default_rng(1).normal(size=(500, 3)).astype(np.float32)
+    mu, sigma = policy.gaussian(known, x)
+    assert np.abs(np.asarray(mu) - x @ GAIN.T).mean() < 0.05
+    assert float(sigma.mean()) == pytest.approx(STD, rel=0.1)
+
+
+def test_experience_does_not_touch_it() -> None:
+    """Whatever the batch of experience holds, numbers or none: the same bits."""
+    learner = BehaviourCloning(TanhGaussian(hidden=(8,)), Shown(100))
+    ours, theirs = train(learner, 20, jnp.nan), train(learner, 20, 7.0)
+    jax.tree.map(np.testing.assert_array_equal, ours, theirs)
+    assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(ours))
+
+
+def test_actions_at_the_edge_are_bounded() -> None:
+    """A grip of exactly 1 has no infinite likelihood."""
+
+    @dataclass(frozen=True)
+    class Closed(Shown):
+        def recall(self) -> Transition:
+            shown = super().recall()
+            return shown._replace(action=np.ones_like(shown.action))
+
+    policy = TanhGaussian(hidden=(8,))
+    state = train(BehaviourCloning(policy, Closed(50), edge=0.9, learning_rate=0.01), 2000)
+    mean = policy.mean(state.policy, jnp.asarray(Closed(50).recall().obs))
+    np.testing.assert_allclose(mean, 0.9, atol=0.05)
+
+
+@pytest.mark.parametrize("fields", [{"edge": 1.0}, {"learning_rate": 0.0}])
+def test_bad_fields_are_named(fields: dict) -> None:
+    """One clear line."""
+    with pytest.raises(ValueError, match=f"cloning_learner.{next(iter(fields))}"):
+        BehaviourCloning(TanhGaussian(hidden=(8,)), Shown(), **fields)

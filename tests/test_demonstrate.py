@@ -1,0 +1,59 @@
+"""The command that records an expert, and training on what it wrote."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tiny import TINY, call, call_train, run
+
+from hybrid_rl import command, config, demonstrate
+from hybrid_rl.controllers.push import PushController
+from hybrid_rl.data.demonstrations import load
+from hybrid_rl.envs.sawyer_push import SawyerPush
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import Params
+
+pytestmark = pytest.mark.xdist_group("demonstrate")
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory) -> Path:
+    """A run of two seeds whose episodes take 40 decisions."""
+    folder = tmp_path_factory.mktemp("demonstrate") / "run"
+    run(folder, "algo=sac", "episode.steps=40", "num_seeds=2")
+    return folder
+
+
+def test_a_hand_made_expert_is_recorded_as_it_acted():
+    """Decisions follow each other, rewards add up, and a push that ends has succeeded."""
+    found = demonstrate.record(
+        Episode(SawyerPush("native"), 100), PushController(), Params(), episodes=3, seed=5
+    )
+    rows, episode = found.decisions, found.episode
+    within = np.flatnonzero(episode[1:] == episode[:-1])
+    np.testing.assert_array_equal(rows.next_obs[within], rows.obs[within + 1])
+    totals = [rows.reward[episode == i].sum() for i in range(3)]
+    np.testing.assert_allclose(found.returns, totals, rtol=1e-5)
+    ends = np.flatnonzero(np.diff(episode, append=3))
+    np.testing.assert_array_equal(rows.terminated[ends], found.success > 0)
+    np.testing.assert_array_equal(rows.terminated.sum() + rows.truncated.sum(), 3)
+    assert found.success.sum() >= 2
+    assert (np.bincount(episode) <= 100).all()
+
+
+def test_a_run_is_recorded_the_same_twice_and_learned_from(trained, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for out in ("", "out=again.npz"):
+        line = [f"run={trained}", "mode=policy", "episodes=3", "seed=7", *([out] if out else [])]
+        assert call(lambda: command.guarded(demonstrate.main), *line) == 0
+    assert "pendulum.npz: 3 episodes, 120 decisions, seed 7, return -" in capsys.readouterr().out
+    one, two = load("demonstrations/pendulum.npz"), load("again.npz")
+    assert all(np.array_equal(one[name], two[name]) for name in one)
+    assert (one["truncated"].nonzero()[0] == [39, 79, 119]).all()
+    line = [*TINY, "algo=hybrid_bc", "total_steps=100", "head_start=2", "num_demonstrations=2"]
+    assert call_train(*line, "cloning_learner.batch_size=16", "run_dir=learned") == 0
+    rows = [json.loads(row) for row in Path("learned/metrics.jsonl").read_text().splitlines()]
+    assert {"bc/policy_loss", "model/loss"} <= {name for row in rows for name in row}
+    capacity = config.build(config.load(line)).agent.replay.capacity
+    assert capacity == 2 * 40 + 100  # neither demonstrations nor experience are forgotten

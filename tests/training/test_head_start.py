@@ -1,0 +1,83 @@
+"""Learning from demonstrations before the first decision, and what experience changes then."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tiny import TINY, demonstrate
+
+from hybrid_rl import config
+from hybrid_rl.training.agent import Agent
+
+KEY = jax.random.key(3)
+
+
+@pytest.fixture(scope="module")
+def agent(tmp_path_factory) -> Agent:
+    """Hybrid learning from demonstrations on the pendulum, with 3 steps of head start."""
+    line = [*TINY, "algo=hybrid_bc", "head_start=3", "cloning_learner.batch_size=16"]
+    line += ["cloning_learner.updates=1", "random_steps=0"]
+    folder = tmp_path_factory.mktemp("demonstrations")
+    return config.build(config.load([*line, demonstrate(folder, config.load(line))])).agent
+
+
+def paid(agent: Agent, reward: float):
+    """The same agent in a world whose rewards are `reward`."""
+    world = agent.episode.env
+
+    class Paid(type(world)):
+        def step(self, state, action):
+            return super().step(state, action).replace(reward=jnp.float32(reward))
+
+    env = Paid(**vars(world))
+    return replace(agent, episode=replace(agent.episode, env=env))
+
+
+def after(agent: Agent, decisions: int):
+    """What is known after so many decisions."""
+
+    def run(key):
+        one = lambda state, t: (agent.step(state, t)[0], None)  # noqa: E731
+        return agent.params(jax.lax.scan(one, agent.init(key), jnp.arange(decisions))[0])
+
+    return jax.jit(run)(KEY)
+
+
+def same(a, b) -> bool:
+    """Whether all numbers are equal."""
+    return all(map(np.array_equal, jax.tree.leaves(a), jax.tree.leaves(b)))
+
+
+def test_experience_changes_the_models_and_not_the_policy(agent):
+    """Two worlds that pay differently: one policy, two rewards; and all of it goes on learning."""
+    one, other = (after(paid(agent, reward), 6) for reward in (1.0, -1.0))
+    first = agent.params(jax.jit(agent.init)(KEY))
+    assert same(one.policy, other.policy)
+    assert not same(one.reward, other.reward)
+    assert not same(first.policy, one.policy)
+    assert not same(first.model, one.model)
+
+
+def test_the_head_start_is_gradient_steps_on_demonstrations(agent):
+    """The policy that a plain loop of the learner's updates makes."""
+    learners = {"cloning": agent.learners["cloning"]}
+    alone = replace(agent, learners=learners, head_start=3)
+    ahead, still = (
+        jax.jit(a.init)(KEY).learners["cloning"] for a in (alone, replace(alone, head_start=0))
+    )
+    count = ahead.optimiser[0].count
+    assert (int(count), int(still.optimiser[0].count)) == (3, 0)
+    state = still
+    run = jax.random.split(KEY, 3)[0]
+    for key in jax.random.split(jax.random.fold_in(run, 3), 3):
+        ((_, updating),) = jax.random.split(key, (1, 2))
+        state = learners["cloning"].update(state, None, None, updating)[0]
+    jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
+
+
+def test_a_head_start_needs_demonstrations(agent):
+    bare = replace(agent.replay, demonstrations=None)
+    with pytest.raises(ValueError, match="head_start=3: there is nothing to learn from"):
+        replace(agent, replay=bare)
