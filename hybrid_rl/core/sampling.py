@@ -80,6 +80,6 @@ def effective_samples(w: Array) -> Array:
     return 1.0 / jnp.sum(w**2, axis=0)
 
 
-def shift(plan: Array) -> Array:
-    """The plan [T, m] one decision later: its first row gone, zeros at the end."""
-    return jnp.concatenate([plan[1:], jnp.zeros_like(plan[:1])])
+def shift(plan: Array, rest: float = 0.0) -> Array:
+    """The plan [T, m] one decision later: its first row gone, `rest` at the end."""
+    return jnp.concatenate([plan[1:], jnp.full_like(plan[:1], rest)])
