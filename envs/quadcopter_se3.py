@@ -6,8 +6,9 @@
     r = -(|p|^2 + 0.1 |v|^2 + 0.1 |w|^2), after the step
 
 o = (p, R by rows, v, w) [18], v and w in the body's frame; u = 6 a; start: p U(-away, away),
-upright, v and w U(-twist, twist): with `away` the origin is a target to go to; a decision is one Runge-Kutta step of 0.005 s; terminates
-upside down. `drag` is in the author's code and not in the thesis' equations.
+upright, v and w U(-twist, twist): with `away` the origin is a target to go to; a decision is one
+Runge-Kutta step of 0.005 s; terminates upside down. `drag` is in the author's code and not in the
+thesis' equations.
 
 Source: thesis appendix D and the author's active-learning-koopman for the figures.
 """

@@ -1,4 +1,4 @@
-"""What flights cost, and how well models learned from them fly (thesis table 6.1, figures 6-6, 6-7).
+"""What flights cost, and how well models learned from them fly (table 6.1, figures 6-6 and 6-7).
 
     python -m hybrid_rl.flights runs="runs/quadcopter_se3/*/*" out=table_6_1.png
 
@@ -69,7 +69,7 @@ def read(folder: Path) -> Flight:
 
 
 def cost(flight: Flight) -> dict[str, np.ndarray]:
-    """Per trial [S]: power loss [N], norm of u, furthest from the hover [m], whether it was lost."""
+    """Per trial [S]: power loss [N], norm of u, furthest from the hover [m], whether lost."""
     thrust = KT * THRUST * flight.action.sum(-1)
     return {
         "power_loss": np.abs(thrust - MASS * G).mean(1),

@@ -27,6 +27,7 @@ SMALL = [
     "model_learner.batch_size=2",
     "policy_learner.batch_size=2",
     "belief_learner.updates=1",
+    "likelihood.batch_size=2",
 ]
 PARTS = [
     path
