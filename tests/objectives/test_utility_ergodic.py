@@ -50,9 +50,9 @@ def test_value_is_the_divergence_by_hand() -> None:
     """A plain double loop with SciPy's Gaussians."""
     seen = J.look(KNOWN, J.begin(SPEC), X, jax.random.key(0))
     rng = np.random.default_rng(0)
-    x = jnp.asarray(X + 0.2 * rng.normal(size=(4, 2)), jnp.float32)
+    x = jnp.asarray(np.asarray(X) + 0.2 * rng.normal(size=(4, 2)), jnp.float32)
     path = Path(x, jnp.array([[0.1], [0.5], [0.9]]))
-    at = np.concatenate([np.asarray(path.x[:-1] / UNITS), np.asarray(path.u)], 1)
+    at = np.concatenate([np.asarray(path.x[:-1]) / np.asarray(UNITS), np.asarray(path.u)], 1)
     total = 0.0
     for s, log_p in zip(np.asarray(seen.points.s), np.asarray(seen.points.log_p), strict=True):
         q = np.mean([multivariate_normal.pdf(s, centre, 0.2 * np.eye(3)) for centre in at])
