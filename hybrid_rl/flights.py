@@ -3,8 +3,9 @@
     python -m hybrid_rl.flights runs="runs/quadcopter_se3/*/*" out=table_6_1.png
 
 From the decisions that each run remembers a model is learned anew, the same way for all methods,
-2,000 batches a trial. It is asked for the next state on flights of other trials, by all methods,
-and MPPI flies to a target by it. The numbers are written beside the picture, as JSON.
+updates=2000 batches a trial. It is asked for the next state on flights of other trials, by all
+methods, and MPPI flies to a target by it for steps=1200 decisions (steps=0: it does not). The
+numbers are written beside the picture, as JSON.
 
     power loss   mean |F - m g| [N], F the thrust of all rotors
     norm of u    mean |u|, u in [-1, 1]^4; at hover 0.82
@@ -134,13 +135,13 @@ def measure(
     def all_of(memory: Any) -> tuple:
         params = jax.vmap(lambda m, k: learn(run, m, updates, k))(memory, keys[:, 0])
         wrong = jax.vmap(lambda p, s: error(run, p, s))(params, seen)
-        flown = jax.vmap(lambda p, k: track(run, p, steps, k))(params, keys[:, 1])
+        flown = jax.vmap(lambda p, k: track(run, p, steps, k))(params, keys[:, 1]) if steps else ()
         return wrong, *flown
 
     found = {}
     for flight in flights:
         names = ("error", "distance", "turned_over")
-        learned = zip(names, map(np.asarray, all_of(flight.memory)), strict=True)
+        learned = zip(names, map(np.asarray, all_of(flight.memory)), strict=False)
         found[flight.label] = {**cost(flight), **dict(learned)}
     return found, run.agent.spec.dt
 
@@ -151,6 +152,8 @@ def said(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     for name in ("power_loss", "norm_of_u", "furthest", "error"):
         numbers[name] = [_short(found[name].mean()), _short(found[name].std())]
     numbers["kept_hover"] = _short(1 - found["lost"].mean())
+    if "distance" not in found:
+        return numbers
     numbers["turned_over_tracking"] = _short(found["turned_over"].mean())
     for at in MARKS:
         if round(at / dt) < found["distance"].shape[1]:
@@ -166,20 +169,22 @@ def plot(flights: list[Flight], found: dict[str, Any], dt: float) -> Any:
 
     from hybrid_rl.figures import COLOURS, STYLE
 
+    tracked = "distance" in found[flights[0].label]
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(2.4 * max(3, len(flights)), 7.2), layout="constrained")
-        halves: Any = figure.subfigures(2, 1, height_ratios=(1, 1.3))
-        axes = halves[0].subplots()
-        for flight, colour in zip(flights, COLOURS, strict=False):
-            each = found[flight.label]["distance"]
-            low, middle, high = np.quantile(each, [0.25, 0.5, 0.75], axis=0)
-            t = dt * np.arange(each.shape[1])
-            axes.plot(t, middle, color=colour, label=flight.label)
-            axes.fill_between(t, low, high, color=colour, alpha=0.12, lw=0)
-        axes.set(xlabel="Time [s]", ylabel="Distance to the target [m]", yscale="log")
-        axes.set_title("MPPI on the learned model: median and quartiles over trials")
-        axes.legend(ncols=2)
-        panels = halves[1].subplots(3, len(flights), squeeze=False, sharex=True, sharey="row")
+        figure = Figure(figsize=(2.2 * max(3, len(flights)), 4 + 3 * tracked), layout="constrained")
+        parts: Any = figure.subfigures(1 + tracked, 1, squeeze=False)[:, 0]
+        if tracked:
+            axes = parts[-1].subplots()
+            for flight, colour in zip(flights, COLOURS, strict=False):
+                each = found[flight.label]["distance"]
+                low, middle, high = np.quantile(each, [0.25, 0.5, 0.75], axis=0)
+                t = dt * np.arange(each.shape[1])
+                axes.plot(t, middle, color=colour, label=flight.label)
+                axes.fill_between(t, low, high, color=colour, alpha=0.12, lw=0)
+            axes.set(xlabel="Time [s]", ylabel="Distance to the target [m]", yscale="log")
+            axes.set_title("MPPI on the learned model: median and quartiles over trials")
+            axes.legend(ncols=2)
+        panels = parts[0].subplots(3, len(flights), squeeze=False, sharex=True, sharey="row")
         for i, flight in enumerate(flights):
             t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
             panels[0][i].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
@@ -205,7 +210,10 @@ def main() -> None:
     out = Path(given["out"])
     if out.suffix not in SUFFIXES:
         raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
-    numbers = [command.count(name, given[name]) for name in ("updates", "steps")]
+    numbers = (
+        command.count("updates", given["updates"]),
+        command.count("steps", given["steps"], least=0),
+    )
     flights = sorted((read(folder) for folder in folders), key=lambda flight: flight.label)
     if len({flight.obs.shape for flight in flights}) > 1:
         raise UsageError(f"runs={given['runs']}: trials differ in number or length")
