@@ -5,7 +5,7 @@
 From the decisions that each run remembers a model is learned anew, the same way for all methods,
 updates=2000 batches a trial. It is asked for the next state on flights of other trials, by all
 methods, and MPPI flies to a target by it for steps=1200 decisions (steps=0: it does not). The
-numbers are written beside the picture, as JSON.
+numbers are written beside the picture, as JSON. All flights are cut to the shortest.
 
     power loss   mean |F - m g| [N], F the thrust of all rotors
     norm of u    mean |u|, u in [-1, 1]^4; at hover 0.82
@@ -25,7 +25,7 @@ from omegaconf import OmegaConf
 
 from hybrid_rl import command
 from hybrid_rl.config import Run, UsageError, build, load
-from hybrid_rl.envs.quadcopter_se3 import KT, MASS, THRUST, G
+from hybrid_rl.envs.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
 from hybrid_rl.training import checkpoint
 from hybrid_rl.training.evaluate import rollout
 from hybrid_rl.training.loop import Loop
@@ -42,7 +42,7 @@ class Flight(NamedTuple):
     """All trials of one method."""
 
     label: str
-    memory: Any  # [S, ...]
+    memory: Any  # [S, T, ...]
     obs: np.ndarray  # [S, T, 18]
     action: np.ndarray  # [S, T, 4]
     next_obs: np.ndarray  # [S, T, 18]
@@ -62,10 +62,18 @@ def read(folder: Path) -> Flight:
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
     like = like.replace(env=None, control=None, learners=None, key=None)
     memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
-    rows, (o, m) = np.asarray(memory.rows)[:, :, 0], run.agent.spec[:2]
-    parts = np.split(rows, [o, o + m, o + m + 1, o + m + 2, o + m + 3], axis=-1)
     noise = config.controllers.full.get("kind")
     label = f"{config.algo} {config.controllers.full.level:g}" if noise else str(config.algo)
+    flown = int(np.asarray(memory.count).min())
+    return first(label, memory, min(flown, memory.rows.shape[1]))
+
+
+def first(label: str, memory: Any, length: int) -> Flight:
+    """The first `length` decisions that `memory` [S, ...] holds."""
+    count = jnp.minimum(memory.count, length)
+    memory = memory.replace(rows=memory.rows[:, :length], count=count)
+    rows, (o, m) = np.asarray(memory.rows)[:, :, 0], QuadcopterSE3().spec[:2]
+    parts = np.split(rows, [o, o + m, o + m + 1, o + m + 2, o + m + 3], axis=-1)
     return Flight(label, memory, parts[0], parts[1], parts[5], parts[3][..., 0])
 
 
@@ -124,7 +132,7 @@ def others(flights: list[Flight], trial: int, count: int = 2000) -> Batch:
 
 def measure(
     flights: list[Flight], updates: int, steps: int
-) -> tuple[dict[str, dict[str, np.ndarray]], float]:
+) -> tuple[dict[str, dict[str, Any]], float]:
     """Per method and trial all that is told of it, and [s] of a decision."""
     run = build(load([*TRACKING, f"episode.steps={steps + 1}"]))
     trials = len(flights[0].obs)
@@ -142,13 +150,14 @@ def measure(
     for flight in flights:
         names = ("error", "distance", "turned_over")
         learned = zip(names, map(np.asarray, all_of(flight.memory)), strict=False)
-        found[flight.label] = {**cost(flight), **dict(learned)}
+        flown = {"decisions": flight.obs.shape[1]}
+        found[flight.label] = {**flown, **cost(flight), **dict(learned)}
     return found, run.agent.spec.dt
 
 
 def said(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     """What the JSON holds of one method."""
-    numbers: dict[str, Any] = {"trials": len(found["lost"])}
+    numbers: dict[str, Any] = {"trials": len(found["lost"]), "decisions": found["decisions"]}
     for name in ("power_loss", "norm_of_u", "furthest", "error"):
         numbers[name] = [_short(found[name].mean()), _short(found[name].std())]
     numbers["kept_hover"] = _short(1 - found["lost"].mean())
@@ -215,8 +224,10 @@ def main() -> None:
         command.count("steps", given["steps"], least=0),
     )
     flights = sorted((read(folder) for folder in folders), key=lambda flight: flight.label)
-    if len({flight.obs.shape for flight in flights}) > 1:
-        raise UsageError(f"runs={given['runs']}: trials differ in number or length")
+    if len({len(flight.obs) for flight in flights}) > 1:
+        raise UsageError(f"runs={given['runs']}: trials differ in number")
+    shortest = min(flight.obs.shape[1] for flight in flights)
+    flights = [first(flight.label, flight.memory, shortest) for flight in flights]
     found, dt = measure(flights, *numbers)
     told = {label: said(each, dt) for label, each in found.items()}
     out.parent.mkdir(parents=True, exist_ok=True)
