@@ -4,8 +4,8 @@
 
 From the decisions that each run remembers a model is learned anew, the same way for all methods,
 updates=2000 batches a trial. It is asked for the next state on flights of other trials, by all
-methods, and MPPI flies to a target by it for steps=1200 decisions (steps=0: it does not). The
-numbers are written beside the picture, as JSON. All flights are cut to the shortest.
+methods, and MPPI flies to a target by it for steps=1200 decisions. updates=0 or steps=0 leave that
+out. All flights are cut to the shortest. The numbers are written beside the picture, as JSON.
 
     power loss   mean |F - m g| [N], F the thrust of all rotors
     norm of u    mean |u|, u in [-1, 1]^4; at hover 0.82
@@ -141,6 +141,8 @@ def measure(
 
     @jax.jit
     def all_of(memory: Any) -> tuple:
+        if not updates:
+            return ()
         params = jax.vmap(lambda m, k: learn(run, m, updates, k))(memory, keys[:, 0])
         wrong = jax.vmap(lambda p, s: error(run, p, s))(params, seen)
         flown = jax.vmap(lambda p, k: track(run, p, steps, k))(params, keys[:, 1]) if steps else ()
@@ -158,7 +160,7 @@ def measure(
 def said(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     """What the JSON holds of one method."""
     numbers: dict[str, Any] = {"trials": len(found["lost"]), "decisions": found["decisions"]}
-    for name in ("power_loss", "norm_of_u", "furthest", "error"):
+    for name in [n for n in ("power_loss", "norm_of_u", "furthest", "error") if n in found]:
         numbers[name] = [_short(found[name].mean()), _short(found[name].std())]
     numbers["kept_hover"] = _short(1 - found["lost"].mean())
     if "distance" not in found:
@@ -220,7 +222,7 @@ def main() -> None:
     if out.suffix not in SUFFIXES:
         raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
     numbers = (
-        command.count("updates", given["updates"]),
+        command.count("updates", given["updates"], least=0),
         command.count("steps", given["steps"], least=0),
     )
     flights = sorted((read(folder) for folder in folders), key=lambda flight: flight.label)
