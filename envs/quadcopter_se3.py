@@ -5,9 +5,10 @@
     M = (kt l (u2 - u4), kt l (u3 - u1), km (u1 - u2 + u3 - u4))
     r = -(|p|^2 + 0.1 |v|^2 + 0.1 |w|^2), after the step
 
-o = (p, R by rows, v, w) [18], v and w in the body's frame; u = 6 a; start: at the origin,
-upright, v and w U(-twist, twist); a decision is one Runge-Kutta step of 0.005 s; terminates
-upside down. `drag` is in the author's code and not in the thesis' equations.
+o = (p, R by rows, v, w) [18], v and w in the body's frame; u = 6 a; start: p U(-away, away),
+upright, v and w U(-twist, twist): with `away` the origin is a target to go to; a decision is one
+Runge-Kutta step of 0.005 s; terminates upside down. `drag` is in the author's code and not in the
+thesis' equations.
 
 Source: thesis appendix D and the author's active-learning-koopman for the figures.
 """
@@ -36,11 +37,13 @@ class QuadcopterSE3:
     physics: str = "auto"
     drag: bool = True
     twist: float = 0.5  # [m/s], [rad/s] of the start
+    away: float = 0.0  # [m] of the start, in each direction
 
     def __post_init__(self) -> None:
         one_of("physics", self.physics, IMPLEMENTATIONS)
-        if self.twist < 0:
-            raise ValueError(f"twist={self.twist}: must be 0 or more")
+        for name in ("twist", "away"):
+            if getattr(self, name) < 0:
+                raise ValueError(f"{name}={getattr(self, name)}: must be 0 or more")
 
     @property
     def spec(self) -> Spec:
@@ -50,7 +53,8 @@ class QuadcopterSE3:
     def reset(self, key: Array) -> EnvState:
         """A first state, drawn with `key`."""
         twist = jax.random.uniform(key, (6,), jnp.float32, -self.twist, self.twist)
-        return formula.state(self.rest()[0].at[12:].set(twist), jnp.float32(0.0))
+        p = self.away * jax.random.uniform(jax.random.fold_in(key, 1), (3,), minval=-1, maxval=1)
+        return formula.state(self.rest()[0].at[:3].set(p).at[12:].set(twist), jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state one decision later. action: [4] in [-1, 1]."""

@@ -31,6 +31,7 @@ SMALL = [
     "belief_learner.updates=1",
     "cloning_learner.batch_size=2",
     "cloning_learner.updates=1",
+    "likelihood.batch_size=2",
 ]
 PARTS = [
     path

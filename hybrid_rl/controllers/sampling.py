@@ -38,6 +38,7 @@ class SamplingController:
     normalise: bool = False
     log_density: bool = False  # the thesis' p(v) in the weight
     execute: str = "mean"
+    rest: float = 0.0  # [u] what a plan is before the first decision, and beyond its end
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -51,10 +52,10 @@ class SamplingController:
             raise ValueError(f"planner.execute={self.execute}: choose {' or '.join(EXECUTE)}")
 
     def init(self, spec: Spec) -> tuple[Array, Any]:
-        """The plan [T, m] at rest, and the first carries [K, ...] of the proposals."""
+        """The plan [T, m] at `rest`, and the first carries [K, ...] of the proposals."""
         places = jnp.arange(self.samples) / self.samples
         carries = jax.vmap(lambda place: self.proposal.init(spec, place))(places)
-        return jnp.zeros((self.horizon, spec.act)), carries
+        return jnp.full((self.horizon, spec.act), self.rest), carries
 
     def act(
         self, params: Params, state: tuple[Array, Any], obs: Array, key: Array
@@ -89,7 +90,7 @@ class SamplingController:
             @ (returns[:, 0] - self.objective.discount * returns[:, 1]),
             **self._agreement(params, x, plan),
         }
-        return action, (sampling.shift(plan), carries), metrics
+        return action, (sampling.shift(plan, self.rest), carries), metrics
 
     def _agreement(self, params: Params, x: Array, plan: Array) -> dict[str, Array]:
         """How far the weighted mean is from what the policy would do.

@@ -29,6 +29,14 @@ class Adjoint(NamedTuple):
     gradient: Array  # g [T, m] [J / u]
 
 
+LONGEST = 32  # decisions
+
+
+def unrolled(length: int) -> int:
+    """Steps of a loop that are compiled as one: all of a short one; XLA takes minutes over 120."""
+    return length if length <= LONGEST else 4
+
+
 def roll(step: Step, policy: Callable[[Array], Array], x: Array, correction: Array) -> Path:
     """The path from x [n] under `policy` plus `correction` v [T, m]."""
 
@@ -37,7 +45,7 @@ def roll(step: Step, policy: Callable[[Array], Array], x: Array, correction: Arr
         after = step(x, u)
         return after, (after, u)
 
-    xs, us = jax.lax.scan(forward, x, correction, unroll=True)[1]
+    xs, us = jax.lax.scan(forward, x, correction, unroll=unrolled(len(correction)))[1]
     return Path(jnp.concatenate([x[None], xs]), us)
 
 
@@ -66,7 +74,8 @@ def adjoint(
         return rho, (rho, g)
 
     along = (path.x[:-1], path.u, of_path.x[:-1], of_path.u)
-    costate, gradient = jax.lax.scan(back, of_path.x[-1], along, reverse=True, unroll=True)[1]
+    rows = unrolled(len(path.u))
+    costate, gradient = jax.lax.scan(back, of_path.x[-1], along, reverse=True, unroll=rows)[1]
     costate = jnp.concatenate([costate, of_path.x[-1:]])
     if bound is not None:
         costate = jnp.clip(costate, -bound, bound)

@@ -15,6 +15,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.adjoint import unrolled
 from hybrid_rl.types import Path
 
 
@@ -49,7 +50,7 @@ def imagine(
         return (x, carry), (x, v, log_prob)
 
     _, (xs, vs, log_probs) = jax.lax.scan(
-        forward, (start, carries), (plan, noise.swapaxes(0, 1)), unroll=True
+        forward, (start, carries), (plan, noise.swapaxes(0, 1)), unroll=unrolled(len(plan))
     )
     xs = jnp.concatenate([start[None], xs]).swapaxes(0, 1)
     return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)
@@ -80,6 +81,6 @@ def effective_samples(w: Array) -> Array:
     return 1.0 / jnp.sum(w**2, axis=0)
 
 
-def shift(plan: Array) -> Array:
-    """The plan [T, m] one decision later: its first row gone, zeros at the end."""
-    return jnp.concatenate([plan[1:], jnp.zeros_like(plan[:1])])
+def shift(plan: Array, rest: float = 0.0) -> Array:
+    """The plan [T, m] one decision later: its first row gone, `rest` at the end."""
+    return jnp.concatenate([plan[1:], jnp.full_like(plan[:1], rest)])

@@ -1,12 +1,15 @@
 """x' ~ N(x + f(x, u), diag(s^2)): a learned one-step model (thesis appendix B).
 
-f = W_2 a(W_1 [x, u] + b_1) + b_2 by default; s does not depend on the state. With
-`normalise`, the network sees states and predicts changes in units of their running deviation.
+f = W_2 a(W_1 [x, u] + b_1) + b_2 by default; s is constant, or with `state_noise` a network's
+s(x) (thesis eq. 6.22). With `normalise`, the networks see states and predict changes in units of
+their running deviation. `inputs` are the coordinates that they see: a free body's motion does not
+depend on where it is, and no flight about one place would tell them.
 """
 
 from dataclasses import dataclass
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -28,20 +31,24 @@ class Gaussian:
     normalise: bool = True
     log_std_min: float = -10.0
     log_std_max: float = 2.0
+    state_noise: bool = False  # s(x) instead of a constant
+    inputs: tuple[int, ...] | None = None  # of x; None: all
 
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
         check("model", self.hidden, self.activation)
+        if self.inputs is not None:
+            object.__setattr__(self, "inputs", tuple(self.inputs))
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Weights, and the statistics that they are relative to. The key is consumed."""
         net = MLP(self.hidden, spec.obs, self.activation)
+        seen, log_std = len(self._seen(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
+        if self.state_noise:
+            log_std: Any = net.init(jax.random.fold_in(key, 1), jnp.zeros(seen))
         return {
-            "weights": {
-                "net": net.init(key, jnp.zeros(spec.obs + spec.act)),
-                "log_std": jnp.zeros(spec.obs),
-            },
+            "weights": {"net": net.init(key, jnp.zeros(seen + spec.act)), "log_std": log_std},
             "state": statistics.init(spec.obs),
             "change": statistics.init(spec.obs),
         }
@@ -63,8 +70,16 @@ class Gaussian:
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Predicted change [n] of x [n] under u [m], in running deviations."""
         net = MLP(self.hidden, x.shape[-1], self.activation)
-        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u])
+        inputs = jnp.concatenate([self._seen(statistics.whiten(params["state"], x)), u])
         return net.apply(params["weights"]["net"], inputs)
+
+    def deviation(self, params: dict[str, Any], x: Array) -> Array:
+        """s [n] of the change at x [n], in running deviations."""
+        log_std: Any = params["weights"]["log_std"]
+        if self.state_noise:
+            net = MLP(self.hidden, x.shape[-1], self.activation)
+            log_std = net.apply(log_std, self._seen(statistics.whiten(params["state"], x)))
+        return jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
@@ -72,15 +87,15 @@ class Gaussian:
 
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, place: Array) -> Array:
         """A next planning state [n] of the noise [n] ~ N(0, I); `place` chooses nothing here."""
-        change = self.change(params, x, u) + self._std(params) * noise
+        change = self.change(params, x, u) + self.deviation(params, x) * noise
         return x + statistics.colour(params["change"], change)
 
-    def _std(self, params: dict[str, Any]) -> Array:
-        return jnp.exp(jnp.clip(params["weights"]["log_std"], self.log_std_min, self.log_std_max))
+    def _seen(self, x: Array) -> Array:
+        return x if self.inputs is None else x[jnp.array(self.inputs)]
 
     def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
         """Negative log-likelihood [] of next_x [n], mean over its entries."""
-        std = self._std(params)
+        std = self.deviation(params, x)
         target = statistics.whiten(params["change"], next_x - x)
         error = (target - self.change(params, x, u)) / std
         return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))

@@ -76,3 +76,4 @@ def test_shift() -> None:
     """The second row comes first, zeros come last."""
     plan = jnp.arange(6.0).reshape(3, 2)
     np.testing.assert_array_equal(sampling.shift(plan), [[2, 3], [4, 5], [0, 0]])
+    np.testing.assert_array_equal(sampling.shift(plan, 7.0), [[2, 3], [4, 5], [7, 7]])

@@ -1,0 +1,111 @@
+"""Deep deterministic policy gradients (Lillicrap et al. 2016; thesis eq. 6.26).
+
+    y    = r + gamma (1 - terminated) Q'(x', pi'(x'))
+    L_Q  = 0.5 sum_i mean (Q_i(x, u) - y)^2,   L_pi = -mean Q(x, pi(x))
+    Q'   <- (1 - tau) Q' + tau Q,              pi'  <- (1 - tau) pi' + tau pi
+
+pi is the mean of any policy; exploration is the controller's. Q is the smallest of the critic's
+members, of which the original has one. A time limit is no end of the task.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import optax
+from flax import struct
+from jax import Array
+
+from hybrid_rl.types import Batch, Params, Policy, Spec
+
+
+@struct.dataclass
+class DDPGState:
+    """What it carries."""
+
+    policy: Any
+    critic: Any
+    target_policy: Any
+    target_critic: Any
+    policy_optimiser: Any
+    critic_optimiser: Any
+
+
+@dataclass(frozen=True)
+class DDPG:
+    """Deterministic policy gradients over a `policy` and an ensemble `critic`.
+
+    Raises:
+        ValueError: for rates, a discount or a smoothing out of range.
+    """
+
+    policy: Policy
+    critic: Any
+    policy_learning_rate: float = 1e-4
+    critic_learning_rate: float = 1e-3
+    discount: float = 0.99
+    tau: float = 0.01
+    batch_size: int = 128
+    updates: float = 1  # per decision
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 <= self.discount < 1:
+            raise ValueError(f"policy_learner.discount={self.discount}: must lie in [0, 1)")
+        if not 0 < self.tau <= 1:
+            raise ValueError(f"policy_learner.tau={self.tau}: must lie in (0, 1]")
+        for name in ("policy_learning_rate", "critic_learning_rate"):
+            if getattr(self, name) <= 0:
+                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
+
+    def init(self, key: Array, spec: Spec) -> DDPGState:
+        """First parameters, optimisers and targets. The key is consumed."""
+        of_policy, of_critic = jax.random.split(key)
+        policy, critic = self.policy.init(of_policy, spec), self.critic.init(of_critic, spec)
+        targets = jax.tree.map(jnp.copy, (policy, critic))
+        return DDPGState(
+            policy,
+            critic,
+            *targets,
+            optax.adam(self.policy_learning_rate).init(policy),
+            optax.adam(self.critic_learning_rate).init(critic),
+        )
+
+    def params(self, state: DDPGState) -> dict[str, Any]:
+        """The policy and the critic."""
+        return {"policy": state.policy, "critic": state.critic}
+
+    def update(
+        self, state: DDPGState, params: Params, batch: Batch, key: Array
+    ) -> tuple[DDPGState, dict[str, Array]]:
+        """One step of critic, policy and targets."""
+        after = self.critic.value(
+            state.target_critic,
+            batch.next_obs,
+            self.policy.mean(state.target_policy, batch.next_obs),
+        )
+        y = batch.reward + self.discount * (1 - batch.terminated) * after
+
+        def critic_loss(critic: Any) -> tuple[Array, Array]:
+            q = self.critic.all(critic, batch.obs, batch.action)
+            return 0.5 * jnp.sum(jnp.mean((q - y[None]) ** 2, axis=-1)), q.mean()
+
+        (of_critic, q), grads = jax.value_and_grad(critic_loss, has_aux=True)(state.critic)
+        adam = optax.adam(self.critic_learning_rate)
+        change, critic_optimiser = adam.update(grads, state.critic_optimiser)
+        critic: Any = optax.apply_updates(state.critic, change)
+
+        def policy_loss(policy: Any) -> Array:
+            u = self.policy.mean(policy, batch.obs)
+            return -jnp.mean(self.critic.value(critic, batch.obs, u))
+
+        of_policy, grads = jax.value_and_grad(policy_loss)(state.policy)
+        adam = optax.adam(self.policy_learning_rate)
+        change, policy_optimiser = adam.update(grads, state.policy_optimiser)
+        policy: Any = optax.apply_updates(state.policy, change)
+        targets = optax.incremental_update(
+            (policy, critic), (state.target_policy, state.target_critic), self.tau
+        )
+        metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
+        return DDPGState(policy, critic, *targets, policy_optimiser, critic_optimiser), metrics

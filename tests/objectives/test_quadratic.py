@@ -1,0 +1,36 @@
+"""The quadratic return by hand."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.objectives.quadratic import Quadratic
+from hybrid_rl.types import Params, Path
+
+WORLD = QuadcopterSE3()
+
+
+def test_return_is_the_plain_sum() -> None:
+    """Every state after the first, every action, and nothing behind the end."""
+    q = tuple(np.linspace(0.1, 2.0, 12))
+    objective = Quadratic(WORLD, q, (0.3,), discount=0.9)
+    rng = np.random.default_rng(0)
+    e, u = rng.uniform(-0.4, 0.4, (5, 12)), rng.uniform(-1, 1, (4, 4))
+    x = jax.vmap(WORLD.place)(jnp.asarray(e, jnp.float32))
+    hover = np.asarray(WORLD.rest()[1])
+    rewards = [
+        -sum(w * a**2 for w, a in zip(q, e[t + 1], strict=True)) - 0.3 * sum((u[t] - hover) ** 2)
+        for t in range(4)
+    ]
+    path = Path(x, jnp.asarray(u, jnp.float32))
+    want = [sum(0.9 ** (i - t) * rewards[i] for i in range(t, 4)) for t in range(5)]
+    np.testing.assert_allclose(objective.reward_to_go(Params(), path), want, rtol=1e-4)
+    assert float(objective.value(Params(), (), path)) == pytest.approx(want[0], rel=1e-4)
+
+
+def test_bad_weights_are_named() -> None:
+    """One line."""
+    with pytest.raises(ValueError, match="state_weights"):
+        Quadratic(WORLD, (-1.0,))

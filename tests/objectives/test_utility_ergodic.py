@@ -1,0 +1,66 @@
+"""States and actions before a critic."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+from scipy.stats import multivariate_normal
+
+from hybrid_rl.core import statistics
+from hybrid_rl.objectives.utility_ergodic import UtilityErgodic
+from hybrid_rl.types import Params, Path, Spec
+
+SPEC = Spec(obs=2, act=1, dt=0.1)
+UNITS = jnp.array([0.5, 4.0])
+KNOWN = Params(model={"state": statistics.init(2).replace(std=UNITS)})
+X = jnp.array([1.0, -2.0])
+
+
+class Known:
+    """pi = 0.9 and Q = 3 x_0 + u."""
+
+    def mean(self, params: Any, x: Array) -> Array:
+        """The same everywhere."""
+        return jnp.array([0.9])
+
+    def value(self, params: Any, x: Array, u: Array) -> Array:
+        """Q [N]."""
+        return 3 * x[:, 0] + u[:, 0]
+
+
+J = UtilityErgodic(None, Known(), Known(), samples=50, variance=0.2, reach=0.4, sharpness=2.0)
+
+
+def test_points_lie_about_the_state_and_its_action() -> None:
+    """In the units of what was seen, actions clipped; weights are exp(c Q)."""
+    points, _ = J.look(KNOWN, J.begin(SPEC), X, jax.random.key(0))
+    apart = np.asarray(points.s) - np.array([1 / 0.5, -2 / 4, 0.9])
+    assert np.abs(apart[:, :2]).max() == pytest.approx(0.4, abs=0.03)
+    assert np.ptp(apart[:, 2]) > 0.3
+    assert float(points.s[:, 2].max()) == 1
+    q = 3 * 0.5 * np.asarray(points.s[:, 0]) + np.asarray(points.s[:, 2])
+    want = np.exp(2 * q) / np.exp(2 * q).sum()
+    np.testing.assert_allclose(np.exp(points.log_p), want, rtol=1e-4)
+
+
+def test_value_is_the_divergence_by_hand() -> None:
+    """A plain double loop with SciPy's Gaussians."""
+    seen = J.look(KNOWN, J.begin(SPEC), X, jax.random.key(0))
+    rng = np.random.default_rng(0)
+    x = jnp.asarray(np.asarray(X) + 0.2 * rng.normal(size=(4, 2)), jnp.float32)
+    path = Path(x, jnp.array([[0.1], [0.5], [0.9]]))
+    at = np.concatenate([np.asarray(path.x[:-1]) / np.asarray(UNITS), np.asarray(path.u)], 1)
+    total = 0.0
+    for s, log_p in zip(np.asarray(seen.points.s), np.asarray(seen.points.log_p), strict=True):
+        q = np.mean([multivariate_normal.pdf(s, centre, 0.2 * np.eye(3)) for centre in at])
+        total += np.exp(log_p) * (log_p + np.log(50) - np.log(q))
+    assert float(J.value(KNOWN, seen, path)) == pytest.approx(-total, rel=1e-4)
+
+
+def test_bad_fields_are_named() -> None:
+    """One line."""
+    with pytest.raises(ValueError, match=r"utility\.reach"):
+        UtilityErgodic(None, Known(), Known(), reach=0.0)
