@@ -34,7 +34,7 @@ KEYS = (
 )
 USAGE = [  # overrides of train, words of the line
     ("task=cartpool", "task=cartpool: unknown; choose one of ant, anywhere"),
-    ("algo=sacc", "algo=sacc: unknown; choose one of bayesopt, bc, deterministic_mpc"),
+    ("algo=sacc", "algo=sacc: unknown; choose one of bayesopt, bc, "),
     ("task=null", "task=null: choose one of ant, anywhere"),
     ("env=null", "env=None: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),

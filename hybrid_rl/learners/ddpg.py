@@ -63,11 +63,11 @@ class DDPG:
         """First parameters, optimisers and targets. The key is consumed."""
         of_policy, of_critic = jax.random.split(key)
         policy, critic = self.policy.init(of_policy, spec), self.critic.init(of_critic, spec)
-        targets = jax.tree.map(jnp.copy, (policy, critic))
         return DDPGState(
             policy,
             critic,
-            *targets,
+            jax.tree.map(jnp.copy, policy),
+            jax.tree.map(jnp.copy, critic),
             optax.adam(self.policy_learning_rate).init(policy),
             optax.adam(self.critic_learning_rate).init(critic),
         )
@@ -104,8 +104,11 @@ class DDPG:
         adam = optax.adam(self.policy_learning_rate)
         change, policy_optimiser = adam.update(grads, state.policy_optimiser)
         policy: Any = optax.apply_updates(state.policy, change)
-        targets = optax.incremental_update(
-            (policy, critic), (state.target_policy, state.target_critic), self.tau
-        )
+        targets = [
+            optax.incremental_update(new, old, self.tau)
+            for new, old in ((policy, state.target_policy), (critic, state.target_critic))
+        ]
         metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
-        return DDPGState(policy, critic, *targets, policy_optimiser, critic_optimiser), metrics
+        return DDPGState(
+            policy, critic, targets[0], targets[1], policy_optimiser, critic_optimiser
+        ), metrics
