@@ -5,8 +5,8 @@
     native   MuJoCo C on CPU threads, float64 inside      one world or few, any CPU
     mjx      MuJoCo XLA, pure JAX, float32                many worlds on an accelerator
     warp     MuJoCo Warp through MJX, float32             many worlds on an NVIDIA GPU
-    auto     native on a CPU, and for a few worlds anywhere; else mjx (warp only by name, until its
-             contact capacities are sized)
+    auto     native on a CPU, and for a few worlds anywhere; else mjx (warp by name only, until it
+             has been timed on a GPU)
 
 "A few" are 64 worlds a core of the host: at 64 worlds MJX on an H200 makes 17,000 steps of a
 half-cheetah a second, MuJoCo C about 150,000 on one core.
@@ -129,7 +129,6 @@ class Physics:
             "qacc_warmstart": state.warmstart,
             "ctrl": state.ctrl,
         }
-        data = accelerated.step(self.asset, impl, n, fields)
-        return PhysicsState(
-            data.qpos, data.qvel, data.act, data.qacc_warmstart, state.ctrl, data.sensordata
-        )
+        left = accelerated.step(self.asset, impl, n, fields)
+        *moved, sensors = (left[name] for name in accelerated.LEFT)
+        return PhysicsState(*moved, ctrl=state.ctrl, sensors=sensors)

@@ -16,18 +16,19 @@ import numpy as np
 from hybrid_rl import config
 from hybrid_rl.bench.ours import compiled
 from hybrid_rl.bench.race import Contestant
+from hybrid_rl.envs.physics import Physics
 
 
-def _model(task: str) -> mujoco.MjModel:
+def _physics(task: str) -> Physics:
     env: Any = config.build(config.load([f"task={task}", "physics=native"])).agent.episode.env
-    return env._body.model
+    return env._body
 
 
 def bare_native(task: str, count: int, steps: int) -> Contestant:
     """`mujoco.rollout` on all threads."""
     from mujoco import rollout
 
-    model = _model(task)
+    model = _physics(task).model
     threads = min(os.cpu_count() or 1, count)
     data = [mujoco.MjData(model) for _ in range(threads)]
     size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS.value)
@@ -48,10 +49,11 @@ def bare_mjx(task: str, count: int, steps: int, implementation: str = "jax") -> 
     """`mjx.step` in a scan under `vmap`."""
     from mujoco import mjx
 
-    model = _model(task)
-    on_device = mjx.put_model(model, impl=implementation)
-    one = mjx.make_data(model, impl=implementation)
-    ctrl = jnp.full(model.nu, 0.5)
+    from hybrid_rl.envs import accelerated
+
+    body = _physics(task)
+    on_device, one = accelerated.template(body.asset, implementation, count)
+    ctrl = jnp.full(body.model.nu, 0.5)
 
     def run(qpos: jax.Array) -> jax.Array:
         def start(q: jax.Array) -> Any:
@@ -62,7 +64,7 @@ def bare_mjx(task: str, count: int, steps: int, implementation: str = "jax") -> 
 
         return jax.lax.fori_loop(0, steps, forward, jax.vmap(start)(qpos)).qpos
 
-    qpos = jnp.tile(jnp.asarray(model.qpos0, jnp.float32), (count, 1))
+    qpos = jnp.tile(one.qpos, (count, 1))
     name = {"jax": "bare mjx.step", "warp": "bare mjx.step, Warp"}[implementation]
     with jax.numpy_rank_promotion("allow"):
         return compiled(name, run, qpos, work=count * steps)

@@ -1,0 +1,64 @@
+"""MuJoCo Warp, on the CPU: slow, and the same kernels as on a GPU."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
+
+from hybrid_rl.envs import accelerated
+
+
+@pytest.fixture(scope="module")
+def env():
+    """A hopper, for which a CPU counts as a GPU."""
+    pytest.importorskip("warp").config.quiet = True
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(jax, "default_backend", lambda: "gpu")
+        yield make("hopper", "warp")
+
+
+@pytest.mark.parametrize("lane", [LIFTED, TOUCHING], ids=["in the air", "in contact"])
+def test_agrees_with_mujoco(env, lane):
+    obs = np.asarray(rollout(env).obs[lane])
+    assert np.abs(obs - reference("hopper", "warp", lane)).max() < 1e-4  # measured: 4e-6
+
+
+def test_nan_stays_in_its_world(env):
+    obs = np.asarray(rollout(env).obs)
+    assert np.isnan(obs[BROKEN][5:]).all()
+    np.testing.assert_array_equal(obs[TOUCHING], obs[OTHER])
+
+
+@pytest.fixture
+def cramped(monkeypatch):
+    """Room for two constraint rows."""
+    monkeypatch.setattr(accelerated, "capacities", lambda asset: (11, 2))
+    accelerated.template.cache_clear()
+    yield
+    accelerated.template.cache_clear()
+
+
+def test_too_little_room_is_nan(env, cramped):
+    """MuJoCo Warp alone would leave contacts out, and go on."""
+    state = env.reset(jax.random.key(0))
+    fields = {
+        "qpos": state.data.qpos.at[1].add(-0.05),  # into the floor
+        "qvel": state.data.qvel,
+        "act": state.data.act,
+        "qacc_warmstart": state.data.warmstart,
+        "ctrl": state.data.ctrl,
+    }
+    assert jnp.isnan(accelerated.step("hopper.xml", "warp", 1, fields)["qpos"]).all()
+
+
+@pytest.mark.parametrize(
+    ("asset", "contacts", "rows"),
+    [
+        ("cartpole.xml", 0, 1),  # the rail's ends
+        ("hopper.xml", 11, 38),
+        ("halfcheetah.xml", 16, 70),  # 8 capsules on a floor, 6 joints' ends
+    ],
+)
+def test_capacities(asset, contacts, rows):
+    assert accelerated.capacities(asset) == (contacts, rows)
