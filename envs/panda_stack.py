@@ -7,17 +7,19 @@ e: point between the fingertips, b: block, s: where the block is to stand, one s
 base; F: wrench at the wrist [6]. o = (e, b, c, F) [13], c = 1 where the hand was told to close;
 with a base that starts anywhere (base_spread > 0) o has also s [16].
 a: velocity of e along x, y, z, as fractions of 0.15 m/s, low-passed with a lag of 0.2 s and kept
-in the workspace, and the grip: the hand closes where it is positive. The hand's orientation is
-held. A decision is 0.1 s: 20 steps. Joint velocities follow by damped least squares, once a
-decision, as near as that allows to those that return to the first posture.
+in the workspace. The hand closes by itself within 1 cm of the block, and opens where the block is
+within 1 cm of s, or lost; with grip=action it closes where a fourth action is positive. Its
+orientation is held. A decision is 0.1 s: 20 steps. Joint velocities follow by damped least squares,
+once a decision, as near as that allows to those that return to the first posture.
 
 grasped: told to close, the fingers stand on the block's sides, and e is within the block.
 success: block over base within 0.02 m, at its height within 0.01 m, let go, slower than
 0.05 m/s.
 
-Source: thesis, section 3.4 and Appendix B (state, action, reward); the pose of the start is
+Source: thesis, section 3.4 and Appendix B (state, action, reward: its action is a velocity alone,
+and by its reward a hand that may choose would hover over the block); the pose of the start is
 Franka's, the rate and workspace are those of the author's franka_interface. Lag, speed, blocks,
-their starts and the measure of success are ours.
+their starts, when the hand closes and the measure of success are ours.
 """
 
 from dataclasses import dataclass
@@ -29,6 +31,7 @@ from jax import Array
 
 from hybrid_rl.envs import mjcf
 from hybrid_rl.envs.kinematics import Chain, damped, hold, within
+from hybrid_rl.envs.options import one_of
 from hybrid_rl.envs.physics import Physics, PhysicsState, check
 from hybrid_rl.types import EnvState, Spec
 
@@ -53,6 +56,8 @@ class PandaStack:
     physics: str = "auto"
     speed: float = 0.15  # [m/s] in each direction at a = 1
     lag: float = 0.2  # [s] of the filter; 0: none
+    grip: str = "near"  # the hand closes by itself; or action
+    reach: float = 0.01  # [m] within which it does
     low: tuple[float, ...] = (0.3, -0.3, 0.02)  # [m] workspace of the hand: least x, y, z
     high: tuple[float, ...] = (0.55, 0.3, 0.5)  # [m] greatest
     block: tuple[float, ...] = (0.45, -0.12)  # [m] middle of its starts
@@ -69,6 +74,7 @@ class PandaStack:
 
     def __post_init__(self) -> None:
         check(self.physics)
+        one_of("grip", self.grip, ("near", "action"))
         for name, size in (("low", 3), ("high", 3), ("block", 2), ("base", 2)):
             numbers = tuple(getattr(self, name))
             if len(numbers) != size:
@@ -80,7 +86,9 @@ class PandaStack:
     @property
     def spec(self) -> Spec:
         """Sizes and rate."""
-        return Spec(obs=16 if self.base_spread else 13, act=4, dt=DT)
+        return Spec(
+            obs=16 if self.base_spread else 13, act=4 if self.grip == "action" else 3, dt=DT
+        )
 
     @property
     def _body(self) -> Physics:
@@ -95,19 +103,33 @@ class PandaStack:
         base = _cube(self.base, self.base_spread, jnp.float32(0.0), key_base)
         data = self._body.reset(jnp.concatenate((arm, block, base)), jnp.zeros(21, jnp.float32))
         info = {"velocity": jnp.zeros(3, jnp.float32), "closed": jnp.float32(0.0)}
-        state = self._state(data, jnp.zeros(4, jnp.float32), info)
+        state = self._state(data, jnp.zeros(self.spec.act, jnp.float32), info)
         return state.replace(reward=jnp.float32(0.0), terminated=jnp.zeros((), bool))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [4] in [-1, 1]."""
+        """The state one decision later. action: [3], or [4] with grip=action, in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         kept = exp(-DT / self.lag) if self.lag else 0.0
         velocity = kept * state.info["velocity"] + (1 - kept) * self.speed * action[:3]
-        closed = (action[3] > 0).astype(jnp.float32) + 0 * action[3]
+        closed = self._closes(state, action).astype(jnp.float32) + 0 * action[-1]
         fingers = OPEN * (1 - closed)
         ctrl = jnp.concatenate((self.servo(state.data, velocity), fingers[None]))
         data = self._body.step(state.data, ctrl, STEPS)
         return self._state(data, action, {**state.info, "velocity": velocity, "closed": closed})
+
+    def _closes(self, state: EnvState, action: Array) -> Array:
+        """Whether [] the hand is told to close now."""
+        if self.grip == "action":
+            return action[3] > 0
+        tool, block = state.obs[:3], state.obs[3:6]
+        away, left = _norm(block - tool), _norm(self._goal(state.data) - block)
+        kept = (away < SIDE / 2) & (left > self.reach)
+        taken = (away < self.reach) & (left > SIDE / 2)
+        return jnp.where(state.info["closed"] > 0, kept, taken)
+
+    def _goal(self, data: PhysicsState) -> Array:
+        """Where [3] the block is to stand."""
+        return data.qpos[BASE] + jnp.asarray((0.0, 0.0, SIDE), jnp.float32)
 
     def servo(self, data: PhysicsState, velocity: Array) -> Array:
         """Joint velocities [7] [rad/s] that move the hand by `velocity` [3] [m/s]."""
@@ -128,10 +150,9 @@ class PandaStack:
         return state.data.qpos
 
     def _state(self, data: PhysicsState, action: Array, info: dict[str, Array]) -> EnvState:
-        tool, block, base = TOOL.pose(data.qpos)[0], data.qpos[BLOCK], data.qpos[BASE]
+        tool, block, goal = TOOL.pose(data.qpos)[0], data.qpos[BLOCK], self._goal(data)
         wrench = jnp.concatenate([self._body.sensor(data, s) for s in ("force", "torque")])
         closed, fingers = info["closed"], data.qpos[7:9]
-        goal = base + jnp.asarray((0.0, 0.0, SIDE), jnp.float32)
         touching = jnp.abs(fingers - SIDE / 2) < TOUCH
         inside = jnp.abs(block - tool) < SIDE / 2
         grasped = (closed > 0) & touching.all() & inside.all()

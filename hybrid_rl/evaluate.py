@@ -22,7 +22,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.config import UsageError
 from hybrid_rl.training import checkpoint
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.evaluate import evaluation_keys, returns
+from hybrid_rl.training.evaluate import evaluation_keys, outcomes
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Controller, Params
 
@@ -66,8 +66,10 @@ def load(folder: Path) -> Trained:
     )
 
 
-def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> np.ndarray:
-    """Undiscounted returns [S, episodes], of the same episodes as in training.
+def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[str, np.ndarray]:
+    """Undiscounted `return` [S, episodes] of the same episodes as in training.
+
+    Where the task tells it, also `success` [S, episodes], 0 or 1.
 
     Raises:
         UsageError: for a mode that the method does not have.
@@ -75,20 +77,24 @@ def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> np.nda
     if mode not in trained.controllers:
         raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
-    one = partial(returns, trained.episode, trained.controllers[mode])
-    return np.asarray(jax.jit(jax.vmap(one))(trained.params, keys))
+    one = partial(outcomes, trained.episode, trained.controllers[mode])
+    got = jax.jit(jax.vmap(one))(trained.params, keys)
+    return {name: np.asarray(value) for name, value in got.items()}
 
 
-def report(trained: Trained, mode: str, got: np.ndarray) -> dict[str, Any]:
+def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
     """What evaluation_<mode>.json holds."""
+    returns = got["return"]
+    success = {"success": got["success"].mean(1).tolist()} if "success" in got else {}
     return {
         "mode": mode,
         "step": trained.step,
         "seeds": list(trained.seeds),
-        "episodes": got.shape[1],
-        "mean": got.mean(1).tolist(),
-        "std": got.std(1).tolist(),
-        "returns": got.tolist(),
+        "episodes": returns.shape[1],
+        "mean": returns.mean(1).tolist(),
+        "std": returns.std(1).tolist(),
+        **success,
+        "returns": returns.tolist(),
     }
 
 
@@ -106,11 +112,16 @@ def main() -> None:
     out = Path(given["run"]) / f"evaluation_{given['mode']}.json"
     out.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
     table = Table(title=f"{given['run']}, mode {given['mode']}, step {trained.step:,}")
-    for name in ("seed", "mean return", "std", "lowest", "highest"):
+    shares = said.get("success", [])
+    columns = ("seed", "mean return", "std", "lowest", "highest", *["successes"][: len(shares)])
+    for name in columns:
         table.add_column(name, justify="right")
-    for seed, each in zip(said["seeds"], said["returns"], strict=True):
+    for i, (seed, each) in enumerate(zip(said["seeds"], said["returns"], strict=True)):
         numbers = (np.mean(each), np.std(each), min(each), max(each))
-        table.add_row(str(seed), *(f"{value:,.1f}" for value in numbers))
+        row = [f"{value:,.1f}" for value in numbers] + [
+            f"{share:.0%}" for share in shares[i : i + 1]
+        ]
+        table.add_row(str(seed), *row)
     console.print(table)
     console.print(f"{episodes} episodes a seed; written to {out}", markup=False)
 

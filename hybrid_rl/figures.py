@@ -52,6 +52,9 @@ LABELS = {
     "eval/return": "Evaluation return",
     "eval/policy_return": "Evaluation return, policy alone",
     "eval/planner_return": "Evaluation return, planner alone",
+    "eval/success": "Share of successes",
+    "eval/policy_success": "Share of successes, policy alone",
+    "eval/planner_success": "Share of successes, planner alone",
     "planner/mode_insertion_gradient": "Mode insertion gradient",
     "planner/policy_share": "Share of the policy in the action",
 }

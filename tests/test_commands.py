@@ -188,8 +188,9 @@ def test_python_does_what_the_commands_do(tmp_path):
     trained = evaluate.load(Path(said["run_dir"]))
     assert (trained.seeds, trained.step, trained.notes) == ((0,), 600, ())
     got = evaluate.evaluate(trained, "policy", episodes=1)
-    assert got.shape == (1, 1)
-    assert np.isfinite(got).all()
+    assert list(got) == ["return"]
+    assert got["return"].shape == (1, 1)
+    assert np.isfinite(got["return"]).all()
     (curve,) = curves(said["run_dir"])
     assert (curve.label, list(curve.x)) == ("sac", [200, 400, 600])
     assert contents(tmp_path) == before

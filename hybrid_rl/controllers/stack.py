@@ -1,13 +1,15 @@
-"""Panda's expert, by hand: above the block, down, close, up, above the base, down, open, up.
+"""Panda's expert, by hand, from what is observed alone: so that it can be cloned.
 
-    v = 3 (g - e), at most `speed` in each direction;   the next goal g once |g - e| < 6 mm
+    v = 2 (g - p), at most `speed` in each direction
 
-e: point between the fingertips. The hand waits for six decisions while it closes and opens.
-The action undoes the world's filter of velocities.
+p is the hand and g lies in a funnel over the block; with the block in hand, p is the block and g
+in a funnel over its place on the base. A funnel rises 4 cm for each cm to the side, and goes 1 cm
+deeper than needed, so that nothing is approached ever more slowly. The hand lifts slowly at first,
+while its fingers move, and carries above the blocks. Where the grip is an action, it closes and
+opens within 8 mm.
 """
 
 from dataclasses import dataclass
-from math import exp
 
 import jax.numpy as jnp
 from jax import Array
@@ -15,11 +17,13 @@ from jax import Array
 from hybrid_rl.types import Params, Spec
 
 SIDE = 0.05  # [m] of a cube
-ABOVE = 0.1  # [m] over what it goes down to
-HIGH = 0.15  # [m] where it carries
-NEAR = 0.006  # [m] from a goal
-WAIT = 6  # decisions for the fingers
-CLOSE, OPEN, LAST = 2, 6, 7  # of the eight phases
+GAIN = 2.0  # [1/s]
+NEAR = 0.008  # [m] where the hand closes and opens
+DEEP = 0.01  # [m] below what it approaches
+SLOPE = 4.0  # of the funnel
+ABOVE = 0.07  # [m] greatest height of the funnel
+CLEAR = 0.04  # [m] from the table to a block that may go sideways
+SLOW = 0.02  # [m/s] at which a lift begins
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ class StackController:
 
     base: tuple[float, ...] = (0.45, 0.12)  # [m] where it stands, if it is not observed
     speed: float = 0.15  # [m/s] at full action
-    lag: float = 0.2  # [s] of the filter; 0: none
+    grip: str = "near"  # or action
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -40,31 +44,36 @@ class StackController:
         if len(self.base) != 2:
             raise ValueError(f"expert.base={list(self.base)}: must be 2 numbers")
 
-    def init(self, spec: Spec) -> tuple[Array, Array, Array, Array]:
-        """Phase [], decisions in it [], filtered velocity [3] [m/s], share kept of it []."""
-        kept = exp(-spec.dt / self.lag) if self.lag else 0.0
-        zero = jnp.zeros((), jnp.int32)
-        return zero, zero, jnp.zeros(3), jnp.float32(kept)
+    def init(self, spec: Spec) -> tuple[()]:
+        """Nothing: the expert has no memory."""
+        return ()
 
     def act(
-        self, params: Params, state: tuple[Array, ...], obs: Array, key: Array
-    ) -> tuple[Array, tuple[Array, ...], dict[str, Array]]:
-        """Action [4], the next state, no metrics. There is no chance in it."""
-        phase, waited, held, kept = state
-        tool, block = obs[:3], obs[3:6]
+        self, params: Params, state: tuple[()], obs: Array, key: Array
+    ) -> tuple[Array, tuple[()], dict[str, Array]]:
+        """Action [3] or [4], no state, no metrics. There is no chance in it."""
+        tool, block, closed = obs[:3], obs[3:6], obs[6] > 0
         goal = obs[13:] if obs.size > 13 else jnp.array([*self.base, 1.5 * SIDE])
-        up, high = jnp.array([0.0, 0.0, ABOVE]), tool.at[2].set(HIGH)
-        goals = jnp.stack([block + up, block, tool, high, goal + up, goal, tool, goal + up])
-        error = goals[phase] - tool
-        still = (phase == CLOSE) | (phase == OPEN)
-        done = jnp.where(still, waited >= WAIT, jnp.linalg.norm(error) < NEAR)
-        velocity = jnp.clip(3 * error, -self.speed, self.speed)
-        action = jnp.clip((velocity - kept * held) / ((1 - kept) * self.speed), -1.0, 1.0)
-        held = kept * held + (1 - kept) * self.speed * action
-        grip = jnp.where((phase >= CLOSE) & (phase < OPEN), 1.0, -1.0)
-        after = jnp.where(done, jnp.minimum(phase + 1, LAST), phase)
-        state = after, jnp.where(done, 0, waited + 1), held, kept
-        return jnp.append(action, grip), state, {}
+        held = closed & (jnp.linalg.norm(block - tool) < SIDE / 2)
+        left = jnp.where(held, goal - block, block - tool)
+        aside, lifted = jnp.linalg.norm(left[:2]), block[2] - SIDE / 2
+        height = jnp.clip(SLOPE * (aside - NEAR / 2), 0.0, ABOVE) - DEEP
+        velocity = GAIN * left.at[2].add(height)
+        lift = SLOW + GAIN * jnp.where(held, lifted, jnp.maximum(tool[2] - block[2], 0.0))
+        carried = jnp.append(
+            velocity[:2] * jnp.clip(lifted / CLEAR - 1, 0.0, 1.0), jnp.minimum(velocity[2], lift)
+        )
+        velocity = jnp.where(held & (aside > SIDE / 2), carried, velocity)
+        there = jnp.abs(goal - block)
+        stands = (there < jnp.array([0.02, 0.02, 0.01])).all() & ~closed
+        velocity = jnp.where(stands, jnp.array([0.0, 0.0, 1.0]) * lift, velocity)
+        action = jnp.clip(velocity / self.speed, -1.0, 1.0)
+        if self.grip == "action":
+            home = (there[:2] < NEAR).all() & (there[2] < NEAR / 2)
+            near = jnp.linalg.norm(block - tool) < NEAR
+            grip = jnp.where(closed, held & ~home, near & ~stands)
+            action = jnp.append(action, jnp.where(grip, 1.0, -1.0))
+        return action, (), {}
 
     def greedy(self) -> "StackController":
         """Itself."""

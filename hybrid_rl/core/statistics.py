@@ -37,8 +37,9 @@ def update(stats: Running, batch: Array, rate: float = 1e-3) -> Running:
 
 
 def whiten(stats: Running, x: Array) -> Array:
-    """(x - mean) / std for x [d]."""
-    return (x - stats.mean) / stats.std
+    """(x - mean) / std for x [..., d]."""
+    mean, std = (jnp.broadcast_to(part, x.shape) for part in (stats.mean, stats.std))
+    return (x - mean) / std
 
 
 def colour(stats: Running, x: Array) -> Array:

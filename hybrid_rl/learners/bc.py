@@ -51,7 +51,8 @@ class BehaviourCloning:
 
     def init(self, key: Array, spec: Spec) -> CloningState:
         """First parameters and optimiser. The key is consumed."""
-        policy = self.policy.init(key, spec)
+        shown = self.demonstrations.recall()
+        policy = self.policy.observe(self.policy.init(key, spec), jnp.asarray(shown.obs))
         return CloningState(policy, optax.adam(self.learning_rate).init(policy))
 
     def params(self, state: CloningState) -> dict[str, Any]:

@@ -3,7 +3,8 @@
 log pi(u|x) = log N(z; mu, sigma) - sum_i log(1 - tanh(z_i)^2)      (Haarnoja et al. 2018, eq. 21)
 
 One trunk with two heads, or two networks (thesis appendix B: a sine layer for the mean, a
-rectified layer for the deviation) where `log_std_activation` is given.
+rectified layer for the deviation) where `log_std_activation` is given. With `normalise` they see
+states in units of the deviation that `observe` was told of.
 """
 
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import statistics
 from hybrid_rl.networks import MLP, check, outputs
 from hybrid_rl.types import Spec
 
@@ -30,6 +32,7 @@ class TanhGaussian:
     log_std_activation: str | None = None  # None: mean and deviation share the trunk
     log_std_min: float = -5.0
     log_std_max: float = 2.0
+    normalise: bool = False
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -45,16 +48,26 @@ class TanhGaussian:
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """First parameters. The key is consumed."""
         x, m = jnp.zeros(spec.obs), spec.act
+        seen = {"state": statistics.init(spec.obs)} if self.normalise else {}
         if self.log_std_activation is None:
-            return {"trunk": self._net(2 * m).init(key, x)}
+            return {**seen, "trunk": self._net(2 * m).init(key, x)}
         mean, log_std = jax.random.split(key)
         return {
+            **seen,
             "mean": self._net(m).init(mean, x),
             "log_std": self._net(m, self.log_std_activation).init(log_std, x),
         }
 
+    def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
+        """Parameters whose statistics have seen states x [B, n]."""
+        if not self.normalise:
+            return params
+        return {**params, "state": statistics.update(params["state"], x)}
+
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """Mu and sigma [..., m] before the squashing, at x [..., n]."""
+        if self.normalise:
+            x = statistics.whiten(jax.lax.stop_gradient(params["state"]), x)
         if self.log_std_activation is None:
             both: Any = self._net(outputs(params["trunk"])).apply(params["trunk"], x)
             mu, log_std = jnp.split(both, 2, axis=-1)

@@ -1,4 +1,4 @@
-"""Undiscounted returns of a controller whose parameters stay as they are."""
+"""What becomes of episodes under a controller whose parameters stay as they are."""
 
 import jax
 import jax.numpy as jnp
@@ -8,8 +8,14 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Controller, EnvState, Params
 
 
-def returns(episode: Episode, controller: Controller, params: Params, keys: Array) -> Array:
-    """Return [N] of one episode per key [N]; all N worlds run side by side until all are done."""
+def outcomes(
+    episode: Episode, controller: Controller, params: Params, keys: Array
+) -> dict[str, Array]:
+    """Undiscounted `return` [N] of one episode per key [N], and where the task tells it `success`.
+
+    Success is 1 where the last state counts as one, else 0. All N worlds run side by side until
+    all are done.
+    """
     starts, keys = _split(keys)
     env = jax.vmap(episode.reset)(starts)
     rest = controller.init(episode.spec)
@@ -34,7 +40,8 @@ def returns(episode: Episode, controller: Controller, params: Params, keys: Arra
         return frozen, control, keys
 
     env = jax.lax.while_loop(going, decide, (env, control, keys))[0]
-    return env.info["return"]
+    told = {"success": env.metrics["success"]} if "success" in env.metrics else {}
+    return {"return": env.info["return"], **told}
 
 
 def rollout(

@@ -19,6 +19,7 @@ LONGEST = 60.0  # [s] but never more than this
 SHOWN = {  # scalar -> how it reads
     "train/return": "return {:,.1f}",
     "eval/return": "eval {:,.1f}",
+    "eval/success": "success {:.0%}",
     "perf/env_steps_per_s": "{:,.0f} steps/s",
 }
 

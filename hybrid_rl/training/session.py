@@ -18,16 +18,16 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.training import checkpoint, provenance, rows
-from hybrid_rl.training.evaluate import evaluation_keys, returns
+from hybrid_rl.training.evaluate import evaluation_keys, outcomes
 from hybrid_rl.training.log import RunLog
 from hybrid_rl.training.loop import SEEDS, Loop
 from hybrid_rl.training.progress import Progress
 from hybrid_rl.types import Controller, Params
 
-EVALUATED = {  # mode -> name of its return
-    "full": "eval/return",
-    "policy": "eval/policy_return",
-    "planner": "eval/planner_return",
+EVALUATED = {  # mode -> what its outcomes' names begin with
+    "full": "eval/",
+    "policy": "eval/policy_",
+    "planner": "eval/planner_",
 }
 
 
@@ -210,23 +210,24 @@ class Session:
         self._show(shown | {"perf/env_steps_per_s": speed})
 
     def _evaluate(self) -> None:
-        """Returns of every evaluated mode, with keys of their own."""
+        """Outcomes of every evaluated mode, with keys of their own."""
         seeds, agent = self.loop.seeds, self.loop.agent
         params = jax.vmap(agent.params)(self.state)
         keys = jnp.stack([evaluation_keys(s, self.schedule.eval_episodes) for s in seeds])
         found = [{"step": self.step, "seed": seed} for seed in seeds]
         for mode in self.schedule.eval_modes:
-            got = np.asarray(self._evaluator(mode, params, keys)(params, keys)).mean(-1)
-            for row, value in zip(found, got, strict=True):
-                row[EVALUATED[mode]] = value
-            self._show({EVALUATED[mode]: float(got.mean())})
+            for name, got in self._evaluator(mode, params, keys)(params, keys).items():
+                means = np.asarray(got).mean(-1)
+                for row, value in zip(found, means, strict=True):
+                    row[EVALUATED[mode] + name] = value
+                self._show({EVALUATED[mode] + name: float(means.mean())})
         self._write(found)
 
     def _evaluator(self, mode: str, params: Params, keys: jax.Array) -> Any:
-        """The compiled program (params, keys) -> returns [S, N] of `mode`."""
+        """The compiled program (params, keys) -> outcomes [S, N] of `mode`."""
         if mode not in self.evaluators:
             began = perf_counter()
-            one = partial(returns, self.loop.agent.episode, self.controllers[mode])
+            one = partial(outcomes, self.loop.agent.episode, self.controllers[mode])
             program = self.loop.spread(jax.vmap(one), SEEDS, SEEDS)
             self.evaluators[mode] = program.lower(params, keys).compile()
             self.loop.compile_s += perf_counter() - began

@@ -8,7 +8,7 @@ from hybrid_rl.controllers.push import PushController
 from hybrid_rl.controllers.stack import StackController
 from hybrid_rl.types import Params
 
-EXPERTS = {"sawyer_push": PushController(), "panda_stack": StackController()}
+EXPERTS = {"sawyer_push": PushController(), "panda_stack": StackController(grip="action")}
 
 
 @cache

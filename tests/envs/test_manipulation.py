@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from worlds import DECISIONS, IMPLEMENTATIONS, make, program
 
+from hybrid_rl.controllers.stack import StackController
 from hybrid_rl.envs.kinematics import hold
 from hybrid_rl.envs.panda_stack import TOOL, PandaStack
 from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
@@ -33,7 +34,7 @@ def test_the_rod_goes_where_it_is_told():
 
 
 def test_the_filter_keeps_what_it_says():
-    sawyer, panda = SawyerPush("native"), PandaStack("native")
+    sawyer, panda = SawyerPush("native"), PandaStack("native", grip="action")
     state = jax.jit(sawyer.reset)(jax.random.key(0))
     state = jax.jit(sawyer.step)(state, jnp.array([1.0, -1.0]))
     np.testing.assert_allclose(state.info["velocity"], [0.03, -0.03], rtol=1e-5)
@@ -117,6 +118,38 @@ def test_stack_success_by_hand():
     assert not _panda(PandaStack("native", terminate=False), there, 0.0, 0.04)[0].terminated
     for shift, closed in [((0.03, 0, 0), 0.0), ((0, 0, 0.015), 0.0), ((0, 0, 0), 1.0)]:
         assert _panda(env, there + shift, closed, 0.04)[0].metrics["success"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("tool_to_block", "closed", "then"),
+    [
+        ((0.0, 0.0, 0.009), 0.0, 1.0),  # within reach
+        ((0.0, 0.0, 0.011), 0.0, 0.0),
+        ((0.0, 0.0, 0.02), 1.0, 1.0),  # kept
+        ((0.0, 0.0, 0.03), 1.0, 0.0),  # lost
+    ],
+)
+def test_the_hand_closes_by_itself(tool_to_block, closed, then):
+    env = PandaStack("native")
+    state, _ = _panda(env, tool_to_block, closed, 0.04)
+    assert env._closes(state, jnp.zeros(3)) == then
+
+
+def test_the_hand_opens_by_itself():
+    env = PandaStack("native")
+    _, tool = _panda(env, (0.0, 0.0, 0.0), 1.0, 0.025)
+    there = np.array([0.45, 0.12, 0.075]) - np.asarray(tool)  # from hand to place
+    state, _ = _panda(env, there, 1.0, 0.025)
+    at = state.data.qpos[9:12]
+    for off, kept in [((0.0, 0.0, 0.009), False), ((0.011, 0.0, 0.0), True)]:
+        obs = state.obs.at[:3].set(at + jnp.array(off)).at[3:6].set(at + jnp.array(off))
+        assert env._closes(state.replace(obs=obs), jnp.zeros(3)) == kept
+
+
+def test_the_expert_stacks_as_the_task_stands():
+    _, actions, states = play(PandaStack("native"), StackController(), 100, 4)
+    assert actions.shape == (4, 100, 3)
+    assert states.metrics["success"].any(1).all()
 
 
 def test_a_base_anywhere_is_seen():

@@ -38,7 +38,11 @@ TASKS = {
     "panda_stack": PandaStack,
     **FORMULAS,
 }
-FIELDS = {"ant": {"integrator": "euler"}, "quadcopter": {"task": "track", "damping": True}}
+FIELDS = {
+    "ant": {"integrator": "euler"},
+    "quadcopter": {"task": "track", "damping": True},
+    "panda_stack": {"grip": "action"},
+}
 SIMULATED = tuple(task for task in TASKS if task not in FORMULAS)
 ARMS = ("sawyer_push", "panda_stack")  # controls follow from states
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, world]

@@ -50,3 +50,15 @@ def test_bad_fields_are_named(fields: dict) -> None:
     """One clear line."""
     with pytest.raises(ValueError, match=next(iter(fields))):
         TanhGaussian(**fields)
+
+
+def test_normalised_it_does_not_depend_on_units() -> None:
+    policy = TanhGaussian(hidden=(16,), normalise=True)
+    x = jax.random.normal(jax.random.key(1), (50, SPEC.obs))
+    scale, shift = jnp.array([1e-2, 1.0, 30.0]), jnp.array([5.0, 0.0, -3.0])
+    first = policy.init(jax.random.key(0), SPEC)
+    there = jnp.broadcast_to(scale, x.shape) * x + jnp.broadcast_to(shift, x.shape)
+    plain = policy.observe(first, x)
+    moved = policy.observe(first, there)
+    np.testing.assert_allclose(policy.mean(moved, there), policy.mean(plain, x), atol=1e-4)
+    assert not np.allclose(policy.mean(first, x), policy.mean(plain, x), atol=1e-2)
