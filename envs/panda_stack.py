@@ -3,6 +3,9 @@
     r = stage - 1e-6 (|F| + |a|);   ends with success
     stage = -1.25 |e - s| where the block is grasped, else -|e - b|
 
+Taking the block costs: the reward falls by 1.25 |e - s|, and a planner whose horizon is short
+hovers over the block. With reward=joined it does not fall: stage = -|e - b| - 1.25 |b - s| before.
+
 e: point between the fingertips, b: block, s: where the block is to stand, one side above the
 base; F: wrench at the wrist [6]. o = (e, b, c, F) [13], c = 1 where the hand was told to close;
 with a base that starts anywhere (base_spread > 0) o has also s [16].
@@ -65,6 +68,7 @@ class PandaStack:
     block_turn: float = 0.1  # [rad] greatest
     base: tuple[float, ...] = (0.45, 0.12)  # [m]
     base_spread: float = 0.0  # [m] greatest, along x and y
+    reward: str = "thesis"  # or joined
     penalty: float = 1e-6  # of wrench and action
     success_distance: float = 0.02  # [m] block over base
     terminate: bool = True  # with success
@@ -75,6 +79,7 @@ class PandaStack:
     def __post_init__(self) -> None:
         check(self.physics)
         one_of("grip", self.grip, ("near", "action"))
+        one_of("reward", self.reward, ("thesis", "joined"))
         for name, size in (("low", 3), ("high", 3), ("block", 2), ("base", 2)):
             numbers = tuple(getattr(self, name))
             if len(numbers) != size:
@@ -156,7 +161,8 @@ class PandaStack:
         touching = jnp.abs(fingers - SIDE / 2) < TOUCH
         inside = jnp.abs(block - tool) < SIDE / 2
         grasped = (closed > 0) & touching.all() & inside.all()
-        stage = jnp.where(grasped, -1.25 * _norm(tool - goal), -_norm(tool - block))
+        ahead = 1.25 * _norm(block - goal) if self.reward == "joined" else 0.0
+        stage = jnp.where(grasped, -1.25 * _norm(tool - goal), -_norm(tool - block) - ahead)
         away = jnp.abs(block - goal)
         there = (_norm(away[:2]) < self.success_distance) & (away[2] < LEVEL)
         success = there & (closed == 0) & (_norm(data.qvel[BLOCK_SPEED]) < QUIET)

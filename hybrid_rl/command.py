@@ -115,8 +115,10 @@ def asked(config_overrides: list[str]) -> dict[str, str]:
     return {key: value for key, _, value in pairs}
 
 
-def arguments(known: dict[str, Any]) -> dict[str, str]:
+def arguments(known: dict[str, Any], *groups: str) -> dict[str, str]:
     """`key=value` arguments of a command that is no training; `known` names the keys.
+
+    Keys below one of `groups` of the configuration, as env.speed below env, are taken too.
 
     Raises:
         UsageError: for an argument of another form or an unknown key.
@@ -124,8 +126,9 @@ def arguments(known: dict[str, Any]) -> dict[str, str]:
     given = {}
     for text in sys.argv[1:]:
         key, equals, value = text.partition("=")
-        if not equals or key not in known:
-            raise UsageError(f"{text}: unknown argument; give key=value with {', '.join(known)}")
+        if not equals or not (key in known or key.partition(".")[0] in groups):
+            keys = ", ".join([*known, *(f"{group}.*" for group in groups)])
+            raise UsageError(f"{text}: unknown argument; give key=value with {keys}")
         given[key] = value
     return given
 

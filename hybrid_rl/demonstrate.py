@@ -1,8 +1,9 @@
 """`python -m hybrid_rl.demonstrate task=T [episodes=10] [out=FILE]`: an expert in a file.
 
-FILE is demonstrations/T.npz if nothing else is said. The expert is the task's own, by hand; with
-run=DIR it is what was learned there (mode: full, policy or planner; the first seed), without
-exploration. Episode i begins by the key i of `seed`.
+FILE is demonstrations/T.npz if nothing else is said. The expert is the task's own, by hand, in the
+task as it stands or as env.KEY=VALUE, episode.KEY=VALUE, expert.KEY=VALUE change it; with run=DIR
+it is what was learned there (mode: full, policy or planner; the first seed), without exploration.
+Episode i begins by the key i of `seed`.
 """
 
 from dataclasses import dataclass
@@ -59,9 +60,12 @@ def _expert(given: dict[str, str]) -> tuple[str, Episode, Controller, Params]:
     if bool(given["task"]) == bool(given["run"]):
         raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
     if given["task"]:
-        config = configuration.load([f"task={given['task']}", "algo=sac"])
+        changes = [f"{key}={value}" for key, value in given.items() if key not in DEFAULTS]
+        config = configuration.load([f"task={given['task']}", "algo=sac", *changes])
         expert = configuration.expert(config)
         return config.task, configuration.build(config).agent.episode, expert, Params()
+    if len(given) > len(DEFAULTS):
+        raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     from hybrid_rl.evaluate import load
 
     trained, mode = load(Path(given["run"])), given["mode"]
@@ -73,7 +77,7 @@ def _expert(given: dict[str, str]) -> tuple[str, Episode, Controller, Params]:
 
 def main() -> None:
     """The command."""
-    given = DEFAULTS | command.arguments(DEFAULTS)
+    given = DEFAULTS | command.arguments(DEFAULTS, "env", "episode", "expert")
     episodes = command.count("episodes", given["episodes"])
     seed = command.count("seed", given["seed"], least=0)
     task, world, controller, params = _expert(given)

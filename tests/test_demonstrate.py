@@ -57,3 +57,18 @@ def test_a_run_is_recorded_the_same_twice_and_learned_from(trained, tmp_path, mo
     assert {"bc/policy_loss", "model/loss"} <= {name for row in rows for name in row}
     capacity = config.build(config.load(line)).agent.replay.capacity
     assert capacity == 2 * 40 + 100  # neither demonstrations nor experience are forgotten
+
+
+def test_the_task_is_changed_as_in_training(tmp_path, capsys):
+    out = tmp_path / "short.npz"
+    line = ["task=sawyer_push", "episodes=1", "episode.steps=3", "env.speed=0.05", f"out={out}"]
+    assert call(lambda: command.guarded(demonstrate.main), *line) == 0
+    found = load(out)
+    assert len(found["reward"]) == 3
+    moved = np.linalg.norm(np.diff(found["obs"][:, :2] / 10, axis=0), axis=1)
+    assert (moved < 0.05 * np.sqrt(2) * 0.1).all()  # [m] in a decision
+    for wrong in ("env.sped=1", "planner.samples=3"):
+        assert call(lambda: command.guarded(demonstrate.main), *line, wrong) == 2
+    said = capsys.readouterr().err
+    assert "env.sped: unknown key" in said
+    assert "planner.samples=3: unknown argument; give key=value with task" in said

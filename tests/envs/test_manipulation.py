@@ -102,6 +102,9 @@ def test_stack_reward_by_hand():
     goal = np.array([0.45, 0.12, 0.075])
     np.testing.assert_allclose(held.reward, -1.25 * np.linalg.norm(tool - goal), rtol=1e-5)
     assert held.metrics["grasped"] == 1.0
+    joined, _ = _panda(PandaStack("native", reward="joined"), (0.3, 0.0, -0.4), 0.0, 0.04)
+    left = np.linalg.norm(np.asarray(tool) + np.array([0.3, 0.0, -0.4]) - goal)
+    np.testing.assert_allclose(joined.reward, -0.5 - 1.25 * left, rtol=1e-5)
     for block, closed, fingers in [
         ((0.0, 0.005, 0.01), 0.0, 0.0255),  # told to open
         ((0.0, 0.005, 0.01), 1.0, 0.03),  # not closed
