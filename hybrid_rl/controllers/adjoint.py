@@ -31,7 +31,7 @@ class Held(NamedTuple):
     """What goes from one decision to the next."""
 
     v: Array  # [T, m] the corrections that acted last, from then on
-    age: Array  # [] decisions since they were planned; 0: plan anew
+    count: Array  # [] decisions of the episode so far
     memory: Any  # the objective's
 
 
@@ -50,6 +50,7 @@ class AdjointController:
     iterations: int = 1
     warm_start: bool = False  # from the last correction, shifted
     gain: float | None = None  # W [u^2 / J]; None: the policy's variance
+    gain_decay: float = 1.0  # of W, per decision of the episode
     normalise: bool = False  # g by its root mean square over the horizon; W is then [u]
     costate_bound: float | None = None  # the author's clip of rho, 1
     noise_decay: float | None = 0.999  # of the executed noise, per decision of the run; None: none
@@ -67,6 +68,8 @@ class AdjointController:
             raise ValueError("adjoint planner: gain=null needs a policy, whose variance it takes")
         if self.gain is not None and not self.gain > 0:
             raise ValueError(f"adjoint planner: gain={self.gain}: must be above 0")
+        if not 0 < self.gain_decay <= 1:
+            raise ValueError(f"adjoint planner: gain_decay={self.gain_decay}: must lie in (0, 1]")
         if self.noise_decay is not None and not 0 < self.noise_decay <= 1:
             raise ValueError(f"adjoint planner: noise_decay={self.noise_decay}: must lie in (0, 1]")
         if self.apply not in APPLY:
@@ -86,14 +89,14 @@ class AdjointController:
         looking, noising = jax.random.split(key)
         x = self.model.lift(params.model, obs)
         memory = self.objective.look(params, state.memory, x, looking)
-        plan = _Plan(self, params, memory, x, state.v.shape[1])
+        plan = _Plan(self, params, memory, x, state.v.shape[1], self.gain_decay**state.count)
+        due = (self.apply == "first") | (state.count % self.horizon == 0)
         left = sampling.shift(state.v)
-        held = left if self.warm_start else jnp.where(state.age > 0, left, 0)
+        held = left if self.warm_start else jnp.where(due, 0, left)
         if self.apply == "first":
-            v, age = plan.better(held), state.age
+            v = plan.better(held)
         else:
-            v = jax.lax.cond(state.age == 0, lambda v: plan.window(plan.better(v)), _same, held)
-            age = (state.age + 1) % self.horizon
+            v = jax.lax.cond(due, lambda v: plan.window(plan.better(v)), _same, held)
         action, metrics = plan.mean(x) + v[0], plan.metrics(v)
         if self.noise_decay is not None:
             decisions: Any = params.decisions
@@ -103,7 +106,7 @@ class AdjointController:
             out = plan.leaves(action, self.level)
             action = jnp.where(out, jnp.clip(plan.mean(x), -1, 1), action)
             metrics["planner/handed_over"] = out.astype(jnp.float32)
-        return action, Held(v, age, memory), metrics
+        return action, Held(v, state.count + 1, memory), metrics
 
     def greedy(self) -> "AdjointController":
         """Without noise."""
@@ -119,6 +122,7 @@ class _Plan:
     memory: Any
     x: Array
     act: int  # m
+    share: Array  # [] of W that the episode has left
 
     def step(self, x: Array, u: Array) -> Array:
         """The model."""
@@ -146,7 +150,7 @@ class _Plan:
             g = adjoint.adjoint(self.step, self.mean, self.value, path, bound).gradient
             if self.of.normalise:
                 g = g / (jnp.sqrt(jnp.mean(g**2)) + 1e-6)
-            u = path.u + self._gain(path.x[:-1]) * g
+            u = path.u + self.share * self._gain(path.x[:-1]) * g
             return jnp.clip(u, -1, 1) - (path.u - v), None
 
         return jax.lax.scan(once, v, None, length=self.of.iterations)[0]

@@ -1,9 +1,9 @@
 """J = -D(p || q) around a policy, p(s) ~ exp(c Q(s)): spend time where the critic promises much.
 
-    s = (x / units, u),   s_i ~ (x_0 / units, pi(x_0)) + reach U(-1, 1),   q over the path
+    s = (x / units, u),   s_i ~ U(s_0 - reach, s_0 + reach) where -1 <= u <= 1,   q over the path
 
 s holds states and actions (thesis eq. 6.27, Algorithm 11). The N points are drawn anew at every
-decision, about the state that the robot is in and the action of its policy there; units are the
+decision, about s_0, the state that the robot is in and its policy's action there; units are the
 deviations of the states that the model has seen. D is the KL-ergodic measure itself: the bound of
 eq. (6.17), which the thesis takes for speed, follows the mean of p alone.
 """
@@ -57,12 +57,11 @@ class UtilityErgodic:
     def look(self, params: Params, memory: Seen, x: Array, key: Array) -> Seen:
         """Draw the points about x [n], and weigh them. The key is consumed."""
         units, u = params.model["state"].std, self.policy.mean(params.policy, x)
-        shape = memory.points.s.shape
-        apart = self.reach * jax.random.uniform(key, shape, minval=-1, maxval=1)
-        s = jnp.concatenate([x / units, u])[None] + apart
-        states, actions = s[:, : len(x)], jnp.clip(s[:, len(x) :], -1, 1)
-        q = self.critic.value(params.critic, states * units[None], actions)
-        s = jnp.concatenate([states, actions], axis=-1)
+        bound = jnp.concatenate([jnp.full(x.shape, jnp.inf), jnp.ones(u.shape)])
+        about = jnp.concatenate([x / units, u])
+        low, high = (jnp.clip(about + apart, -bound, bound) for apart in (-self.reach, self.reach))
+        s = jax.random.uniform(key, memory.points.s.shape, minval=low, maxval=high)
+        q = self.critic.value(params.critic, s[:, : len(x)] * units[None], s[:, len(x) :])
         return Seen(ergodic.Points(s, jax.nn.log_softmax(self.sharpness * q)), units)
 
     def value(self, params: Params, memory: Seen, path: Path) -> Array:

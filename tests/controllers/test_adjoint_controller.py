@@ -103,6 +103,15 @@ def test_actions_stay_within_bounds() -> None:
     assert float(jnp.abs(actions(controller, 20)).max()) <= 1
 
 
+def test_corrections_fade_with_the_decisions_of_the_episode() -> None:
+    """W is decay^decisions times itself, however long the run."""
+    controller = AdjointController(Cart(), Speed(), Half(), 1, gain_decay=0.5, noise_decay=None)
+    state, params = controller.init(SPEC), Params(decisions=jnp.asarray(1000))
+    for decision in range(3):
+        u, state, _ = controller.act(params, state, jnp.zeros(2), jax.random.key(0))
+        assert float(u[0]) == pytest.approx(-0.2 + 0.5**decision * 0.25 * 0.1, abs=1e-6)
+
+
 def test_noise_fades_with_the_decisions_of_the_run() -> None:
     """Its deviation is decay^decisions; the greedy controller has none."""
     controller = AdjointController(Cart(), Speed(), Half(), 1, noise_decay=0.99)
@@ -118,6 +127,7 @@ def test_noise_fades_with_the_decisions_of_the_run() -> None:
         ({"horizon": 0}, "horizon=0"),
         ({"iterations": 1.5}, "iterations=1.5"),
         ({"gain": -1.0}, "gain=-1.0"),
+        ({"gain_decay": 0.0}, "gain_decay=0.0"),
         ({"noise_decay": 2.0}, "noise_decay=2.0"),
         ({"policy": None}, "gain=null needs a policy"),
     ],

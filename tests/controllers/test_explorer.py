@@ -82,7 +82,7 @@ def test_correction_is_the_printed_formula() -> None:
 def test_horizon_holds_its_corrections_around_the_measured_state() -> None:
     """They are planned every 8 decisions, and added to the policy where the world really is."""
     x, u, state, _ = follow(replace(KLE3, apply="horizon"), 16)
-    np.testing.assert_array_equal(state.age, np.arange(1, 17) % 8)
+    np.testing.assert_array_equal(state.count, np.arange(1, 17))
     np.testing.assert_array_equal(state.memory, np.arange(1, 17))
     for start in (0, 8):
         plan = state.v[start]

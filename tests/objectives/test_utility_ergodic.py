@@ -35,12 +35,12 @@ J = UtilityErgodic(None, Known(), Known(), samples=50, variance=0.2, reach=0.4, 
 
 
 def test_points_lie_about_the_state_and_its_action() -> None:
-    """In the units of what was seen, actions clipped; weights are exp(c Q)."""
+    """In the units of what was seen, even where actions are bounded; weights are exp(c Q)."""
     points, _ = J.look(KNOWN, J.begin(SPEC), X, jax.random.key(0))
     apart = np.asarray(points.s) - np.array([1 / 0.5, -2 / 4, 0.9])
     assert np.abs(apart[:, :2]).max() == pytest.approx(0.4, abs=0.03)
-    assert np.ptp(apart[:, 2]) > 0.3
-    assert float(points.s[:, 2].max()) == 1
+    assert apart[:, 2].mean() == pytest.approx(-0.15, abs=0.05)  # between 0.5 and 1
+    assert 0.97 < float(points.s[:, 2].max()) <= 1
     q = 3 * 0.5 * np.asarray(points.s[:, 0]) + np.asarray(points.s[:, 2])
     want = np.exp(2 * q) / np.exp(2 * q).sum()
     np.testing.assert_allclose(np.exp(points.log_p), want, rtol=1e-4)
