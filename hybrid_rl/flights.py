@@ -240,15 +240,14 @@ def outcome(found: dict[str, Any], dt: float) -> Any:
             ):
                 middle = np.array([iqm(each) for each in what])
                 ends = np.abs(np.array([band(each) for each in what]).T - middle[None])
-                axes.errorbar(power, middle, ends, color=colour, marker="o", ms=4, label=name)
-        tracks.axhline(iqm(found[EXACT]["distance"].mean(1)), color="k", lw=0.8, label=EXACT)
+                axes.errorbar(power, middle, ends, color=colour, marker="o", ms=4)
+        tracks.axhline(iqm(found[EXACT]["distance"].mean(1)), color="k", lw=0.8)
         over_time.set(xlabel="Time [s]", title="Distance to the target [m]", yscale="log")
         wrong.set(xlabel="Power loss of the flight [N]", title="Error of one decision")
         tracks.set(xlabel="Power loss of the flight [N]", title="Mean distance [m]")
         for axes in (wrong, tracks):
             axes.set(xscale="log", yscale="log")
-        over_time.legend(fontsize=6, ncols=2)
-        tracks.legend(fontsize=7)
+        over_time.legend(fontsize=6, ncols=2)  # the colours are those of all panels
     return figure
 
 
