@@ -8,7 +8,7 @@
 o = (p, R by rows, v, w) [18], v and w in the body's frame; u = 6 a; start: p U(-away, away),
 upright, v and w U(-twist, twist): with `away` the origin is a target to go to; a decision is one
 Runge-Kutta step of 0.005 s; terminates upside down. `drag` is in the author's code and not in the
-thesis' equations.
+thesis' equations. Metrics: power_loss |F - m g| [N] and norm_of_u |a|.
 
 Source: thesis appendix D and the author's active-learning-koopman for the figures.
 """
@@ -54,13 +54,15 @@ class QuadcopterSE3:
         """A first state, drawn with `key`."""
         twist = jax.random.uniform(key, (6,), jnp.float32, -self.twist, self.twist)
         p = self.away * jax.random.uniform(jax.random.fold_in(key, 1), (3,), minval=-1, maxval=1)
-        return formula.state(self.rest()[0].at[:3].set(p).at[12:].set(twist), jnp.float32(0.0))
+        state = formula.state(self.rest()[0].at[:3].set(p).at[12:].set(twist), jnp.float32(0.0))
+        return state.replace(metrics=_cost(self.rest()[1].astype(jnp.float32)))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state one decision later. action: [4] in [-1, 1]."""
-        x = self.flow(state.data, jnp.clip(action, -1.0, 1.0))
+        u = jnp.clip(action, -1.0, 1.0)
+        x = self.flow(state.data, u)
         reward = -(jnp.sum(x[:3] ** 2) + 0.1 * jnp.sum(x[12:] ** 2))
-        return formula.state(x, reward, x[11] < 0)
+        return formula.state(x, reward, x[11] < 0).replace(metrics=_cost(u))
 
     def flow(self, x: Array, u: Array) -> Array:
         """The observation [18] that follows x [18] under u [4]."""
@@ -110,6 +112,12 @@ class QuadcopterSE3:
         turn = jnp.stack([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
         quat = quat.at[1:].set(jnp.copysign(quat[1:], turn))
         return jnp.concatenate([state.data[:3], quat / jnp.linalg.norm(quat)])
+
+
+def _cost(u: Array) -> dict[str, Array]:
+    """Of rotors u [4] in [-1, 1]."""
+    off = KT * THRUST * jnp.sum(u) - MASS * G
+    return {"power_loss": jnp.abs(off), "norm_of_u": jnp.linalg.norm(u)}
 
 
 def _hat(w: Array) -> Array:

@@ -1,15 +1,18 @@
 """What flights cost, and how well models learned from them fly (table 6.1, figures 6-6 and 6-7).
 
-    python -m hybrid_rl.flights runs="runs/quadcopter_se3/*/*" out=table_6_1.png
+    python -m hybrid_rl.flights runs="runs/quadcopter_se3/*/*" out=fig_6_6.png
 
 From the decisions that each run remembers a model is learned anew, the same way for all methods,
-updates=2000 batches a trial. It is asked for the next state on flights of other trials, by all
-methods, and MPPI flies to a target by it for steps=1200 decisions. updates=0 or steps=0 leave that
-out. All flights are cut to the shortest. The numbers are written beside the picture, as JSON.
+updates=2000 batches a trial. MPPI flies to a target by it for steps=1200 decisions, each trial to
+its own, the same for all methods; and by the exact model, which shows what the planner alone can
+do. updates=0 learns nothing, and draws the flights themselves. All methods are cut to the shortest
+flight and to the fewest trials. The numbers are written beside the picture, as JSON.
 
     power loss   mean |F - m g| [N], F the thrust of all rotors
     norm of u    mean |u|, u in [-1, 1]^4; at hover 0.82
-    error        root mean square error of v and w after one decision, by their change's deviation
+    error        root mean square error of v and w after one decision, by their change's deviation,
+                 along the flights that the exact model made: nobody learned from those
+    tracking     mean distance to the target over the flight [m]
 """
 
 import glob
@@ -25,14 +28,17 @@ from omegaconf import OmegaConf
 
 from hybrid_rl import command
 from hybrid_rl.config import Run, UsageError, build, load
+from hybrid_rl.curves import band, iqm
 from hybrid_rl.envs.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
 from hybrid_rl.training import checkpoint
-from hybrid_rl.training.evaluate import rollout
+from hybrid_rl.training.evaluate import acted
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params
 
 DEFAULTS = {"runs": "", "out": "flights.png", "updates": "2000", "steps": "1200"}
 TRACKING = ("experiment=thesis/fig_6_6",)
+KNOWN = ("model@known_model=exact", "model_planner.model=${known_model}")
+EXACT = "exact model"
 SUFFIXES = (".png", ".pdf", ".svg")
 TWIST = slice(12, 18)  # v [m/s] and w [rad/s] in an observation
 MARKS = (1.0, 2.0, 4.0, 6.0)  # [s] at which distances are told
@@ -62,16 +68,17 @@ def read(folder: Path) -> Flight:
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
     like = like.replace(env=None, control=None, learners=None, key=None)
     memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
-    noise = config.controllers.full.get("kind")
-    label = f"{config.algo} {config.controllers.full.level:g}" if noise else str(config.algo)
+    explorer = config.controllers.full
+    strength = explorer.level if "kind" in explorer else explorer.gain
+    label = f"{config.algo} {strength:g}"
     flown = int(np.asarray(memory.count).min())
-    return first(label, memory, min(flown, memory.rows.shape[1]))
+    return first(label, memory, len(memory.rows), min(flown, memory.rows.shape[1]))
 
 
-def first(label: str, memory: Any, length: int) -> Flight:
-    """The first `length` decisions that `memory` [S, ...] holds."""
-    count = jnp.minimum(memory.count, length)
-    memory = memory.replace(rows=memory.rows[:, :length], count=count)
+def first(label: str, memory: Any, trials: int, length: int) -> Flight:
+    """The first `length` decisions of the first `trials` that `memory` [S, ...] holds."""
+    count = jnp.minimum(memory.count[:trials], length)
+    memory = memory.replace(rows=memory.rows[:trials, :length], count=count)
     rows, (o, m) = np.asarray(memory.rows)[:, :, 0], QuadcopterSE3().spec[:2]
     parts = np.split(rows, [o, o + m, o + m + 1, o + m + 2, o + m + 3], axis=-1)
     return Flight(label, memory, parts[0], parts[1], parts[5], parts[3][..., 0])
@@ -111,91 +118,84 @@ def error(run: Run, params: Params, seen: Batch) -> Array:
     return jnp.sqrt(jnp.mean(jnp.mean(apart**2, 0) / jnp.var(change, 0)))
 
 
-def track(run: Run, params: Params, steps: int, key: Array) -> tuple[Array, Array]:
-    """Distance to the target [steps+1] [m], and whether it turned over []. The key is consumed."""
-    states = rollout(run.agent.episode, run.controllers["full"], params, key, steps)
-    return jnp.linalg.norm(states.obs[:, :3], axis=-1), states.terminated[-1]
+class Tracked(NamedTuple):
+    """A flight to a target."""
+
+    seen: Batch  # [B] its decisions
+    distance: Array  # [B+1] to the target [m]
+    turned_over: Array  # []
 
 
-def others(flights: list[Flight], trial: int, count: int = 2000) -> Batch:
-    """Decisions [count] of the trial after `trial`, by all methods, drawn alike."""
-    trials = len(flights[0].obs)
-    parts = [
-        np.concatenate([getattr(f, name)[(trial + 1) % trials] for f in flights])
-        for name in ("obs", "action", "next_obs")
-    ]
-    draw = np.random.default_rng(trial).integers(len(parts[0]), size=count)
-    x, u, after = (part[draw] for part in parts)
-    no = np.zeros(count)
-    return Batch(x, u, no, no, no, after, u)  # type: ignore[arg-type]
+def track(run: Run, params: Params, steps: int, key: Array) -> Tracked:
+    """MPPI by the model in `params`, for B = `steps` decisions. The key is consumed."""
+    u, states = acted(run.agent.episode, run.controllers["full"], params, key, steps)
+    no, x = jnp.zeros(steps), states.obs
+    distance = jnp.linalg.norm(x[:, :3], axis=-1)
+    return Tracked(Batch(x[:-1], u, no, no, no, x[1:], u), distance, states.terminated[-1])
 
 
-def measure(
-    flights: list[Flight], updates: int, steps: int
-) -> tuple[dict[str, dict[str, Any]], float]:
-    """Per method and trial all that is told of it, and [s] of a decision."""
+def measure(flights: list[Flight], updates: int, steps: int) -> dict[str, dict[str, Any]]:
+    """Per method and trial all that is told of it."""
+    found = {flight.label: cost(flight) for flight in flights}
+    if not updates:
+        return found
     run = build(load([*TRACKING, f"episode.steps={steps + 1}"]))
+    known = build(load([*TRACKING, *KNOWN, f"episode.steps={steps + 1}"]))
     trials = len(flights[0].obs)
-    seen = jax.tree.map(lambda *x: jnp.stack(x), *[others(flights, i) for i in range(trials)])
     keys = jax.vmap(lambda i: jax.random.split(jax.random.key(i)))(jnp.arange(trials))
+    exact = jax.jit(jax.vmap(lambda k: track(known, Params(), steps, k)))(keys[:, 1])
 
-    @jax.jit
-    def all_of(memory: Any) -> tuple:
-        if not updates:
-            return ()
-        params = jax.vmap(lambda m, k: learn(run, m, updates, k))(memory, keys[:, 0])
-        wrong = jax.vmap(lambda p, s: error(run, p, s))(params, seen)
-        flown = jax.vmap(lambda p, k: track(run, p, steps, k))(params, keys[:, 1]) if steps else ()
-        return wrong, *flown
+    def one(given: tuple[Any, Batch, Array]) -> tuple[Array, Array, Array]:
+        memory, seen, (learning, flying) = given
+        params = learn(run, memory, updates, learning)
+        flown = track(run, params, steps, flying)
+        return error(run, params, seen), flown.distance, flown.turned_over
 
-    found = {}
+    all_of = jax.jit(lambda *given: jax.lax.map(one, given))  # on two cores faster than `vmap`
     for flight in flights:
         names = ("error", "distance", "turned_over")
-        learned = zip(names, map(np.asarray, all_of(flight.memory)), strict=False)
-        flown = {"decisions": flight.obs.shape[1]}
-        found[flight.label] = {**flown, **cost(flight), **dict(learned)}
-    return found, run.agent.spec.dt
+        learned = map(np.asarray, all_of(flight.memory, exact.seen, keys))
+        found[flight.label] |= dict(zip(names, learned, strict=True))
+    found[EXACT] = {
+        "distance": np.asarray(exact.distance),
+        "turned_over": np.asarray(exact.turned_over),
+    }
+    return found
 
 
 def said(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
-    """What the JSON holds of one method."""
-    numbers: dict[str, Any] = {"trials": len(found["lost"]), "decisions": found["decisions"]}
-    for name in [n for n in ("power_loss", "norm_of_u", "furthest", "error") if n in found]:
+    """What the JSON holds of one method.
+
+    Of what a flight cost mean and deviation over trials; of what its model can do IQM and band.
+    """
+    numbers: dict[str, Any] = {"trials": len(next(iter(found.values())))}
+    for name in [n for n in ("power_loss", "norm_of_u", "furthest") if n in found]:
         numbers[name] = [_short(found[name].mean()), _short(found[name].std())]
-    numbers["kept_hover"] = _short(1 - found["lost"].mean())
-    if "distance" not in found:
-        return numbers
-    numbers["turned_over_tracking"] = _short(found["turned_over"].mean())
-    for at in MARKS:
-        if round(at / dt) < found["distance"].shape[1]:
-            after = np.quantile(found["distance"][:, round(at / dt)], [0.5, 0, 1])
-            numbers[f"distance_after_{at:g}_s"] = [_short(each) for each in after]
+    if "lost" in found:
+        numbers["kept_hover"] = _short(1 - found["lost"].mean())
+    if "error" in found:
+        numbers["error"] = _banded(found["error"])
+    if "distance" in found:
+        distance = found["distance"]
+        numbers["tracking"] = _banded(distance.mean(1))
+        marks = [at for at in MARKS if round(at / dt) < distance.shape[1]]
+        numbers |= {
+            f"distance_after_{at:g}_s": _banded(distance[:, round(at / dt)]) for at in marks
+        }
+        numbers["turned_over_tracking"] = _short(found["turned_over"].mean())
     return numbers
 
 
-def plot(flights: list[Flight], found: dict[str, Any], dt: float) -> Any:
-    """Tracking error of all, and the first trial of each."""
+def signals(flights: list[Flight], dt: float) -> Any:
+    """Actions and velocities of the first trial of each method."""
     import matplotlib
     from matplotlib.figure import Figure
 
-    from hybrid_rl.figures import COLOURS, STYLE
+    from hybrid_rl.figures import STYLE
 
-    tracked = "distance" in found[flights[0].label]
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(2.2 * max(3, len(flights)), 4 + 3 * tracked), layout="constrained")
-        parts: Any = figure.subfigures(1 + tracked, 1, squeeze=False)[:, 0]
-        if tracked:
-            axes = parts[-1].subplots()
-            for flight, colour in zip(flights, COLOURS, strict=False):
-                each = found[flight.label]["distance"]
-                low, middle, high = np.quantile(each, [0.25, 0.5, 0.75], axis=0)
-                t = dt * np.arange(each.shape[1])
-                axes.plot(t, middle, color=colour, label=flight.label)
-                axes.fill_between(t, low, high, color=colour, alpha=0.12, lw=0)
-            axes.set(xlabel="Time [s]", ylabel="Distance to the target [m]", yscale="log")
-            axes.set_title("MPPI on the learned model: median and quartiles over trials")
-            axes.legend(ncols=2)
-        panels = parts[0].subplots(3, len(flights), squeeze=False, sharex=True, sharey="row")
+        figure = Figure(figsize=(2.2 * max(3, len(flights)), 4), layout="constrained")
+        panels: Any = figure.subplots(3, len(flights), squeeze=False, sharex=True, sharey="row")
         for i, flight in enumerate(flights):
             t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
             panels[0][i].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
@@ -206,6 +206,54 @@ def plot(flights: list[Flight], found: dict[str, Any], dt: float) -> Any:
         for row, name in zip(panels, ("|u|", "v [m/s]", "w [rad/s]"), strict=True):
             row[0].set_ylabel(name)
     return figure
+
+
+def outcome(found: dict[str, Any], dt: float) -> Any:
+    """How models track over time; and their error and tracking over what their flights cost."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    from hybrid_rl.figures import COLOURS, STROKES, STYLE
+
+    methods = sorted({label.split()[0] for label in found if label != EXACT})
+    of = {name: [la for la in found if la.split()[0] == name and la != EXACT] for name in methods}
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(13, 4.2), layout="constrained")
+        over_time, wrong, tracks = figure.subplots(1, 3)
+        lines = [(EXACT, "k", "-")] + [
+            (label, colour, STROKES[i % len(STROKES)])
+            for name, colour in zip(methods, COLOURS, strict=False)
+            for i, label in enumerate(of[name])
+        ]
+        for label, colour, stroke in lines:
+            each = found[label]["distance"][:, ::10]
+            low, high = band(each, 500)
+            t = 10 * dt * np.arange(each.shape[1])
+            over_time.plot(t, iqm(each), color=colour, linestyle=stroke, label=label)
+            over_time.fill_between(t, low, high, color=colour, alpha=0.12, lw=0)
+        for name, colour in zip(methods, COLOURS, strict=False):
+            at = sorted(of[name], key=lambda label: found[label]["power_loss"].mean())
+            power = [found[label]["power_loss"].mean() for label in at]
+            for axes, what in (
+                (wrong, [found[label]["error"] for label in at]),
+                (tracks, [found[label]["distance"].mean(1) for label in at]),
+            ):
+                middle = np.array([iqm(each) for each in what])
+                ends = np.abs(np.array([band(each) for each in what]).T - middle[None])
+                axes.errorbar(power, middle, ends, color=colour, marker="o", ms=4)
+        tracks.axhline(iqm(found[EXACT]["distance"].mean(1)), color="k", lw=0.8)
+        over_time.set(xlabel="Time [s]", title="Distance to the target [m]", yscale="log")
+        wrong.set(xlabel="Power loss of the flight [N]", title="Error of one decision")
+        tracks.set(xlabel="Power loss of the flight [N]", title="Mean distance [m]")
+        for axes in (wrong, tracks):
+            axes.set(xscale="log", yscale="log")
+        over_time.legend(fontsize=6, ncols=2)  # the colours are those of all panels
+    return figure
+
+
+def _banded(each: np.ndarray) -> list[float]:
+    """IQM over trials [S], and its band."""
+    return [_short(iqm(each)), *map(_short, band(each))]
 
 
 def _short(value: Any) -> float:
@@ -223,17 +271,16 @@ def main() -> None:
         raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
     numbers = (
         command.count("updates", given["updates"], least=0),
-        command.count("steps", given["steps"], least=0),
+        command.count("steps", given["steps"]),
     )
     flights = sorted((read(folder) for folder in folders), key=lambda flight: flight.label)
-    if len({len(flight.obs) for flight in flights}) > 1:
-        raise UsageError(f"runs={given['runs']}: trials differ in number")
-    shortest = min(flight.obs.shape[1] for flight in flights)
-    flights = [first(flight.label, flight.memory, shortest) for flight in flights]
-    found, dt = measure(flights, *numbers)
+    least = [min(flight.obs.shape[axis] for flight in flights) for axis in (0, 1)]
+    flights = [first(flight.label, flight.memory, *least) for flight in flights]
+    found, dt = measure(flights, *numbers), QuadcopterSE3().spec.dt
     told = {label: said(each, dt) for label, each in found.items()}
+    figure = outcome(found, dt) if EXACT in found else signals(flights, dt)
     out.parent.mkdir(parents=True, exist_ok=True)
-    plot(flights, found, dt).savefig(out, dpi=130)
+    figure.savefig(out, dpi=130)
     out.with_suffix(".json").write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
     print(f"{out} and {out.with_suffix('.json')}")
 

@@ -2,11 +2,16 @@
 
 import json
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from tiny import call
 
 from hybrid_rl import command, config, flights, train
+from hybrid_rl.data.replay import Memory, Replay
+from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.types import Batch, Params
 
 SHORT = [
     "experiment=thesis/table_6_1",
@@ -46,31 +51,53 @@ def test_cost_by_hand() -> None:
     np.testing.assert_array_equal(cost["lost"], [1, 0])
 
 
-def test_others_are_of_another_trial() -> None:
-    """What a model is asked of was not in its data."""
-    x = np.arange(2.0)[:, None, None] * np.ones((2, 3, 18))
-    both = [flight(obs=x), flight(obs=x)]
-    assert (flights.others(both, 0, 50).obs == 1).all()
-    assert (flights.others(both, 1, 50).obs == 0).all()
+def test_first_cuts_trials_and_decisions() -> None:
+    """Rows of zeros but for the place along x, which counts trials and decisions."""
+    spec = QuadcopterSE3().spec
+    rows = jnp.zeros((3, 5, 1, Replay.width(spec)))
+    rows = rows.at[..., 0].set(10 * jnp.arange(3.0)[:, None, None] + jnp.arange(5.0)[None, :, None])
+    cut = flights.first("any", Memory(rows, jnp.full(3, 5)), 2, 4)
+    np.testing.assert_array_equal(cut.obs[..., 0], [[0, 1, 2, 3], [10, 11, 12, 13]])
+    np.testing.assert_array_equal(cut.memory.count, [4, 4])
+
+
+def test_error_of_the_exact_model_and_of_its_linearisation() -> None:
+    """The one is right, the other nearly."""
+    world, rng = QuadcopterSE3(), np.random.default_rng(0)
+    x = jnp.asarray(rng.uniform(-0.3, 0.3, (50, 12)), jnp.float32)
+    obs, u = jax.vmap(world.place)(x), jnp.asarray(rng.uniform(-1, 1, (50, 4)), jnp.float32)
+    after, no = jax.vmap(world.flow)(obs, u), jnp.zeros(50)
+    seen = Batch(obs, u, no, no, no, after, u)
+    found = {}
+    for name in ("exact", "local_linear"):
+        over = [*flights.TRACKING, f"model@known_model={name}", "likelihood.model=${known_model}"]
+        found[name] = float(flights.error(config.build(config.load(over)), Params(), seen))
+    assert found["exact"] == 0
+    assert 0.01 < found["local_linear"] < 0.5
 
 
 def test_runs_become_a_picture_and_its_numbers(tmp_path) -> None:
-    """Two methods, labelled apart; what was flown is what the run remembers."""
-    train.train(config.load([*SHORT, "algo=ou_noise", f"run_dir={tmp_path / 'ou'}"]))
-    more = ["algo=normal_noise", "noisy.level=0", f"run_dir={tmp_path / 'still'}"]
+    """Two methods, labelled apart; what was flown is what the run remembers, and what it logged."""
+    train.train(config.load([*SHORT, "algo=ou_noise", f"run_dir={tmp_path / 'runs' / 'ou'}"]))
+    more = ["algo=normal_noise", "noisy.level=0", f"run_dir={tmp_path / 'runs' / 'still'}"]
     train.train(config.load([*SHORT, *more, "env.twist=0"]))
-    read = flights.read(tmp_path / "still")
+    read = flights.read(tmp_path / "runs" / "still")
     assert read.label == "normal_noise 0"
     np.testing.assert_allclose(read.action, 0.40875, atol=1e-4)
     np.testing.assert_allclose(read.next_obs[:, :-1], read.obs[:, 1:])
     out = tmp_path / "f.png"
-    arguments = (f"runs={tmp_path}/*", f"out={out}", "updates=5", "steps=4")
+    arguments = (f"runs={tmp_path}/runs/*", f"out={out}", "updates=5", "steps=4")
     assert call(lambda: command.guarded(flights.main), *arguments) == 0
     said = json.loads(out.with_suffix(".json").read_text())
-    assert set(said) == {"normal_noise 0", "ou_noise 0.1"}
+    assert set(said) == {"normal_noise 0", "ou_noise 0.1", "exact model"}
     assert said["normal_noise 0"]["power_loss"][0] < 1e-3 < said["ou_noise 0.1"]["power_loss"][0]
     assert said["ou_noise 0.1"]["kept_hover"] == 1
+    rows = map(json.loads, (tmp_path / "runs" / "ou" / "metrics.jsonl").read_text().splitlines())
+    logged = [row["world/power_loss"] for row in rows if "world/power_loss" in row]
+    assert said["ou_noise 0.1"]["power_loss"][0] == pytest.approx(np.mean(logged), rel=1e-3)
     assert out.stat().st_size > 1000
+    assert call(lambda: command.guarded(flights.main), *arguments[:2], "updates=0") == 0
+    assert "tracking" not in json.loads(out.with_suffix(".json").read_text())["ou_noise 0.1"]
 
 
 @pytest.mark.parametrize(

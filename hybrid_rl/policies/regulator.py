@@ -1,7 +1,11 @@
 """u = clip(u_0 - K e): back to a world's equilibrium, by the linear-quadratic regulator.
 
 V(x) = e' P e is its Lyapunov function (thesis eq. 6.4): it falls as long as the action is not
-clipped and the world is linear enough.
+clipped and the world is linear enough. With `free` coordinates V is the least over these,
+
+    V(x) = min_f e' P e = e' (P - P_f P_ff^-1 P_f') e,
+
+how far x is from the nearest state that differs in them alone: a cart that may stand anywhere.
 """
 
 from dataclasses import dataclass
@@ -26,6 +30,7 @@ class Regulator:
     world: Formula
     state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
     action_weights: tuple[float, ...] = (1.0,)  # diagonal of R, of actions in [-1, 1]
+    free: tuple[int, ...] = ()  # f, of the coordinates [d], which V does not count
 
     def __post_init__(self) -> None:
         """Check the world and the weights."""
@@ -35,6 +40,7 @@ class Regulator:
             object.__setattr__(self, name, given)
             if not all(weight > 0 for weight in given):
                 raise ValueError(f"equilibrium.{name}={list(given)}: must be above 0")
+        object.__setattr__(self, "free", tuple(self.free))
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """K [m, d] and P [d, d]."""
@@ -62,5 +68,6 @@ class Regulator:
 
     def lyapunov(self, x: Array) -> Array:
         """V [] at x [o]."""
-        e = self.world.deviation(x)
-        return e @ jnp.asarray(self.solve()[1], e.dtype) @ e
+        e, P, f = self.world.deviation(x), self.solve()[1], list(self.free)
+        P = P - P[:, f] @ np.linalg.solve(P[np.ix_(f, f)], P[f])
+        return e @ jnp.asarray(P, e.dtype) @ e

@@ -127,10 +127,11 @@ class Agent:
             control,
         )
         learners, learned = self._learn(state.learners, params, memory, step, recalling)
+        world = {"reward": now.reward, "obs": now.obs, "action": u, **now.metrics}
         metrics = {
             **_told(metrics, step >= self.random_steps),
             **learned,
-            **_told({"world/reward": now.reward, "world/obs": now.obs, "world/action": u}, True),
+            **_told({f"world/{name}": value for name, value in world.items()}, True),
             "episode/done": now.done,
             "episode/return": now.info["return"],
             "episode/length": now.info["decision"],
