@@ -12,7 +12,7 @@ Source: Agarwal et al., Deep RL at the Edge of the Statistical Precipice, NeurIP
 import glob
 import json
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +22,7 @@ from hybrid_rl.config import UsageError
 
 POINTS = 100  # of a curve whose seeds have no common steps
 RESAMPLES = 2000  # of the bootstrap
+TIMES = ("step", "wall_s")  # of a row; any other x is a key of the configuration
 PLACE = ("step", "seed", "wall_s")  # of a row; every other name is a metric
 
 
@@ -34,7 +35,7 @@ class Curve:
     label: str  # what sets it apart from the other lines
     seeds: tuple[int, ...]  # S learners, in the order of `each`
     runs: tuple[str, ...]  # the run folder of each learner
-    x: np.ndarray  # [G] decisions of a learner, or seconds
+    x: np.ndarray  # [G] decisions of a learner, seconds, or what was swept
     each: np.ndarray  # [S, G] the metric of each learner
     iqm: np.ndarray  # [G] interquartile mean over the learners
     low: np.ndarray  # [G] lower end of the 95% band
@@ -62,20 +63,22 @@ def curves(
     """A curve for each task and each value of `group`, a key of the runs' configuration.
 
     runs: a glob, or folders; whatever lies below them and holds metrics.jsonl is a run.
-    x: "step" [decisions] or "wall_s" [s]. smooth: width of a moving mean over each
-    seed, in units of x. Where the seeds logged at the same steps, these are the
-    points; else each seed is averaged in bins, with a straight line over empty ones.
+    x: "step" [decisions], "wall_s" [s], or a number in the runs' configuration that a sweep went
+    through, such as num_demonstrations: there a run is one point, what it had at last.
+    smooth: width of a moving mean over each seed, in units of x. Where the seeds logged at the
+    same steps, these are the points; else each seed is averaged in bins, with a straight line
+    over empty ones.
     A curve ends where its shortest seed ends.
 
     Raises:
         UsageError: where nothing fits; the line says what would.
     """
-    if x not in ("step", "wall_s"):
-        raise UsageError(f"x={x}: must be step or wall_s")
     groups: dict[tuple[str, str], list[Learner]] = {}
     names: set[str] = set()
     for run in find(runs):
-        found, logged = _read(run, metric, x)
+        found, logged = _read(run, metric, x if x in TIMES else "step")
+        if x not in TIMES:
+            found = [_last(learner, _number(run, x)) for learner in found]
         names |= logged
         if found:
             task, label = _name(run, "task"), _name(run, group)
@@ -84,6 +87,8 @@ def curves(
     if not groups:
         known = ", ".join(sorted(names)) or "no metric yet"
         raise UsageError(f"metric={metric}: not in these runs; they have {known}")
+    if x not in TIMES:
+        groups = {place: _swept(learners) for place, learners in groups.items()}
     return [
         _curve(task, metric, label, groups[task, label], smooth) for task, label in sorted(groups)
     ]
@@ -174,6 +179,31 @@ def _name(run: Path, key: str) -> str:
     if said.get(key) is None:
         raise UsageError(f"group={key}: {run} says nothing of it in config.yaml")
     return str(said[key])
+
+
+def _number(run: Path, key: str) -> float:
+    """The number at `key` of a run's configuration."""
+    config = OmegaConf.load(run / "config.yaml") if (run / "config.yaml").exists() else None
+    value = OmegaConf.select(config, key) if config is not None else None
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise UsageError(f"x={key}: must be step, wall_s, or a number in every run's config.yaml")
+    return float(value)
+
+
+def _last(learner: Learner, at: float) -> Learner:
+    """A learner as one point: what it had at last."""
+    return replace(learner, x=np.array([at]), y=learner.y[-1:])
+
+
+def _swept(learners: list[Learner]) -> list[Learner]:
+    """One learner for each seed, from its points in several runs."""
+    joined = []
+    for seed in sorted({learner.seed for learner in learners}):
+        same = [learner for learner in learners if learner.seed == seed]
+        x, y = (np.concatenate([getattr(learner, name) for learner in same]) for name in "xy")
+        order = np.argsort(x, kind="stable")
+        joined.append(Learner(same[0].run, seed, x[order], y[order]))
+    return joined
 
 
 def _curve(task: str, metric: str, label: str, learners: list[Learner], smooth: float) -> Curve:

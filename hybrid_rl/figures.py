@@ -4,9 +4,10 @@
 
 A panel for each task; a line for each algorithm: the interquartile mean over seeds with its 95%
 bootstrap band (see hybrid_rl.curves). Several metrics, such as
-metric=train/return,planner/mode_insertion_gradient, are one row of panels each. The numbers drawn
-are written beside the picture, as JSON; what they come to is printed: last value, mean over the
-run (the area under the curve), decisions to threshold=, and who is ahead of whom.
+metric=train/return,planner/mode_insertion_gradient, are one row of panels each. x=wall_s draws
+over time, x=KEY over a number that a sweep went through, such as num_demonstrations. The numbers
+drawn are written beside the picture, as JSON; what they come to is printed: last value, mean over
+the run (the area under the curve), decisions to threshold=, and who is ahead of whom.
 """
 
 import itertools
@@ -140,11 +141,12 @@ def _panel(axes: "Axes", drawn: list[Curve], labels: list[str], x: str) -> None:
         number = len(curve.seeds)
         label = f"{curve.label} ({number} seed{'s' * (number > 1)})"
         at = curve.x / scale
-        dot = "o" if len(at) == 1 else None
+        dot = "o" if len(at) <= 10 else None
         axes.plot(at, curve.iqm, color=colour, linestyle=stroke, lw=1.6, marker=dot, label=label)
         if number > 1:
             axes.fill_between(at, curve.low, curve.high, color=colour, alpha=0.2, lw=0)
-    axes.set_xlabel(f"Wall time [{name}]" if x == "wall_s" else "Environment steps per learner")
+    labels_of = {"wall_s": f"Wall time [{name}]", "step": "Environment steps per learner"}
+    axes.set_xlabel(labels_of.get(x, x))
     axes.set_xlim(0, end / scale or 1.0)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5))

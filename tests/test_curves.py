@@ -130,8 +130,22 @@ def test_groups_are_tasks_and_algorithms_or_any_key(tmp_path):
 def test_wall_time_is_an_x(tmp_path):
     (curve,) = curves(run(tmp_path / "a", [5.0, 6]), x="wall_s")
     assert curve.x.tolist() == [0.1, 0.2]
-    with pytest.raises(UsageError, match="x=hours: must be step or wall_s"):
+    with pytest.raises(UsageError, match="x=hours: must be step, wall_s, or a number"):
         curves(tmp_path, x="hours")
+
+
+def test_a_swept_number_is_an_x(tmp_path):
+    """What each run had at last, over its number; a seed is one learner in all of them."""
+    for shown, last in [(10, 7.0), (2, 3.0), (5, 4.0)]:
+        for seed in (0, 1):
+            place = tmp_path / f"{shown}-{seed}"
+            run(place, [100.0, last + 2 * seed], seed, data=f"{{shown: {shown}}}")
+    (curve,) = curves(tmp_path, x="data.shown")
+    assert (curve.x.tolist(), curve.seeds) == ([2, 5, 10], (0, 1))
+    assert curve.each.tolist() == [[3, 4, 7], [5, 6, 9]]
+    assert curve.iqm.tolist() == [4, 5, 8]
+    with pytest.raises(UsageError, match="x=task: must be step, wall_s, or a number"):
+        curves(tmp_path, x="task")
 
 
 def test_a_run_at_work_and_a_missing_value_are_read(tmp_path):

@@ -138,7 +138,7 @@ def test_the_command_draws_and_tells(tmp_path, monkeypatch, capsys):
     [
         (["runs=nowhere/*"], "runs=nowhere/*: no run there (a folder that holds metrics.jsonl)"),
         (["runs=RUNS", "metric=x/y"], "metric=x/y: not in these runs; they have train/return"),
-        (["runs=RUNS", "x=hours"], "x=hours: must be step or wall_s"),
+        (["runs=RUNS", "x=hours"], "x=hours: must be step, wall_s, or a number"),
         (["runs=RUNS", "out=a.jpg"], "out=a.jpg: must end in .png, .pdf, .svg"),
         (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
         (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),
