@@ -142,7 +142,9 @@ def _panel(axes: "Axes", drawn: list[Curve], labels: list[str], x: str) -> None:
         label = f"{curve.label} ({number} seed{'s' * (number > 1)})"
         at = curve.x / scale
         dot = "o" if len(at) <= 10 else None
-        axes.plot(at, curve.iqm, color=colour, linestyle=stroke, lw=1.6, marker=dot, label=label)
+        axes.plot(
+            at, curve.iqm, color=colour, linestyle=stroke, lw=1.6, marker=dot, ms=4, label=label
+        )
         if number > 1:
             axes.fill_between(at, curve.low, curve.high, color=colour, alpha=0.2, lw=0)
     labels_of = {"wall_s": f"Wall time [{name}]", "step": "Environment steps per learner"}
