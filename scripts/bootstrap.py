@@ -57,7 +57,7 @@ def main() -> None:
     newest = max(path.stat().st_mtime for path in (LOCK, PROJECT, Path(__file__)))
     if STAMP.exists() and STAMP.stat().st_mtime >= newest:
         return
-    print("Setting up .venv from requirements.lock: 350 MB, a minute or two ...", flush=True)
+    print("Setting up .venv from requirements.lock: 500 MB, a minute or two ...", flush=True)
     supported = "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))"
     if UNFINISHED.exists() or not works(PYTHON, "-c", supported):
         make_venv()

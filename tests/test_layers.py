@@ -27,7 +27,7 @@ ALLOWED = {
     "networks": {"types", "core"},
     "envs": {"types", "envs"},
     "training": {*SHARED, "data", "training"},
-    "bench": {"types", "training", "command", "bench"},  # measures whole runs
+    "bench": {"types", "envs", "training", "command", "bench"},  # measures worlds and whole runs
 }
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
