@@ -34,6 +34,13 @@ class _Pool(NamedTuple):
     late: np.ndarray  # [nsensordata] bool: needs accelerations
 
 
+def cores() -> int:
+    """Processors that this process may run on, which a cluster's scheduler may have made fewer."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 @cache
 def _idle(asset: str, worlds: int, threads: int) -> list[_Pool]:
     """Pools that nobody uses now: several devices may call at once, each takes its own."""
@@ -43,7 +50,7 @@ def _idle(asset: str, worlds: int, threads: int) -> list[_Pool]:
 def _pool(asset: str, worlds: int, threads: int) -> _Pool:
     """A new pool; by default the devices of the host share its processors."""
     model = mjcf.load(asset)
-    shared = max((os.cpu_count() or 1) // jax.local_device_count(), 1)
+    shared = max(cores() // jax.local_device_count(), 1)
     batch = Batch(model, worlds, min(worlds, threads or shared))
     sizes = (model.nq, model.nv, model.na, model.nv, model.nu)
     first = 1  # column 0 is the time

@@ -17,9 +17,9 @@ The state is the same few numbers for all three: a checkpoint is small, a reset 
 Source: MuJoCo's documentation, "Computation: the state" (mjSTATE_INTEGRATION).
 """
 
-import os
 from dataclasses import dataclass
 from importlib.util import find_spec
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -36,14 +36,19 @@ IMPLEMENTATIONS = ("auto", "native", "mjx", "warp")
 
 @struct.dataclass
 class PhysicsState:
-    """All that a step depends on, float32, and the sensors it left."""
+    """All that a step depends on, float32, and the sensors it left; None what a model has none of.
+
+    (Shardy of jax 0.11 ends the process where it is given an array without entries.)
+    """
 
     qpos: Array  # [nq] positions [m, rad]
     qvel: Array  # [nv] velocities [m/s, rad/s]
-    act: Array  # [na] actuator activations
+    act: Array | None  # [na] actuator activations
     warmstart: Array  # [nv] accelerations, where the solver starts [m/s^2, rad/s^2]
     ctrl: Array  # [nu] controls held during the last step
-    sensors: Array  # [nsensordata] of this state; of the last step where they need accelerations
+    sensors: (
+        Array | None
+    )  # [nsensordata] of this state; of the last step where they need accelerations
 
 
 def check(implementation: str) -> None:
@@ -67,7 +72,7 @@ def resolve(implementation: str, worlds: int | None = None) -> str:
     """
     if implementation != "auto":
         return implementation
-    few = worlds is not None and worlds <= FEW * (os.cpu_count() or 1)
+    few = worlds is not None and worlds <= FEW * native.cores()
     return "native" if few or jax.default_backend() == "cpu" else "mjx"
 
 
@@ -91,7 +96,7 @@ class Physics:
         """The state at qpos [nq], qvel [nv], at rest otherwise."""
         model = self.model
         sizes = (model.na, model.nv, model.nu, model.nsensordata)
-        zeros = [jnp.zeros(size, jnp.float32) for size in sizes]
+        zeros = [_some(jnp.zeros(size, jnp.float32)) for size in sizes]
         state = PhysicsState(*(jnp.asarray(q, jnp.float32) for q in (qpos, qvel)), *zeros)
         return state if mjcf.late(self.asset).all() else self._advance(state, 0)
 
@@ -102,6 +107,7 @@ class Physics:
     def sensor(self, state: PhysicsState, name: str) -> Array:
         """[dim] what sensor `name` reads at `state`."""
         sensor = self.model.sensor(name)
+        assert state.sensors is not None
         return state.sensors[sensor.adr[0] : sensor.adr[0] + sensor.dim[0]]
 
     def _advance(self, state: PhysicsState, n: int) -> PhysicsState:
@@ -113,11 +119,13 @@ class Physics:
     def _native(self, state: PhysicsState, n: int) -> PhysicsState:
         model = self.model
         parts = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
-        out = native.step(self.asset, self.threads, n, jnp.concatenate(parts))
+        out = native.step(
+            self.asset, self.threads, n, jnp.concatenate([x for x in parts if x is not None])
+        )
         ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
         qpos, qvel, act, rest = jnp.split(out, ends)
         warmstart, sensors = jnp.split(rest, (model.nv,))
-        return PhysicsState(qpos, qvel, act, warmstart, state.ctrl, sensors)
+        return PhysicsState(qpos, qvel, _some(act), warmstart, state.ctrl, _some(sensors))
 
     def _accelerated(self, state: PhysicsState, n: int, impl: str) -> PhysicsState:
         from hybrid_rl.envs import accelerated  # MJX takes 2 s to import
@@ -129,6 +137,12 @@ class Physics:
             "qacc_warmstart": state.warmstart,
             "ctrl": state.ctrl,
         }
+        fields = {name: x for name, x in fields.items() if x is not None}
         left = accelerated.step(self.asset, impl, n, fields)
-        *moved, sensors = (left[name] for name in accelerated.LEFT)
+        *moved, sensors = (_some(left[name]) for name in accelerated.LEFT)
         return PhysicsState(*moved, ctrl=state.ctrl, sensors=sensors)
+
+
+def _some(x: Array) -> Any:
+    """`x`, or None where it has no entries."""
+    return x if x.size else None

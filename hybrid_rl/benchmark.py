@@ -1,15 +1,17 @@
 """How fast this machine is: worlds, planners, updates and whole loops, beside others' code.
 
     python -m hybrid_rl.benchmark parts=physics,plan,shares,loop,compile out=benchmark.json
+    python -m hybrid_rl.benchmark parts=loop model_learner.updates=1 planner.horizon=5
 
 physics   physics steps a second by task, implementation and number of worlds, beside bare loops
 plan      model steps a second of the planner, by learners, K and T
+act       decisions a second of a controller alone, by number of robots, beside real time
 shares    where a decision's time goes
 loop      decisions a second of the whole training loop, by number of learners
 compile   seconds from start to the first decision, with an empty cache and a filled one
 
-What is compared is run in turns (hybrid_rl.bench.race). A table is printed; the numbers are
-written as JSON, and drawn beside it.
+Keys of the method's own parts change it. What is compared is run in turns (hybrid_rl.bench.race).
+A table is printed; the numbers are written as JSON, and drawn beside it.
 """
 
 import json
@@ -33,13 +35,15 @@ DEFAULTS = {
     "worlds": "",
     "learners": "",
     "plans": "",  # KxT, such as 20x10,64x20
+    "matmul_precision": "highest",  # of float32 products on a GPU; worlds are always exact
     "rounds": "5",
     "out": "benchmark.json",
 }
+PLANNED = ("planner", "objective", "model", "policy", "critic", "model_learner", "policy_learner")
 SIZES = {  # what is left empty, on a CPU and elsewhere
     "cpu": {"physics": "native", "worlds": "1,64", "learners": "1,4", "plans": "20x10,64x20"},
     "gpu": {
-        "physics": "mjx",
+        "physics": "native,mjx",
         "worlds": "64,4096,65536",
         "learners": "1,64,512",
         "plans": "20x10,16384x32",
@@ -55,9 +59,10 @@ def physics(said: dict[str, str], rounds: int) -> list[Table]:
     tables = []
     for task in said["tasks"].split(","):
         for count in _counts(said, "worlds"):
-            decisions = max(1, 20_000 // count) if count < 1000 else 20
             field = []
             for implementation in said["physics"].split(","):
+                limit = 20_000 if implementation == "native" else 500
+                decisions = max(20, min(20_000 // count, limit))
                 own = ours.worlds(task, implementation, count, decisions)
                 bare_steps = max(1, round(own.work / count))
                 if implementation == "native":
@@ -73,10 +78,10 @@ def physics(said: dict[str, str], rounds: int) -> list[Table]:
 
 
 def plan(said: dict[str, str], rounds: int) -> list[Table]:
-    """The planner alone."""
-    from hybrid_rl.bench import ours
+    """The planner alone, beside one whose model is the world itself."""
+    from hybrid_rl.bench import others, ours
 
-    agent = _agent(said)
+    agent, world = _agent(said), _agent(said, said["physics"].split(",")[-1]).episode
     tables = []
     for text in said["plans"].split(","):
         samples, horizon = (command.count("plans", part) for part in text.split("x"))
@@ -87,13 +92,24 @@ def plan(said: dict[str, str], rounds: int) -> list[Table]:
             raise UsageError(f"plan: {said['algo']} has no planner by samples") from error
         planning = replace(agent, controller=planner)
         field = [
-            ours.plans(planning, learners)
+            ours.decisions(f"{learners:,} learners", planning, learners, samples * horizon)
             for learners in _counts(said, "learners")
             if learners <= max(most, 1)
         ]
+        field.append(others.on_the_true_model(world, samples, horizon))
         what = f"{said['algo']}, K {samples:,}, T {horizon}"
         tables.append(_race("plan", what, "model steps/s", field, rounds))
     return tables
+
+
+def act(said: dict[str, str], rounds: int) -> list[Table]:
+    """What any controller does in a decision."""
+    from hybrid_rl.bench import ours
+
+    agent = _agent(said)
+    field = [ours.decisions(f"{n:,} robots", agent, n) for n in _counts(said, "learners")]
+    real = f"real time: {1 / agent.spec.dt:,.0f} each"
+    return [_race("act", f"{said['experiment']}, {said['algo']}, {real}", "acts/s", field, rounds)]
 
 
 def shares(said: dict[str, str], rounds: int) -> list[Table]:
@@ -120,11 +136,13 @@ def loop(said: dict[str, str], rounds: int) -> list[Table]:
     """Training, by number of learners."""
     from hybrid_rl.bench import ours
 
-    agent, decisions = _agent(said), 200
-    field = [
-        ours.loop(f"{count:,} learners", agent, count, decisions)[0]
-        for count in _counts(said, "learners")
-    ]
+    field = []
+    for implementation in said["physics"].split(","):
+        agent = _agent(said, implementation)
+        for count in _counts(said, "learners"):
+            name = f"{count:,} learners, {implementation}"
+            decisions = max(10, 200 // -(-count // 64))
+            field.append(ours.loop(name, agent, count, decisions)[0])
     return [_race("loop", said["algo"], "decisions/s", field, rounds)]
 
 
@@ -145,13 +163,22 @@ def compiling(said: dict[str, str], rounds: int) -> list[Table]:
     return [{"part": "compile", "what": said["algo"], "unit": "starts/s", "rows": rows}]
 
 
-PARTS = {"physics": physics, "plan": plan, "shares": shares, "loop": loop, "compile": compiling}
+PARTS = {
+    "physics": physics,
+    "plan": plan,
+    "act": act,
+    "shares": shares,
+    "loop": loop,
+    "compile": compiling,
+}
 
 
-def _agent(said: dict[str, str]) -> Any:
+def _agent(said: dict[str, str], physics: str = "auto") -> Any:
     names = [f"experiment={said['experiment']}"] if said["experiment"] else []
+    names += [f"algo={said['algo']}", f"physics={physics}"]
+    names += [f"{key}={value}" for key, value in said.items() if "." in key]
     steps = "total_steps=20000"  # bounds the replay memory of many learners
-    return config.build(config.load([*names, f"algo={said['algo']}", steps])).agent
+    return config.build(config.load([*names, steps])).agent
 
 
 def _counts(said: dict[str, str], key: str) -> list[int]:
@@ -165,7 +192,7 @@ def _race(part: str, what: str, unit: str, field: list[Any], rounds: int) -> Tab
     rows = race(field, rounds)
     print(f"\n{part}: {what} [{unit}]")
     for row in rows:
-        memory = f"{row['memory'] / 1e6:12,.1f} MB" if row["memory"] else ""
+        memory = f"{row['memory'] / 1e6:9,.1f} MB a learner" if row["memory"] else ""
         print(f"  {row['name']:34} {row['rate']:16,.0f} {row['ratio']:9.2f} x {memory}", flush=True)
     return {"part": part, "what": what, "unit": unit, "rows": rows}
 
@@ -199,7 +226,7 @@ def main() -> None:
 
     from hybrid_rl.training import provenance
 
-    said = DEFAULTS | command.arguments(DEFAULTS)
+    said = DEFAULTS | command.arguments(DEFAULTS, *PLANNED)
     out, rounds = Path(said["out"]), command.count("rounds", said["rounds"])
     if out.suffix != ".json":
         raise UsageError(f"out={out}: must end in .json")
@@ -208,6 +235,10 @@ def main() -> None:
         raise UsageError(f"parts={','.join(unknown)}: unknown; choose of {', '.join(PARTS)}")
     sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"]
     said |= {key: value for key, value in sizes.items() if not said[key]}
+    if said["matmul_precision"] not in config.PRECISIONS:
+        known = ", ".join(config.PRECISIONS)
+        raise UsageError(f"matmul_precision={said['matmul_precision']}: choose one of {known}")
+    jax.config.update("jax_default_matmul_precision", said["matmul_precision"])
     machine = provenance.device()
     print(f"{machine}; medians of {rounds} rounds, ratios to the first line of a table")
     tables: list[Table] = []

@@ -64,5 +64,10 @@ def ensemble_init(net: nn.Module, key: Array, members: int, x: Array) -> Any:
 
 
 def ensemble_apply(net: nn.Module, params: Any, x: Array) -> Array:
-    """Outputs [members, ..., out] of all copies at the same x [..., d]."""
-    return jax.vmap(net.apply, in_axes=(0, None))(params, x)
+    """Outputs [members, ..., out] of all copies at the same x [..., d].
+
+    Each copy has an x of its own: one for all would make a first layer whose result must be
+    transposed, which is a pass over memory that a GPU with many learners has no time for.
+    """
+    members = len(jax.tree.leaves(params)[0])
+    return jax.vmap(net.apply)(params, jnp.broadcast_to(x, (members, *x.shape)))

@@ -14,6 +14,7 @@ from jax import Array
 from hybrid_rl import config
 from hybrid_rl.bench.race import Contestant
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import EnvState, Params, Spec
 
@@ -53,7 +54,8 @@ def loop(name: str, agent: Agent, learners: int, decisions: int) -> tuple[Contes
         held[0], _ = program(held[0], start, rounds)
         jax.block_until_ready(held[0])
 
-    contestant = Contestant(name, go, learners * decisions, made.memory(program))
+    memory = made.memory(program) * made.mesh.size / learners
+    contestant = Contestant(name, go, learners * decisions, memory)
     return contestant, made.compile_s
 
 
@@ -66,13 +68,20 @@ def shares(agent: Agent, learners: int, decisions: int) -> list[Contestant]:
     return [loop(name, part, learners, decisions)[0] for name, part in parts.items()]
 
 
+def beginning(task: str, physics: str, count: int) -> tuple[Episode, EnvState, Array]:
+    """A task, `count` first states and an action [count, m] for each: all contestants' alike."""
+    episode = config.build(config.load([f"task={task}", f"physics={physics}"])).agent.episode
+    keys = jax.random.split(jax.random.key(0), count)
+    u = jax.random.uniform(jax.random.key(1), (count, episode.spec.act), minval=-1, maxval=1)
+    return episode, jax.jit(jax.vmap(episode.reset))(keys), u
+
+
 def worlds(task: str, physics: str, count: int, decisions: int) -> Contestant:
     """`decisions` in each of `count` worlds: reward, end and reset included; physics steps."""
-    episode = config.build(config.load([f"task={task}", f"physics={physics}"])).agent.episode
+    episode, state, u = beginning(task, physics, count)
     env: Any = episode.env
     steps = round(env.spec.dt / env._body.model.opt.timestep) * episode.action_repeat
-    keys = jax.random.split(jax.random.key(0), count)
-    u = jax.random.uniform(jax.random.key(1), (count, env.spec.act), minval=-1, maxval=1)
+    keys = jax.random.split(jax.random.key(2), count)
 
     def forward(_: int, state: EnvState) -> EnvState:
         now = jax.vmap(episode.step)(state, u)
@@ -81,16 +90,14 @@ def worlds(task: str, physics: str, count: int, decisions: int) -> Contestant:
     def run(state: EnvState) -> EnvState:
         return jax.lax.fori_loop(0, decisions, forward, state)
 
-    state = jax.jit(jax.vmap(episode.reset))(keys)
     return compiled(f"ours, {physics}", run, state, work=count * decisions * steps)
 
 
-def plans(agent: Agent, learners: int) -> Contestant:
-    """Plans of each learner's sampling controller: model steps."""
+def decisions(name: str, agent: Agent, learners: int, each: float = 1.0) -> Contestant:
+    """What `learners` controllers do in a decision, side by side, each of them `each` units."""
     controller: Any = agent.controller
-    samples, horizon = controller.samples, controller.horizon
     state = Loop(agent, tuple(range(learners)), 1).init()
-    params = jax.vmap(agent.params)(state)._replace(decisions=jnp.zeros(learners))
+    params = jax.vmap(agent.params)(state)._replace(decisions=jnp.full(learners, LEARNING))
     rest = jax.vmap(lambda _: controller.init(agent.spec))(jnp.arange(learners))
     keys = jax.random.split(jax.random.key(0), learners)
     repeats = 10
@@ -104,9 +111,8 @@ def plans(agent: Agent, learners: int) -> Contestant:
         first = (rest, jnp.zeros((learners, agent.spec.act)))
         return jax.lax.fori_loop(0, repeats, again, first)
 
-    name = f"{learners:,} learners, K {samples:,}, T {horizon}"
     given = (params, rest, state.env.obs[:, 0], keys)
-    return compiled(name, run, *given, work=repeats * learners * horizon * samples)
+    return compiled(name, run, *given, work=repeats * learners * each)
 
 
 def compiled(name: str, run: Callable[..., Any], *given: Any, work: float) -> Contestant:

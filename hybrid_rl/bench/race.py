@@ -18,7 +18,7 @@ class Contestant:
     name: str
     go: Callable[[], Any]  # returns when its work is done
     work: float
-    memory: float | None = None  # [bytes] that its program takes, where known
+    memory: float | None = None  # [bytes] that each of its learners takes, where known
 
 
 def race(contestants: Sequence[Contestant], rounds: int) -> list[dict[str, Any]]:

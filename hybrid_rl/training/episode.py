@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import jax
@@ -10,6 +11,9 @@ from jax import Array
 from jax.custom_batching import custom_vmap
 
 from hybrid_rl.types import Env, EnvState, Spec
+
+# A world is exact, whatever precision the networks' products have on an accelerator.
+EXACT = partial(jax.default_matmul_precision, "highest")
 
 
 @dataclass(frozen=True)
@@ -41,16 +45,17 @@ class Episode:
 
     def reset(self, key: Array) -> EnvState:
         """The first state of an episode. The key is consumed."""
-        state = self.env.reset(key)
+        with EXACT():
+            state = self.env.reset(key)
         clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
         return state.replace(info={**state.info, **clock})
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """One decision with action [m]."""
-        now = self.env.step(state, action)
+        now = self._once(state, action)
 
         def again(_: int, now: EnvState) -> EnvState:
-            after = self.env.step(now, action)
+            after = self._once(now, action)
             after = after.replace(reward=now.reward + after.reward)
             return jax.tree.map(lambda a, b: jnp.where(now.terminated, a, b), now, after)
 
@@ -65,6 +70,10 @@ class Episode:
                 "return": state.info["return"] + now.reward,
             },
         )
+
+    def _once(self, state: EnvState, action: Array) -> EnvState:
+        with EXACT():
+            return self.env.step(state, action)
 
     def renew(self, state: EnvState, key: Array) -> EnvState:
         """`state`, or a fresh episode where it is done. The key is consumed.

@@ -182,7 +182,7 @@ def test_auto_is_native_on_a_cpu():
 def test_auto_takes_what_is_fastest_for_so_many_worlds(monkeypatch):
     """Beside a GPU: MuJoCo C for a few worlds, MJX for many or an unknown number."""
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
-    monkeypatch.setattr("os.cpu_count", lambda: 16)
+    monkeypatch.setattr("hybrid_rl.envs.native.cores", lambda: 16)
     found = [resolve("auto", worlds) for worlds in (1, 1024, 1025, None)]
     assert found == ["native", "native", "mjx", "mjx"]
     assert resolve("mjx", 1) == "mjx"
