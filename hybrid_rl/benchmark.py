@@ -201,6 +201,7 @@ def draw(tables: list[Table], out: Path) -> None:
     """A bar a row, a panel a table; logarithmic."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
+    from matplotlib.ticker import NullFormatter
 
     from hybrid_rl.figures import COLOURS, STYLE
 
@@ -212,11 +213,14 @@ def draw(tables: list[Table], out: Path) -> None:
             names = [row["name"] for row in table["rows"]]
             rates = [row["rate"] for row in table["rows"]]
             bars = axes.barh(names, rates, color=COLOURS[0], height=0.6)
-            axes.bar_label(bars, [f"{rate:,.4g}" for rate in rates], padding=3, fontsize=8)
+            told = [f"{rate:,.0f}" if rate >= 100 else f"{rate:.3g}" for rate in rates]
+            axes.bar_label(bars, told, padding=3, fontsize=8)
             axes.set_xscale("log")
             axes.set_xlim(min(rates) / 3, max(rates) * 5)
             axes.invert_yaxis()
-            axes.set_title(f"{table['part']}: {table['what']} [{table['unit']}]", loc="left")
+            axes.xaxis.set_minor_formatter(NullFormatter())
+            title = f"{table['part']}: {table['what']} [{table['unit']}]"
+            axes.set_title(title, loc="left", fontsize=8)
         figure.savefig(out, dpi=150)
 
 
@@ -244,7 +248,8 @@ def main() -> None:
     tables: list[Table] = []
     for part in said["parts"].split(","):
         tables += PARTS[part](said, rounds)
-        numbers = {"machine": machine, "versions": provenance.versions(), "asked": said}
+        asked = {key: value for key, value in said.items() if key != "out"}
+        numbers = {"machine": machine, "versions": provenance.versions(), "asked": asked}
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps({**numbers, "tables": tables}, indent=1) + "\n")
     draw(tables, out.with_suffix(".png"))

@@ -103,9 +103,11 @@ def decisions(name: str, agent: Agent, learners: int, each: float = 1.0) -> Cont
     repeats = 10
 
     def run(params: Params, rest: Any, obs: Array, keys: Array) -> Any:
-        def again(_: int, held: tuple) -> tuple:
+        def again(i: Array, held: tuple) -> tuple:  # each sees something new: none is left out
             control, total = held
-            u, control, _metrics = jax.vmap(controller.act)(params, control, obs, keys)
+            now = jax.vmap(jax.random.fold_in, (0, None))(keys, i)
+            seen = obs + 1e-3 * i.astype(obs.dtype)
+            u, control, _metrics = jax.vmap(controller.act)(params, control, seen, now)
             return control, total + u
 
         first = (rest, jnp.zeros((learners, agent.spec.act)))

@@ -180,11 +180,15 @@ def test_auto_is_native_on_a_cpu():
 
 
 def test_auto_takes_what_is_fastest_for_so_many_worlds(monkeypatch):
-    """Beside a GPU: MuJoCo C for a few worlds, MJX for many or an unknown number."""
+    """Beside a GPU: MuJoCo C for a few worlds, Warp or else MJX for many or an unknown number."""
+    installed = [True]
+    monkeypatch.setattr("hybrid_rl.envs.physics.find_spec", lambda _: installed[0] or None)
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
     monkeypatch.setattr("hybrid_rl.envs.native.cores", lambda: 16)
-    found = [resolve("auto", worlds) for worlds in (1, 1024, 1025, None)]
-    assert found == ["native", "native", "mjx", "mjx"]
+    found = [resolve("auto", worlds) for worlds in (1, 640, 641, None)]
+    assert found == ["native", "native", "warp", "warp"]
+    installed[0] = False
+    assert resolve("auto", 641) == "mjx"
     assert resolve("mjx", 1) == "mjx"
 
 
@@ -214,3 +218,14 @@ def test_an_error_inside_a_foreign_call_comes_out():
     call = jax.ffi.ffi_call("hybrid_rl.test.fails", out)
     with pytest.raises(Exception, match="no luck today"):
         jax.block_until_ready(jax.jit(call)(jnp.zeros(3)))
+
+
+def test_a_state_has_no_empty_arrays():
+    """Shardy of jax 0.11 ends the process over one that is dealt out over devices."""
+    for asset in ("halfcheetah.xml", "halfcheetah_contact.xml", "pendulum.xml"):
+        body = Physics(asset, "native")
+        state = body.reset(jnp.asarray(body.model.qpos0), jnp.zeros(body.model.nv))
+        after = body.step(state, jnp.zeros(body.model.nu), 1)
+        for now in (state, after):
+            assert all(x.size for x in jax.tree.leaves(now))
+        assert jax.tree.structure(state) == jax.tree.structure(after)

@@ -83,3 +83,20 @@ def test_nothing_is_reset_while_nobody_is_done() -> None:
     state = jax.vmap(jax.vmap(episode.reset))(keys)
     text = str(jax.make_jaxpr(jax.vmap(jax.vmap(episode.renew)))(state, keys))
     assert "cond[" in text
+
+
+def test_a_world_is_exact_whatever_the_precision_of_networks():
+    """Products inside a world keep full float32 where those of networks need not."""
+
+    @dataclass(frozen=True)
+    class Turned(Counter):
+        def step(self, state, action):
+            turn = jnp.eye(1) @ state.obs
+            return super().step(state, action).replace(obs=turn)
+
+    episode = Episode(Turned(), steps=5)
+    with jax.default_matmul_precision("default"):
+        state = episode.reset(jax.random.key(0))
+        program = str(jax.make_jaxpr(episode.step)(state, jnp.zeros(1)))
+    assert "dot_general" in program
+    assert "HIGHEST" in program
