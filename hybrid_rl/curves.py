@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from omegaconf import OmegaConf
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.config import UsageError
 
@@ -175,10 +175,14 @@ def _name(run: Path, key: str) -> str:
     summary, config = run / "summary.json", run / "config.yaml"
     said = json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else {}
     if key not in said and config.exists():
-        said = {key: OmegaConf.select(OmegaConf.load(config), key)}
-    if said.get(key) is None:
+        read = OmegaConf.load(config)
+        parent, _, name = key.rpartition(".")
+        place = OmegaConf.select(read, parent) if parent else read
+        if isinstance(place, DictConfig) and name in place:
+            said = {key: OmegaConf.select(read, key)}
+    if key not in said:
         raise UsageError(f"group={key}: {run} says nothing of it in config.yaml")
-    return str(said[key])
+    return "null" if said[key] is None else str(said[key])
 
 
 def _number(run: Path, key: str) -> float:

@@ -1,6 +1,7 @@
 """What a search found, how far it strayed from its equilibrium, and where it looked.
 
     python -m hybrid_rl.searching runs="runs/*/*bayesopt/*" out=fig_6_4.png
+    python -m hybrid_rl.searching runs="runs/*/kle3_bayesopt/*" group=explorer.level out=guard.png
 
 Best value over measurements and the Lyapunov function over time, median and range over trials;
 and the measurements of the first trial of each method. The numbers are written beside it, as JSON.
@@ -16,13 +17,13 @@ from hybrid_rl import command
 from hybrid_rl.config import UsageError
 from hybrid_rl.curves import Curve, curves
 
-DEFAULTS = {"runs": "", "out": "searching.png"}
+DEFAULTS = {"runs": "", "out": "searching.png", "group": "algo"}
 BEST, V, PLACE, VALUE = "belief/best", "planner/lyapunov", "belief/place", "belief/value"
 SUFFIXES = (".png", ".pdf", ".svg")
 
 
-def _by_label(runs: str, metric: str) -> dict[str, Curve]:
-    return {curve.label: curve for curve in curves(runs, metric)}
+def _by_label(runs: str, metric: str, group: str) -> dict[str, Curve]:
+    return {curve.label: curve for curve in curves(runs, metric, group=group)}
 
 
 def _seconds(curve: Curve) -> np.ndarray:
@@ -41,15 +42,15 @@ def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str, colour: str) ->
     axes.fill_between(x, each.min(0), each.max(0), color=colour, alpha=0.15, lw=0)
 
 
-def plot(runs: str) -> tuple[Any, dict[str, Any]]:
+def plot(runs: str, group: str = "algo") -> tuple[Any, dict[str, Any]]:
     """The figure, and what it says in numbers."""
     import matplotlib
     from matplotlib.figure import Figure
 
     from hybrid_rl.figures import COLOURS, STYLE
 
-    best, strayed = _by_label(runs, BEST), _by_label(runs, V)
-    place, value = _by_label(runs, PLACE), _by_label(runs, VALUE)
+    best, strayed = _by_label(runs, BEST, group), _by_label(runs, V, group)
+    place, value = _by_label(runs, PLACE, group), _by_label(runs, VALUE, group)
     colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(best)}
     numbers: dict[str, Any] = {}
     with matplotlib.rc_context(STYLE):
@@ -99,7 +100,7 @@ def main() -> None:
         raise UsageError('runs: not given; say runs="GLOB", such as runs="runs/*/*bayesopt/*"')
     if out.suffix not in SUFFIXES:
         raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
-    figure, numbers = plot(said["runs"])
+    figure, numbers = plot(said["runs"], said["group"])
     out.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=130)
     out.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n", encoding="utf-8")

@@ -123,6 +123,12 @@ def test_groups_are_tasks_and_algorithms_or_any_key(tmp_path):
     assert named == [("ant", "sac"), ("hopper", "nn_mppi"), ("hopper", "sac")]
     named = [(curve.task, curve.label) for curve in curves(tmp_path, group="replay.capacity")]
     assert named[1:] == [("hopper", "replay.capacity=5"), ("hopper", "replay.capacity=6")]
+    run(tmp_path / "d", [4.0], num_envs=4, replay="{capacity: null}")
+    assert "replay.capacity=null" in [
+        curve.label for curve in curves(tmp_path, group="replay.capacity")
+    ]
+    with pytest.raises(UsageError, match=r"group=replay.capacity.more: .* says nothing of it"):
+        curves(tmp_path, group="replay.capacity.more")
     with pytest.raises(UsageError, match=r"group=nothing: .* says nothing of it"):
         curves(tmp_path, group="nothing")
 

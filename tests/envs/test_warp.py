@@ -45,7 +45,6 @@ def test_too_little_room_is_nan(env, cramped):
     fields = {
         "qpos": state.data.qpos.at[1].add(-0.05),  # into the floor
         "qvel": state.data.qvel,
-        "act": state.data.act,
         "qacc_warmstart": state.data.warmstart,
         "ctrl": state.data.ctrl,
     }
