@@ -47,9 +47,7 @@ class PhysicsState:
     act: Array | None  # [na] actuator activations
     warmstart: Array  # [nv] accelerations, where the solver starts [m/s^2, rad/s^2]
     ctrl: Array | None  # [nu] controls held during the last step
-    sensors: (
-        Array | None
-    )  # [nsensordata] of this state; of the last step where they need accelerations
+    sensors: Array | None  # [nsensordata] of this state; accelerations: of the last step
 
 
 def check(implementation: str) -> None:
@@ -123,9 +121,8 @@ class Physics:
     def _native(self, state: PhysicsState, n: int) -> PhysicsState:
         model = self.model
         parts = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
-        out = native.step(
-            self.asset, self.threads, n, jnp.concatenate([x for x in parts if x is not None])
-        )
+        x = jnp.concatenate([part for part in parts if part is not None])
+        out = native.step(self.asset, self.threads, n, x)
         ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
         qpos, qvel, act, rest = jnp.split(out, ends)
         warmstart, sensors = jnp.split(rest, (model.nv,))

@@ -31,7 +31,7 @@ DEFAULTS = {
     "tasks": "halfcheetah,hopper,cartpole",
     "experiment": "thesis/fig_3_2_halfcheetah",  # of plan, shares, loop and compile
     "algo": "hybrid_stochastic",
-    "physics": "",  # "": native on a CPU, native and mjx (and warp) elsewhere
+    "physics": "",  # "": native on a CPU, native and mjx elsewhere; warp by name
     "worlds": "",
     "learners": "",
     "plans": "",  # KxT, such as 20x10,64x20

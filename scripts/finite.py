@@ -44,7 +44,7 @@ def tumble(task: str, physics: str, worlds: int, decisions: int) -> tuple[int, f
 
 def main() -> int:
     """The command."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description="Random actions in many worlds")
     parser.add_argument("tasks", nargs="+")
     parser.add_argument("--worlds", type=int, default=256)
     parser.add_argument("--decisions", type=int, default=10_000)

@@ -1,9 +1,10 @@
 """What others' code does on the same machine, as contestants.
 
-Bare loops over `mjx.step` and `mujoco.rollout`, without reward, end or reset; MuJoCo Playground's
-CheetahRun and Brax's soft actor-critic where these packages are installed (extra `bench`).
+Bare loops over `mjx.step` and `mujoco.rollout`, without reward, end or reset; MPPI on the true
+model; MuJoCo Playground's CheetahRun where that package is installed (extra `bench`).
 """
 
+from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
@@ -72,9 +73,7 @@ def playground(count: int, decisions: int) -> Contestant | None:
     """MuJoCo Playground's CheetahRun with its own reward; None where it is not installed."""
     if find_spec("mujoco_playground") is None:
         return None
-    from mujoco_playground import registry  # type: ignore[import-not-found]
-
-    env = registry.load("CheetahRun")
+    env = import_module("mujoco_playground").registry.load("CheetahRun")
     u = jnp.full((count, env.action_size), 0.5)
 
     def run(state: Any) -> Any:
