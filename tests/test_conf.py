@@ -18,7 +18,6 @@ from hybrid_rl.training.loop import Loop
 SMALL = [
     "total_steps=200",
     "random_steps=2",
-    "model.hidden=[8]",
     "objective.hidden=[8]",
     "policy.hidden=[8]",
     "critic.hidden=[8]",
@@ -28,6 +27,7 @@ SMALL = [
     "shooting_planner.iterations=2",
     "model_learner.batch_size=2",
     "policy_learner.batch_size=2",
+    "policy_learner.updates=2",
     "belief_learner.updates=1",
     "cloning_learner.batch_size=2",
     "cloning_learner.updates=1",
@@ -62,6 +62,8 @@ EACH = [  # every method on one task, and one method on every task
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite."""
     given = [f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]
+    inner = "model.model" if "model" in config.load(given).model else "model"
+    given.append(f"{inner}.hidden=[8]")
     if config.load(given).head_start:
         given += ["head_start=2", demonstrate(tmp_path, config.load(given))]
     run = config.build(config.load(given))
@@ -70,7 +72,8 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
     program = loop.compile(state)
     state, metrics = program(state, jnp.int32(0), jnp.int32(8))
     assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(run.agent.params(state)))
-    assert int(state.env.info["decision"][0, 0]) == 8
+    given = run.agent.replay.given(run.agent.num_envs)
+    assert (state.memory.count - given == 8).all()
     learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
     assert learned or not run.agent.learners
     for name in learned:
@@ -112,6 +115,9 @@ def test_thesis_parameters() -> None:
         assert got == (horizon, steps, samples, temperature)
         assert c.task == task
         assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
+        assert (c.imagining.share, c.policy_learner.updates, c.model.hidden) == (0, 1, [200])
+        assert not c.critic.layer_norm
+        assert not c.objective.ends
     robots = {  # figure -> task, H, T, K, lambda, policy
         "fig_3_3": ("sawyer_push", 10, 100, 10, 0.01, [128, 128]),
         "fig_3_5": ("ant", 20, 400, 40, 1.0, [128, 64]),

@@ -25,12 +25,14 @@ TINY = [
     "replay.capacity=200",
     "policy.hidden=[16]",
     "critic.hidden=[16]",
+    "model=gaussian",
     "model.hidden=[16]",
     "objective.hidden=[16]",
     "planner.samples=4",
     "planner.horizon=2",
     "model_learner.batch_size=16",
     "policy_learner.batch_size=16",
+    "policy_learner.updates=1",
     "compile_cache=null",  # that of conftest.py
 ]
 

@@ -4,8 +4,9 @@ A share of each batch is replaced: from the states of its first rows the policy 
 
     u ~ pi(x),   x' ~ f(x, u),   r, end = reward(x, u),
 
-for 1 to `steps` decisions, of which the last is kept. This is the branched rollout of Janner et
-al. 2019 (MBPO), drawn anew for each update instead of stored.
+for 1 to `steps` decisions, of which the last is kept; f is one member of an ensemble, another for
+each step of a branch. This is the branched rollout of Janner et al. 2019 (MBPO), drawn anew for
+each update instead of stored.
 """
 
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from hybrid_rl.types import Batch, Learner, Params, Policy, Spec
 
 @dataclass(frozen=True)
 class Imagining:
-    """`learner` with `share` of its data from `model` and `reward`, by `policy`.
+    """`learner` with `share` of its data from `model` and `reward`, by `policy`; 0: untouched.
 
     The model's planning state must be the observation itself.
 
@@ -64,11 +65,12 @@ class Imagining:
         self, state: Any, params: Params, batch: Batch, key: Array
     ) -> tuple[Any, dict[str, Array]]:
         """One step of the learner on the mixed batch. The key is consumed."""
-        imagining, updating = jax.random.split(key)
         count = round(self.share * self.batch_size)
-        if count:
-            dream = self._dream(params, batch.obs[:count], imagining)
-            batch = jax.tree.map(lambda new, old: jnp.concatenate([new, old[count:]]), dream, batch)
+        if not count:
+            return self.learner.update(state, params, batch, key)
+        imagining, updating = jax.random.split(key)
+        dream = self._dream(params, batch.obs[:count], imagining)
+        batch = jax.tree.map(lambda new, old: jnp.concatenate([new, old[count:]]), dream, batch)
         return self.learner.update(state, params, batch, updating)
 
     def _dream(self, params: Params, x: Array, key: Array) -> Batch:
@@ -79,15 +81,17 @@ class Imagining:
         along = (
             jax.random.normal(acting, (length, b, m)),
             jax.random.normal(moving, (length, b, o)),
-            jax.random.uniform(choosing, (length, b)),
+            jax.random.uniform(choosing, (length,)),
             jnp.arange(length),
         )
         last = jax.random.randint(stopping, (b,), 0, length)
 
+        rows = jax.vmap(self._one, (None, 0, 0, 0, None))
+
         def forward(carry: tuple[Array, Batch], at: tuple[Array, ...]) -> tuple:
             x, kept = carry
             for_policy, for_model, place, t = at
-            new = jax.vmap(self._one, (None, 0, 0, 0, 0))(params, x, for_policy, for_model, place)
+            new = rows(params, x, for_policy, for_model, place)
             kept = jax.tree.map(lambda a, b: _where(t == last, a, b), new, kept)
             ended = new.terminated > 0.5  # a branch that ended starts again where it began
             return (_where(ended, start, new.next_obs), kept), None
@@ -95,7 +99,7 @@ class Imagining:
         start = x
         empty = jax.tree.map(
             lambda s: jnp.zeros((b, *s.shape), s.dtype),
-            jax.eval_shape(self._one, params, x[0], along[0][0, 0], along[1][0, 0], along[2][0, 0]),
+            jax.eval_shape(self._one, params, x[0], along[0][0, 0], along[1][0, 0], along[2][0]),
         )
         return jax.lax.scan(forward, (x, empty), along, unroll=min(length, 4))[0][1]
 

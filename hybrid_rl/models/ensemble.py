@@ -57,7 +57,8 @@ class Ensemble:
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, place: Array) -> Array:
         """A next state [n] of one member: that at `place` [] in [0, 1) of the row."""
         which = jnp.int32(place * self.members)
-        return self._over(self.model.draw, params, x, u, noise, place)[which]
+        weights = jax.tree.map(lambda w: w[which], params["weights"])
+        return self.model.draw({**params, "weights": weights}, x, u, noise, place)
 
     def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
         """Mean over the members []."""
