@@ -55,15 +55,25 @@ def record(
     )
 
 
+def by_hand(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Params]:
+    """A task, as `changes` make it, and its expert, which needs to know nothing.
+
+    Raises:
+        UsageError: for a task without one.
+    """
+    said = [f"{key}={value}" for key, value in changes.items()]
+    config = configuration.load([f"task={task}", "algo=sac", *said])
+    expert = configuration.expert(config)
+    return configuration.build(config).agent.episode, expert, Params()
+
+
 def _expert(given: dict[str, str]) -> tuple[str, Episode, Controller, Params]:
     """(task, episode, controller, what it knows) that the arguments name."""
     if bool(given["task"]) == bool(given["run"]):
         raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
     if given["task"]:
-        changes = [f"{key}={value}" for key, value in given.items() if key not in DEFAULTS]
-        config = configuration.load([f"task={given['task']}", "algo=sac", *changes])
-        expert = configuration.expert(config)
-        return config.task, configuration.build(config).agent.episode, expert, Params()
+        changes = {key: value for key, value in given.items() if key not in DEFAULTS}
+        return given["task"], *by_hand(given["task"], changes)
     if len(given) > len(DEFAULTS):
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     from hybrid_rl.evaluate import load

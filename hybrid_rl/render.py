@@ -1,8 +1,10 @@
 """A video of one episode of a trained run, without a display.
 
-python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
+    python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
+    python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
-The episode is the first of the run's own evaluation: same key, no exploration.
+The episode is the first of the run's own evaluation: same key, no exploration. With task=T it is
+played by the task's expert, which is written by hand.
 """
 
 from dataclasses import replace
@@ -16,6 +18,7 @@ from hybrid_rl.config import UsageError
 
 DEFAULTS = {
     "run": "",
+    "task": "",
     "out": "",
     "mode": "full",
     "seed": "",
@@ -34,7 +37,7 @@ def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: in
     """
     import jax
 
-    from hybrid_rl.training.evaluate import evaluation_keys, rollout
+    from hybrid_rl.training.evaluate import evaluation_keys
 
     seed = int(trained.seeds[0]) if seed is None else seed
     if seed not in trained.seeds:
@@ -43,25 +46,38 @@ def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: in
         raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
     world = replace(trained.episode, steps=steps or trained.episode.steps)
     params = jax.tree.map(lambda leaf: leaf[trained.seeds.index(seed)], trained.params)
+    return film(world, trained.controllers[mode], params, evaluation_keys(seed, 1)[0])
+
+
+def film(world: Any, controller: Any, params: Any, key: Any) -> tuple:
+    """What a controller that knows `params` does in an episode: poses [frames, nq], return."""
+    import jax
+
+    from hybrid_rl.training.evaluate import rollout
 
     def go(params: Any, key: Any) -> tuple:
-        states = rollout(world, trained.controllers[mode], params, key, world.steps)
+        states = rollout(world, controller, params, key, world.steps)
         return jax.vmap(world.env.pose)(states), states.done, states.info["return"]
 
-    poses, done, returns = jax.jit(go)(params, evaluation_keys(seed, 1)[0])
+    poses, done, returns = jax.jit(go)(params, key)
     last = int(np.argmax(done)) if np.any(done) else world.steps
     return np.asarray(poses)[: last + 1], float(returns[last])
 
 
 def main() -> None:
     """The command."""
-    given = command.arguments(DEFAULTS)
+    given = command.arguments(DEFAULTS, "env", "episode", "expert")
     said = DEFAULTS | given
-    if "run" not in given:
-        raise UsageError("run: not given; say run=DIR, a folder that training wrote")
+    if bool(said["run"]) == bool(said["task"]):
+        raise UsageError(
+            "run, task: give one of them; run=DIR is a folder that training wrote, "
+            "task=T shows the task's expert by hand"
+        )
     from hybrid_rl.drawing import SUFFIXES, backend, draw
 
-    out = Path(said["out"] or Path(said["run"]) / "video.mp4")
+    out = Path(
+        said["out"] or (Path(said["run"]) / "video.mp4" if said["run"] else f"{said['task']}.mp4")
+    )
     if out.suffix not in SUFFIXES:
         raise UsageError(f"out={out}: must end in {' or '.join(SUFFIXES)}")
     width = command.count("width", said["width"], even=True)
@@ -70,14 +86,27 @@ def main() -> None:
     seed = command.count("seed", said["seed"], least=0) if said["seed"] else None
     backend()  # before minutes of work: nothing is lost where nothing can draw
 
-    from hybrid_rl.evaluate import load
+    if said["task"]:
+        from hybrid_rl.demonstrate import by_hand
+        from hybrid_rl.training.evaluate import evaluation_keys
 
-    trained = load(Path(said["run"]))
-    poses, total = episode(trained, said["mode"], seed, steps)
-    rate = 1 / trained.episode.spec.dt
+        changes = {key: value for key, value in said.items() if key not in DEFAULTS}
+        whole, controller, params = by_hand(said["task"], changes)
+        world = replace(whole, steps=steps or whole.steps)
+        poses, total = film(world, controller, params, evaluation_keys(seed or 0, 1)[0])
+        by = "by hand"
+    else:
+        from hybrid_rl.evaluate import load
+
+        if len(said) > len(DEFAULTS):
+            raise UsageError("env, episode, expert: a run has its own; give them with task=T")
+        trained = load(Path(said["run"]))
+        world, by = trained.episode, f"step {trained.step:,}"
+        poses, total = episode(trained, said["mode"], seed, steps)
+    rate = 1 / world.spec.dt
     stride = int(np.ceil(rate / FASTEST))
-    draw(trained.episode.env.scene(), poses[::stride], out, rate / stride, width, height)
-    print(f"{out}: {len(poses) - 1} decisions, return {total:,.1f}, step {trained.step:,}")
+    draw(world.env.scene(), poses[::stride], out, rate / stride, width, height)
+    print(f"{out}: {len(poses) - 1} decisions, return {total:,.1f}, {by}")
 
 
 if __name__ == "__main__":

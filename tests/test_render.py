@@ -255,10 +255,23 @@ def test_the_command_writes_a_video_in_real_time(trained, tmp_path, monkeypatch,
     assert said == f"{out}: 5 decisions, return 5.0, step 7,000"
 
 
+def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_draw):
+    """Two decisions of Sawyer's."""
+    if not can_draw:
+        return
+    small = ["width=64", "height=48", "episode_steps=2"]
+    assert call(monkeypatch, "task=sawyer_push", f"out={tmp_path}/a.mp4", *small) == 0
+    assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3
+    assert capsys.readouterr().out.splitlines()[-1].endswith(", by hand")
+
+
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ([], "run: not given"),
+        ([], "run, task: give one of them"),
+        (["run=x", "task=sawyer_push"], "run, task: give one of them"),
+        (["run=x", "env.reward=thesis"], "env, episode, expert: a run has its own"),
+        (["task=pendulum"], "task=pendulum: nobody wrote an expert"),
         (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4 or .gif"),
         (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
         (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),

@@ -185,7 +185,7 @@ class Agent:
             @once
             def update(state: Any, k: Array, count: int = count, one: Any = one) -> Any:
                 rows = jax.random.split(k, (count, 2))
-                state, each = jax.lax.scan(one, state, rows, unroll=min(count, 4))
+                state, each = jax.lax.scan(one, state, rows, unroll=count if count <= 4 else 1)
                 return state, jax.tree.map(lambda m: m[-1], each)
 
             nothing = _zeros(jax.eval_shape(update, states[name], k)[1])
