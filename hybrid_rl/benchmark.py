@@ -2,10 +2,12 @@
 
     python -m hybrid_rl.benchmark parts=physics,plan,shares,loop,compile out=benchmark.json
     python -m hybrid_rl.benchmark parts=loop model_learner.updates=1 planner.horizon=5
+    python -m hybrid_rl.benchmark parts=updates experiment= algo=sac
 
 physics   physics steps a second by task, implementation and number of worlds, beside bare loops
 plan      model steps a second of the planner, by learners, K and T
 act       decisions a second of a controller alone, by number of robots, beside real time
+updates   gradient steps a second of each learner, by number of them, beside Brax's SAC
 shares    where a decision's time goes
 loop      decisions a second of the whole training loop, by number of learners
 compile   seconds from start to the first decision, with an empty cache and a filled one
@@ -112,6 +114,23 @@ def act(said: dict[str, str], rounds: int) -> list[Table]:
     return [_race("act", f"{said['experiment']}, {said['algo']}, {real}", "acts/s", field, rounds)]
 
 
+def updates(said: dict[str, str], rounds: int) -> list[Table]:
+    """One gradient step of each learner; soft actor-critic beside another's of the same size."""
+    from hybrid_rl.bench import others, ours
+
+    agent, tables = _agent(said), []
+    for count in _counts(said, "learners"):
+        field = [ours.updates(f"{name} learner", agent, name, count) for name in agent.learners]
+        for learner in agent.learners.values():
+            critic: Any = getattr(learner, "critic", None)
+            if critic is not None:
+                size = learner.batch_size
+                field.append(others.brax_sac(agent.spec, critic.hidden, size, count))
+        what = f"{said['algo']}, {count:,} learners"
+        tables.append(_race("updates", what, "gradient steps/s", field, rounds))
+    return tables
+
+
 def shares(said: dict[str, str], rounds: int) -> list[Table]:
     """The whole loop with parts left out, and what the chip can do."""
     from hybrid_rl.bench import ours
@@ -167,6 +186,7 @@ PARTS = {
     "physics": physics,
     "plan": plan,
     "act": act,
+    "updates": updates,
     "shares": shares,
     "loop": loop,
     "compile": compiling,

@@ -46,6 +46,16 @@ def test_the_command_measures_every_part(tmp_path, capsys):
     assert iio.imread(out.with_suffix(".png")).shape[1] > 500
 
 
+def test_gradient_steps_beside_those_of_brax(tmp_path):
+    """Soft actor-critic of both, at the same sizes."""
+    out = tmp_path / "b.json"
+    world = ["experiment=thesis/fig_3_2_pendulum", "parts=updates", "algo=sac"]
+    assert run(*world, "learners=2", "rounds=1", f"out={out}") == 0
+    (table,) = json.loads(out.read_text())["tables"]
+    assert [row["name"] for row in table["rows"]] == ["policy learner", "Brax's SAC"]
+    assert all(row["rate"] > 0 for row in table["rows"])
+
+
 @pytest.mark.parametrize(
     ("given", "line"),
     [

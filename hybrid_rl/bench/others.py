@@ -1,7 +1,8 @@
 """What others' code does on the same machine, as contestants.
 
 Bare loops over `mjx.step` and `mujoco.rollout`, without reward, end or reset; MPPI on the true
-model; MuJoCo Playground's CheetahRun where that package is installed (extra `bench`).
+model; gradient steps of Brax's soft actor-critic; MuJoCo Playground's CheetahRun where that package
+is installed (extra `bench`).
 """
 
 from importlib import import_module
@@ -12,12 +13,14 @@ import jax
 import jax.numpy as jnp
 import mujoco
 import numpy as np
+import optax
 
-from hybrid_rl.bench.ours import beginning, compiled
+from hybrid_rl.bench.ours import beginning, compiled, recalled
 from hybrid_rl.bench.race import Contestant
 from hybrid_rl.envs import native
 from hybrid_rl.envs.physics import Physics
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import Batch, Spec
 
 
 def _first(task: str, count: int) -> tuple[Physics, Any]:
@@ -83,6 +86,55 @@ def playground(count: int, decisions: int) -> Contestant | None:
         state = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), count))
         work = count * decisions * round(env.dt / env.sim_dt)
         return compiled("MuJoCo Playground's CheetahRun", run, state, work=work)
+
+
+def brax_sac(spec: Spec, hidden: tuple[int, ...], size: int, learners: int) -> Contestant:
+    """Gradient steps of Brax's soft actor-critic: its networks and losses, three Adams, a target.
+
+    Its trainer itself does not start on jax 0.10 and later (`jax.device_put_replicated`).
+    """
+    from brax.training.agents.sac import losses, networks
+    from brax.training.types import Transition
+
+    nets = networks.make_sac_networks(spec.obs, spec.act, hidden_layer_sizes=hidden)
+    of_alpha, of_critic, of_actor = losses.make_losses(nets, 1.0, 0.99, spec.act)
+    adam, repeats = optax.adam(3e-4), 20
+    batch = recalled(learners, size, spec.obs, spec.act)
+
+    def init(key: jax.Array) -> tuple:
+        policy, q = nets.policy_network.init(key), nets.q_network.init(key)
+        alpha = jnp.zeros(())
+        return (policy, q, alpha), q, tuple(adam.init(part) for part in (policy, q, alpha))
+
+    def one(state: tuple, batch: Batch, key: jax.Array) -> tuple:
+        no_end: Any = {"state_extras": {"truncation": batch.truncated}}
+        seen = Transition(
+            batch.obs, batch.action, batch.reward, 1 - batch.terminated, batch.next_obs, no_end
+        )
+
+        def again(i: jax.Array, state: tuple) -> tuple:
+            (policy, q, log_alpha), target, optimisers = state
+            keys, alpha = jax.random.split(jax.random.fold_in(key, i), 3), jnp.exp(log_alpha)
+            grads = (
+                jax.grad(of_actor)(policy, None, q, alpha, seen, keys[0]),
+                jax.grad(of_critic)(q, policy, None, target, alpha, seen, keys[1]),
+                jax.grad(of_alpha)(log_alpha, policy, None, seen, keys[2]),
+            )
+            parts, kept = [], []
+            for grad, optimiser, part in zip(grads, optimisers, state[0], strict=True):
+                change, optimiser = adam.update(grad, optimiser, part)
+                parts.append(optax.apply_updates(part, change))
+                kept.append(optimiser)
+            target = optax.incremental_update(parts[1], target, 0.005)
+            return tuple(parts), target, tuple(kept)
+
+        return jax.lax.fori_loop(0, repeats, again, state)
+
+    with jax.numpy_rank_promotion("allow"):
+        keys = jax.random.split(jax.random.key(0), learners)
+        state = jax.vmap(init)(keys)
+        work = repeats * learners
+        return compiled("Brax's SAC", jax.vmap(one), state, batch, keys, work=work)
 
 
 def on_the_true_model(episode: Episode, samples: int, horizon: int) -> Contestant:

@@ -16,7 +16,7 @@ from hybrid_rl.bench.race import Contestant
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.types import EnvState, Params, Spec
+from hybrid_rl.types import Batch, EnvState, Params, Spec
 
 LEARNING = 200_000  # decisions into a run, where every part is at work
 
@@ -115,6 +115,32 @@ def decisions(name: str, agent: Agent, learners: int, each: float = 1.0) -> Cont
 
     given = (params, rest, state.env.obs[:, 0], keys)
     return compiled(name, run, *given, work=repeats * learners * each)
+
+
+def updates(name: str, agent: Agent, which: str, learners: int) -> Contestant:
+    """Gradient steps of one of the agent's learners, for many agents side by side."""
+    learner, o, m, repeats = agent.learners[which], agent.spec.obs, agent.spec.act, 20
+    state = Loop(agent, tuple(range(learners)), 1).init()
+    batch = recalled(learners, learner.batch_size, o, m)
+    keys = jax.random.split(jax.random.key(0), learners)
+
+    def one(state: Any, params: Params, batch: Batch, key: Array) -> Any:
+        def again(i: Array, state: Any) -> Any:
+            return learner.update(state, params, batch, jax.random.fold_in(key, i))[0]
+
+        return jax.lax.fori_loop(0, repeats, again, state)
+
+    given = (state.learners[which], jax.vmap(agent.params)(state), batch, keys)
+    return compiled(name, jax.vmap(one), *given, work=repeats * learners)
+
+
+def recalled(learners: int, size: int, obs: int, act: int) -> Batch:
+    """A batch [learners, size, ...] of noise, in which no episode ends."""
+    of_x, of_u, of_r = jax.random.split(jax.random.key(0), 3)
+    x, after = jax.random.normal(of_x, (2, learners, size, obs))
+    u, next_u = jax.random.uniform(of_u, (2, learners, size, act), minval=-1, maxval=1)
+    none = jnp.zeros((learners, size))
+    return Batch(x, u, jax.random.normal(of_r, none.shape), none, none, after, next_u)
 
 
 def compiled(name: str, run: Callable[..., Any], *given: Any, work: float) -> Contestant:
