@@ -72,8 +72,8 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
     program = loop.compile(state)
     state, metrics = program(state, jnp.int32(0), jnp.int32(8))
     assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(run.agent.params(state)))
-    given = run.agent.replay.given(run.agent.num_envs)
-    assert (state.memory.count - given == 8).all()
+    shown = run.agent.replay.given(run.agent.num_envs)
+    assert (state.memory.count - shown == 8).all()
     learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
     assert learned or not run.agent.learners
     for name in learned:
