@@ -73,6 +73,11 @@ def main() -> None:
             "run, task: give one of them; run=DIR is a folder that training wrote, "
             "task=T shows the task's expert by hand"
         )
+    changes = {key: value for key, value in said.items() if key not in DEFAULTS}
+    if said["run"] and changes:
+        raise UsageError("env, episode, expert: a run has its own; give them with task=T")
+    if said["task"] and "mode" in given:
+        raise UsageError("mode: an expert by hand has none; give it with run=DIR")
     from hybrid_rl.drawing import SUFFIXES, backend, draw
 
     out = Path(
@@ -90,7 +95,6 @@ def main() -> None:
         from hybrid_rl.demonstrate import by_hand
         from hybrid_rl.training.evaluate import evaluation_keys
 
-        changes = {key: value for key, value in said.items() if key not in DEFAULTS}
         whole, controller, params = by_hand(said["task"], changes)
         world = replace(whole, steps=steps or whole.steps)
         poses, total = film(world, controller, params, evaluation_keys(seed or 0, 1)[0])
@@ -98,8 +102,6 @@ def main() -> None:
     else:
         from hybrid_rl.evaluate import load
 
-        if len(said) > len(DEFAULTS):
-            raise UsageError("env, episode, expert: a run has its own; give them with task=T")
         trained = load(Path(said["run"]))
         world, by = trained.episode, f"step {trained.step:,}"
         poses, total = episode(trained, said["mode"], seed, steps)
