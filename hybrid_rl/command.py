@@ -90,9 +90,18 @@ def options(group: str) -> list[str]:
 
 
 def prepare(config: DictConfig) -> None:
-    """Settings of JAX for this process: compilation cache and matrix precision."""
+    """Settings of JAX for this process: compilation cache, matrix precision, threads.
+
+    Before JAX has looked for its devices. On a CPU, MJX factorises matrices of many worlds at
+    once, and side by side; each such call holds one of XLA's threads while others do its work
+    (jaxlib 0.10). Where there are two of them they wait for ever: so let there be eight.
+    """
     import jax
 
+    from hybrid_rl.envs.native import cores
+
+    if config.physics == "mjx" and cores() < 8:
+        os.environ.setdefault("NPROC", "8")
     jax.config.update("jax_default_matmul_precision", config.matmul_precision)
     if config.compile_cache is not None:
         cache = Path(str(config.compile_cache)).expanduser()

@@ -13,13 +13,15 @@ from time import perf_counter
 import jax
 import jax.numpy as jnp
 
-from hybrid_rl import config
+from hybrid_rl import command, config
 from hybrid_rl.types import EnvState
 
 
 def tumble(task: str, physics: str, worlds: int, decisions: int) -> tuple[int, float]:
     """(worlds that were not finite at some time, greatest observation in size)."""
-    episode = config.build(config.load([f"task={task}", f"physics={physics}"])).agent.episode
+    given = config.load([f"task={task}", f"physics={physics}"])
+    command.prepare(given)
+    episode = config.build(given).agent.episode
     first = jax.jit(jax.vmap(episode.reset))(jax.random.split(jax.random.key(0), worlds))
 
     def forward(i: jax.Array, held: tuple) -> tuple:

@@ -1,7 +1,10 @@
 """What the commands leave behind: files, names, tables, pictures."""
 
 import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import imageio.v3 as iio
@@ -13,6 +16,7 @@ from tiny import TINY, call, call_train, contents, run
 from hybrid_rl import command, config, drawing, evaluate, figures, render
 from hybrid_rl import list as listed
 from hybrid_rl.curves import curves
+from hybrid_rl.envs.native import cores
 from hybrid_rl.training import checkpoint
 
 pytestmark = pytest.mark.xdist_group("commands")
@@ -201,3 +205,18 @@ def test_the_list_names_every_task_and_method(capsys):
     said = capsys.readouterr().out
     for group in ("task", "algo", "experiment"):
         assert all(f"  {name}  " in said for name in command.options(group))
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are read from /proc")
+@pytest.mark.parametrize(("given", "threads"), [({}, max(8, cores())), ({"NPROC": "3"}, 3)])
+def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
+    code = (
+        "import jax; from pathlib import Path; from hybrid_rl import command, config\n"
+        "command.prepare(config.load(['physics=mjx', 'compile_cache=null'])); jax.devices()\n"
+        "names = [path.read_text() for path in Path('/proc/self/task').glob('*/comm')]\n"
+        "print(sum('XLAEigen' in name for name in names))"
+    )
+    env = {name: text for name, text in os.environ.items() if name != "NPROC"} | given
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) == threads
