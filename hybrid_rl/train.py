@@ -35,8 +35,8 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
         CheckpointError: where a checkpoint could not be written or read.
     """
     config = _settings(config, asked)
-    command.prepare(config)
     run = configuration.build(config)
+    command.prepare(config)
     label = f"{config.task} {config.algo}"
     memory = _memory(run)
     folder = _folder(config)

@@ -212,7 +212,8 @@ def test_the_list_names_every_task_and_method(capsys):
 def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
     code = (
         "import jax; from pathlib import Path; from hybrid_rl import command, config\n"
-        "command.prepare(config.load(['physics=mjx', 'compile_cache=null'])); jax.devices()\n"
+        "given = config.load(['physics=mjx', 'compile_cache=null'])\n"
+        "config.build(given); command.prepare(given); jax.devices()\n"
         "names = [path.read_text() for path in Path('/proc/self/task').glob('*/comm')]\n"
         "print(sum('XLAEigen' in name for name in names))"
     )
