@@ -4,6 +4,7 @@ import sys
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
+from tempfile import TemporaryFile
 from types import MappingProxyType
 from typing import Any
 
@@ -119,9 +120,8 @@ def _writable(folder: Path, key: str) -> Path:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".writable"
-        probe.touch()
-        probe.unlink()
+        with TemporaryFile(dir=folder):  # of no other run that begins at the same time
+            pass
     except OSError as error:
         raise UsageError(f"{key}={folder}: cannot be written to ({error.strerror})") from error
     return folder

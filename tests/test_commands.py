@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import imageio.v3 as iio
@@ -13,7 +14,7 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, config, drawing, evaluate, figures, render
+from hybrid_rl import command, config, drawing, evaluate, figures, render, train
 from hybrid_rl import list as listed
 from hybrid_rl.curves import curves
 from hybrid_rl.envs.native import cores
@@ -166,6 +167,14 @@ def test_a_sweep_goes_to_a_cluster_by_one_override(tmp_path, monkeypatch):
     found = [summary(path) for path in (tmp_path / "runs" / "pendulum" / "sac").iterdir()]
     assert sorted(said["seeds"] for said in found) == [[0], [1]]
     assert all(said["finished"] for said in found)
+
+
+def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:
+    place = tmp_path / "runs" / "pendulum" / "sac"
+    with ThreadPoolExecutor(16) as pool:
+        made = list(pool.map(lambda _: train._writable(place, "run_dir"), range(2000)))
+    assert set(made) == {place}
+    assert not list(place.iterdir())
 
 
 def test_figures_draw_a_sweep(swept, monkeypatch, capsys):
