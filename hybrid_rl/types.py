@@ -149,6 +149,9 @@ class Policy(Protocol):
     def sample(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array]:
         """The action [m] that `noise` [m] ~ N(0, I) becomes, and its log-density []."""
 
+    def variance(self, params: PyTree, x: Array) -> Array:
+        """Of the action [m]."""
+
 
 class Objective(Protocol):
     """J(path), a return: what a planner maximises. It may couple all times, and the past."""
@@ -219,8 +222,10 @@ class Controller(Protocol):
 class Learner(Protocol):
     """data -> parameters."""
 
-    batch_size: int
+    batch_size: int  # transitions of a batch
+    batches: int  # that one update takes, one after the other in its rows
     updates: float  # per decision
+    early: bool  # whether it learns while decisions are random, too
 
     def init(self, key: Array, spec: Spec) -> PyTree:
         """First state: parameters, optimisers, targets."""
@@ -231,4 +236,4 @@ class Learner(Protocol):
     def update(
         self, state: PyTree, params: Params, batch: Batch, key: Array
     ) -> tuple[PyTree, dict[str, Array]]:
-        """One gradient step on `batch`; `params` is what all learners know."""
+        """One gradient step on `batch` [batches * batch_size]; `params` of all learners."""

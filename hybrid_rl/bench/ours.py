@@ -121,7 +121,7 @@ def updates(name: str, agent: Agent, which: str, learners: int) -> Contestant:
     """Gradient steps of one of the agent's learners, for many agents side by side."""
     learner, o, m, repeats = agent.learners[which], agent.spec.obs, agent.spec.act, 20
     state = Loop(agent, tuple(range(learners)), 1).init()
-    batch = recalled(learners, learner.batch_size, o, m)
+    batch = recalled(learners, learner.batches * learner.batch_size, o, m)
     keys = jax.random.split(jax.random.key(0), learners)
 
     def one(state: Any, params: Params, batch: Batch, key: Array) -> Any:

@@ -193,6 +193,9 @@ class _Plan:
         if self.of.policy is not None:
             own, correction = jnp.linalg.norm(mean), jnp.linalg.norm(action - mean)
             found["planner/policy_share"] = own / (own + correction + 1e-6)
+            if self.of.gain is None:
+                variance = self.of.policy.variance(self.params.policy, self.x)
+                found |= adjoint.per_variance(insertion, variance)
         if self.of.lyapunov is not None:
             kept = lyapunov.record(self.of.lyapunov.lyapunov, self.step, self.mean, path)
             found |= {

@@ -115,6 +115,7 @@ class SamplingController:
         correction = jnp.linalg.norm(plan[0] - mean(x))
         return {
             "planner/mode_insertion_gradient": insertion,
+            **adjoint.per_variance(insertion, policy.variance(params.policy, x)),
             "planner/policy_share": own / (own + correction + 1e-6),
         }
 

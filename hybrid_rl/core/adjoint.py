@@ -100,6 +100,20 @@ def mode_insertion_gradient(step: Step, objective: Return, found: Adjoint, u: Ar
     return jump + found.costate[1] @ (step(x, u) - step(x, path.u[0]))
 
 
+def per_variance(insertion: Array, variance: Array) -> dict[str, Array]:
+    """What says whether a mode insertion gradient fell because model and policy agree.
+
+    To first order it is g' (u - mu), and g' Sigma g for u = mu + Sigma g (thesis Corollary 1), so
+    that it also falls as the policy's variance Sigma = diag(variance [m]) shrinks. Divided by
+    tr(Sigma) it is the size of the gradient g of the return alone [J / u^2].
+    """
+    total = variance.sum()
+    return {
+        "planner/policy_variance": total,
+        "planner/insertion_per_variance": insertion / (total + 1e-6),
+    }
+
+
 def insertion_ahead(
     step: Step,
     policy: Callable[[Array], Array],

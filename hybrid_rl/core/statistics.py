@@ -1,16 +1,16 @@
-"""Running mean and deviation of a stream of batches, and whitening by them.
+"""Running mean and standard deviation of a stream of batches, and whitening by them.
 
 m <- m + a (mean(batch) - m),   s^2 <- (1 - a) s^2 + a var(batch) + a (1 - a) (mean(batch) - m)^2
 
-with a = max(1 / batches, rate): exact while young, exponential after, so that a growing replay
-memory stays followed.
+with a = max(1 / batches, rate): exact while young, exponential after, so that the statistics
+follow a growing replay memory.
 """
 
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-FLOOR = 1e-3  # smallest deviation: a constant entry stays finite
+FLOOR = 1e-6  # smallest standard deviation in units of the entry's magnitude: float32 rounds there
 
 
 @struct.dataclass
@@ -19,29 +19,48 @@ class Running:
 
     mean: Array  # [d]
     std: Array  # [d]
+    least: Array  # [d] smallest standard deviation that is no rounding error
     count: Array  # [] batches seen
+
+    @property
+    def scale(self) -> Array:
+        """[d] what `whiten` divides by: std, at least `least`, and 1 where both are zero."""
+        std = jnp.maximum(self.std, self.least)
+        return jnp.where(std > 0, std, 1)
+
+    @property
+    def magnitude(self) -> Array:
+        """[d] root mean square of the entries."""
+        return jnp.sqrt(self.mean**2 + self.std**2)
 
 
 def init(size: int) -> Running:
-    """Mean 0 and deviation 1 until the first batch."""
-    return Running(jnp.zeros(size), jnp.ones(size), jnp.zeros(()))
+    """Mean 0 and standard deviation 1 until the first batch."""
+    return Running(jnp.zeros(size), jnp.ones(size), jnp.zeros(size), jnp.zeros(()))
 
 
-def update(stats: Running, batch: Array, rate: float = 1e-3) -> Running:
-    """Statistics that have seen batch [B, d] too."""
+def update(
+    stats: Running, batch: Array, magnitude: Array | None = None, rate: float = 1e-3
+) -> Running:
+    """Statistics that include batch [B, d].
+
+    magnitude: [d] of the numbers that the batch was computed from, where it holds differences;
+    None: that of the batch's own entries.
+    """
     count = stats.count + 1
     a = jnp.maximum(1 / count, rate)
     step = batch.mean(0) - stats.mean
     variance = (1 - a) * stats.std**2 + a * batch.var(0) + a * (1 - a) * step**2
-    return Running(stats.mean + a * step, jnp.maximum(jnp.sqrt(variance), FLOOR), count)
+    now = Running(stats.mean + a * step, jnp.sqrt(variance), stats.least, count)
+    return now.replace(least=FLOOR * (now.magnitude if magnitude is None else magnitude))
 
 
 def whiten(stats: Running, x: Array) -> Array:
-    """(x - mean) / std for x [..., d]."""
-    mean, std = (jnp.broadcast_to(part, x.shape) for part in (stats.mean, stats.std))
-    return (x - mean) / std
+    """(x - mean) / scale for x [..., d]."""
+    mean, scale = (jnp.broadcast_to(part, x.shape) for part in (stats.mean, stats.scale))
+    return (x - mean) / scale
 
 
 def colour(stats: Running, x: Array) -> Array:
-    """Mean + std x, the inverse of `whiten`."""
-    return stats.mean + stats.std * x
+    """Mean + scale x, the inverse of `whiten`."""
+    return stats.mean + stats.scale * x

@@ -42,6 +42,9 @@ class BehaviourCloning:
     batch_size: int = 128
     updates: float = 0.25  # per decision
 
+    batches = 1
+    early = False  # it waits for the end of random decisions
+
     def __post_init__(self) -> None:
         """Check the fields."""
         if self.learning_rate <= 0:

@@ -26,6 +26,9 @@ class BeliefLearner:
     batch_size: int = 1
     updates: float = 0.05  # measurements a decision
 
+    batches = 1
+    early = False  # it waits for the end of random decisions
+
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "coordinates", tuple(self.coordinates))

@@ -49,6 +49,9 @@ class DDPG:
     batch_size: int = 128
     updates: float = 1  # per decision
 
+    batches = 1
+    early = False  # it waits for the end of random decisions
+
     def __post_init__(self) -> None:
         """Check the fields."""
         if not 0 <= self.discount < 1:

@@ -4,8 +4,8 @@ A share of each batch is replaced: from the states of its first rows the policy 
 
     u ~ pi(x),   x' ~ f(x, u),   r, end = reward(x, u),
 
-for 1 to `steps` decisions, of which the last is kept; f is one member of an ensemble, another for
-each step of a branch. This is the branched rollout of Janner et al. 2019 (MBPO), drawn anew for
+for 1 to `steps` decisions, of which the last is kept; of an ensemble, each row's f is one member,
+drawn again at each step. These are the branched rollouts of Janner et al. 2019 (MBPO), drawn for
 each update instead of stored.
 """
 
@@ -49,6 +49,16 @@ class Imagining:
         return self.learner.batch_size
 
     @property
+    def batches(self) -> int:
+        """The learner's."""
+        return self.learner.batches
+
+    @property
+    def early(self) -> bool:
+        """The learner's."""
+        return self.learner.early
+
+    @property
     def updates(self) -> float:
         """The learner's, per decision."""
         return self.learner.updates
@@ -81,36 +91,34 @@ class Imagining:
         along = (
             jax.random.normal(acting, (length, b, m)),
             jax.random.normal(moving, (length, b, o)),
-            jax.random.uniform(choosing, (length,)),
+            jax.random.split(choosing, length),
             jnp.arange(length),
         )
         last = jax.random.randint(stopping, (b,), 0, length)
 
-        rows = jax.vmap(self._one, (None, 0, 0, 0, None))
-
         def forward(carry: tuple[Array, Batch], at: tuple[Array, ...]) -> tuple:
             x, kept = carry
-            for_policy, for_model, place, t = at
-            new = rows(params, x, for_policy, for_model, place)
+            *random, t = at
+            new = self._transitions(params, x, *random)
             kept = jax.tree.map(lambda a, b: _where(t == last, a, b), new, kept)
             ended = new.terminated > 0.5  # a branch that ended starts again where it began
             return (_where(ended, start, new.next_obs), kept), None
 
         start = x
         empty = jax.tree.map(
-            lambda s: jnp.zeros((b, *s.shape), s.dtype),
-            jax.eval_shape(self._one, params, x[0], along[0][0, 0], along[1][0, 0], along[2][0]),
+            lambda s: jnp.zeros(s.shape, s.dtype),
+            jax.eval_shape(self._transitions, params, x, *(each[0] for each in along[:3])),
         )
         return jax.lax.scan(forward, (x, empty), along, unroll=min(length, 4))[0][1]
 
-    def _one(
-        self, params: Params, x: Array, for_policy: Array, for_model: Array, place: Array
+    def _transitions(
+        self, params: Params, x: Array, for_policy: Array, for_model: Array, key: Array
     ) -> Batch:
-        """One transition; its end is a probability, which the learner's (1 - end) averages."""
-        u = self.policy.sample(params.policy, x, for_policy)[0]
-        after = self.model.draw(params.model, x, u, for_model, place)
-        reward, end = self.reward.outcome(params.reward, x, u)
-        return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(()), after, u)
+        """One from each x [b, o]; `terminated` is a probability, which (1 - end) averages."""
+        u = jax.vmap(self.policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
+        after = self.model.draw(params.model, x, u, for_model, key)
+        reward, end = jax.vmap(self.reward.outcome, (None, 0, 0))(params.reward, x, u)
+        return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(len(x)), after, u)
 
 
 def _where(flags: Array, a: Array, b: Array) -> Array:

@@ -35,10 +35,17 @@ class Likelihood:
     batch_size: int = 128
     updates: float = 1  # per decision
 
+    early = True  # random decisions inform the model
+
     def __post_init__(self) -> None:
         """Check the fields."""
         if self.learning_rate <= 0:
             raise ValueError(f"likelihood.learning_rate={self.learning_rate}: must be above 0")
+
+    @property
+    def batches(self) -> int:
+        """One for each member of an ensemble."""
+        return self.model.members
 
     def init(self, key: Array, spec: Spec) -> LikelihoodState:
         """First parameters and optimiser. The key is consumed."""
@@ -52,13 +59,12 @@ class Likelihood:
     def update(
         self, state: LikelihoodState, params: Params, batch: Batch, key: Array
     ) -> tuple[LikelihoodState, dict[str, Array]]:
-        """One step on a batch."""
+        """One step on a batch [members * B]."""
         model = self.model.observe(state.model, batch.obs, batch.next_obs)
 
         def loss(weights: Any) -> Array:
-            each = jax.vmap(self.model.loss, (None, 0, 0, 0))
             known = {**model, "weights": weights}
-            return each(known, batch.obs, batch.action, batch.next_obs).mean()
+            return self.model.loss(known, batch.obs, batch.action, batch.next_obs)
 
         value, grads = jax.value_and_grad(loss)(model["weights"])
         change, optimiser = optax.adam(self.learning_rate).update(grads, state.optimiser)

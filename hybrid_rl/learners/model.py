@@ -3,7 +3,8 @@
     loss = -log N(x'; x + f(x, u), s^2) + 0.5 (r + c (1 - end) r(x', u') - r(x, u))^2
 
 with u' the action that was executed at x' and no gradient through the target; one Adam for both.
-`reward_discount` c is 0.95 in the thesis, 0 makes r the reward itself.
+`reward_discount` c is 0.95 in the thesis, 0 makes r the reward itself. Where an episode ended, at
+its time limit too, no action was executed at x', so that the target is the reward alone.
 """
 
 from dataclasses import dataclass
@@ -42,6 +43,8 @@ class ModelLearner:
     reward_discount: float = 0.0
     max_grad_norm: float | None = None
 
+    early = True  # random decisions inform the model
+
     def __post_init__(self) -> None:
         """Check the fields."""
         if not 0 <= self.reward_discount < 1:
@@ -50,6 +53,11 @@ class ModelLearner:
             )
         if self.learning_rate <= 0:
             raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
+
+    @property
+    def batches(self) -> int:
+        """One for each member of an ensemble."""
+        return self.model.members
 
     def _optimiser(self) -> optax.GradientTransformation:
         adam = optax.adam(self.learning_rate)
@@ -71,27 +79,25 @@ class ModelLearner:
     def update(
         self, state: ModelState, params: Params, batch: Batch, key: Array
     ) -> tuple[ModelState, dict[str, Array]]:
-        """One Adam step on both losses."""
+        """One Adam step on both losses: the model's on all batches, the reward's on the first."""
         model = self.model.observe(state.model, batch.obs, batch.next_obs)
-        reward = self.reward.observe(state.reward, batch.obs)
-        target = batch.reward
+        first = jax.tree.map(lambda rows: rows[: self.batch_size], batch)
+        reward = self.reward.observe(state.reward, first.obs)
+        target = first.reward
         if self.reward_discount > 0:
             rate = jax.vmap(self.reward.reward, (None, 0, 0))
-            after = rate(reward, batch.next_obs, batch.next_action)
-            goes_on = self.reward_discount * (1 - batch.terminated) * (1 - batch.truncated)
+            after = rate(reward, first.next_obs, first.next_action)
+            goes_on = self.reward_discount * (1 - first.terminated) * (1 - first.truncated)
             target = target + goes_on * after
 
         def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array]]:
             f, r = weights
-            at = (batch.obs, batch.action)
-            of_model = over_batch(self.model.loss, 1)({**model, "weights": f}, *at, batch.next_obs)
-            paid = (target, batch.terminated)
-            of_reward = over_batch(self.reward.loss, 2)({**reward, "weights": r}, *at, *paid)
-            of_model, of_reward = of_model.mean(), of_reward.mean()
+            known = {**model, "weights": f}
+            of_model = self.model.loss(known, batch.obs, batch.action, batch.next_obs)
+            errors = jax.vmap(self.reward.loss, (None, 0, 0, 0, 0))
+            known = {**reward, "weights": r}
+            of_reward = errors(known, first.obs, first.action, target, first.terminated).mean()
             return of_model + of_reward, (of_model, of_reward)
-
-        def over_batch(loss: Any, targets: int) -> Any:
-            return jax.vmap(loss, in_axes=(None, 0, 0, *[0] * targets))
 
         weights = (model["weights"], reward["weights"])
         grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)

@@ -53,6 +53,9 @@ class SAC:
     batch_size: int = 256
     updates: float = 1  # per decision
 
+    batches = 1
+    early = False  # it waits for the end of random decisions
+
     def __post_init__(self) -> None:
         """Check the fields."""
         if not 0 <= self.discount < 1:

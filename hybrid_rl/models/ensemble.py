@@ -1,9 +1,10 @@
-"""Several models of one world, alike but for their first weights: where they differ, none knows.
+"""Several models of one world: their disagreement measures epistemic uncertainty.
 
     step = mean_i f_i(x, u),   draw = one member's prediction with its noise
 
-Deep ensembles (Lakshminarayanan et al. 2017), as model-based learning uses them (Chua et al.
-2018, Janner et al. 2019).
+Members differ by their first weights and by their batches, which are drawn independently from one
+replay memory. Deep ensembles (Lakshminarayanan et al. 2017), as in PETS and MBPO (Chua et al. 2018,
+Janner et al. 2019), without a bootstrapped data set for each member and without elites.
 """
 
 from dataclasses import dataclass
@@ -48,23 +49,45 @@ class Ensemble:
 
     def each(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """What every member predicts [members, n]."""
-        return self._over(self.model.step, params, x, u)
+
+        def one(weights: Any) -> Array:
+            return self.model.step({**params, "weights": weights}, x, u)
+
+        return jax.vmap(one)(params["weights"])
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Mean over the members [n]."""
         return self.each(params, x, u).mean(0)
 
-    def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, place: Array) -> Array:
-        """A next state [n] of one member: that at `place` [] in [0, 1) of the row."""
-        which = jnp.int32(place * self.members)
-        weights = jax.tree.map(lambda w: w[which], params["weights"])
-        return self.model.draw({**params, "weights": weights}, x, u, noise, place)
+    def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """Next states [B, n] for noise [B, n] ~ N(0, I), each of one member.
+
+        Every member draws an equal share of the rows; `key` decides which member draws which share.
+        """
+        order = jax.random.permutation(key, self.members)
+        weights = jax.tree.map(lambda w: w[order], params["weights"])
+        short = -len(x) % self.members
+
+        def dealt(rows: Array) -> Array:
+            return jnp.pad(rows, ((0, short), (0, 0))).reshape(self.members, -1, rows.shape[1])
+
+        def one(weights: Any, *rows: Array) -> Array:
+            return self.model.draw({**params, "weights": weights}, *rows, key)
+
+        drawn = jax.vmap(one)(weights, *map(dealt, (x, u, noise)))
+        return drawn.reshape(-1, x.shape[1])[: len(x)]
 
     def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
-        """Mean over the members []."""
-        return self._over(self.model.loss, params, x, u, next_x).mean()
+        """Mean [] over the members of the loss on a batch of each one's own, [members * B, ...].
 
-    def _over(self, of_member: Any, params: dict[str, Any], *inputs: Array) -> Array:
-        """Outputs of all members [members, ...]."""
-        weights = params["weights"]
-        return jax.vmap(lambda w: of_member({**params, "weights": w}, *inputs))(weights)
+        Raises:
+            ValueError: where the rows do not divide among the members.
+        """
+        if len(x) % self.members:
+            raise ValueError(f"{len(x)} rows do not divide among {self.members} members")
+
+        def one(weights: Any, *rows: Array) -> Array:
+            return self.model.loss({**params, "weights": weights}, *rows)
+
+        shares = [rows.reshape(self.members, -1, rows.shape[1]) for rows in (x, u, next_x)]
+        return jax.vmap(one)(params["weights"], *shares).mean()

@@ -34,6 +34,8 @@ class Gaussian:
     state_noise: bool = False  # s(x) instead of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
 
+    members = 1  # an ensemble has more
+
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
@@ -57,11 +59,9 @@ class Gaussian:
         """Parameters whose statistics have seen x and next_x [B, n]."""
         if not self.normalise:
             return params
-        return {
-            **params,
-            "state": statistics.update(params["state"], x),
-            "change": statistics.update(params["change"], next_x - x),
-        }
+        state = statistics.update(params["state"], x)
+        change = statistics.update(params["change"], next_x - x, state.magnitude)
+        return {**params, "state": state, "change": change}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """The observation [o] itself."""
@@ -85,17 +85,25 @@ class Gaussian:
         """Mean of the next planning state [n]."""
         return x + statistics.colour(params["change"], self.change(params, x, u))
 
-    def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, place: Array) -> Array:
-        """A next planning state [n] of the noise [n] ~ N(0, I); `place` chooses nothing here."""
-        change = self.change(params, x, u) + self.deviation(params, x) * noise
-        return x + statistics.colour(params["change"], change)
+    def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """Next planning states [B, n] for noise [B, n] ~ N(0, I); `key` has nothing to choose."""
+
+        def one(x: Array, u: Array, noise: Array) -> Array:
+            change = self.change(params, x, u) + self.deviation(params, x) * noise
+            return x + statistics.colour(params["change"], change)
+
+        return jax.vmap(one)(x, u, noise)
 
     def _seen(self, x: Array) -> Array:
         return x if self.inputs is None else x[jnp.array(self.inputs)]
 
     def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
-        """Negative log-likelihood [] of next_x [n], mean over its entries."""
-        std = self.deviation(params, x)
-        target = statistics.whiten(params["change"], next_x - x)
-        error = (target - self.change(params, x, u)) / std
-        return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
+        """Negative log-likelihood [] of next_x [B, n], mean over its entries."""
+
+        def one(x: Array, u: Array, next_x: Array) -> Array:
+            std = self.deviation(params, x)
+            target = statistics.whiten(params["change"], next_x - x)
+            error = (target - self.change(params, x, u)) / std
+            return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
+
+        return jax.vmap(one)(x, u, next_x).mean()

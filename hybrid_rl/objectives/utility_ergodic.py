@@ -56,7 +56,7 @@ class UtilityErgodic:
 
     def look(self, params: Params, memory: Seen, x: Array, key: Array) -> Seen:
         """Draw the points about x [n], and weigh them. The key is consumed."""
-        units, u = params.model["state"].std, self.policy.mean(params.policy, x)
+        units, u = params.model["state"].scale, self.policy.mean(params.policy, x)
         bound = jnp.concatenate([jnp.full(x.shape, jnp.inf), jnp.ones(u.shape)])
         about = jnp.concatenate([x / units, u])
         low, high = (jnp.clip(about + apart, -bound, bound) for apart in (-self.reach, self.reach))

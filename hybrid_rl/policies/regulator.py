@@ -63,8 +63,12 @@ class Regulator:
         return self.towards(x, self.world.rest()[0])
 
     def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
-        """The same action, whatever the noise; its density is a point's, told as 0."""
+        """The same action, whatever the noise; log-density of a deterministic action: 0."""
         return self.mean(params, x), jnp.zeros(())
+
+    def variance(self, params: Any, x: Array) -> Array:
+        """Zero [m]: it has no noise."""
+        return jnp.zeros_like(self.mean(params, x))
 
     def lyapunov(self, x: Array) -> Array:
         """V [] at x [o]."""

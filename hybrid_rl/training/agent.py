@@ -11,7 +11,7 @@ from jax import Array
 
 from hybrid_rl.data.replay import Memory, Replay
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Controller, EnvState, Learner, Params, Spec, Transition
+from hybrid_rl.types import Batch, Controller, EnvState, Learner, Params, Spec, Transition
 
 
 @struct.dataclass
@@ -29,9 +29,9 @@ class AgentState:
 class Agent:
     """A method at work in `num_envs` worlds.
 
-    Each learner makes `updates` gradient steps a decision once `random_steps` decisions were
-    drawn uniformly and its batch is full, and `head_start` of them before the first decision,
-    on what the memory was given.
+    Each learner makes `updates` gradient steps a decision once the memory holds a batch, and,
+    unless it is `early`, `random_steps` decisions were drawn uniformly; and `head_start` of them
+    before the first decision, on what the memory was given.
 
     Raises:
         ValueError: for counts out of range, or updates that do not divide into decisions.
@@ -100,11 +100,15 @@ class Agent:
             for (drawing, updating), (name, learner) in zip(
                 keys, self.learners.items(), strict=True
             ):
-                batch = self.replay.sample(memory, self.spec, learner.batch_size, drawing)
+                batch = self._recall(memory, learner, drawing)
                 learned[name] = learner.update(states[name], params, batch, updating)[0]
             return learned, None
 
         return jax.lax.scan(one, states, jax.random.split(key, self.head_start))[0]
+
+    def _recall(self, memory: Memory, learner: Learner, key: Array) -> Batch:
+        """What one update of `learner` takes. The key is consumed."""
+        return self.replay.sample(memory, self.spec, learner.batches * learner.batch_size, key)
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """One decision in every world, `step` [] decisions into the run; metrics name -> [].
@@ -175,11 +179,11 @@ class Agent:
             count, every = _rhythm(name, learner, self.num_envs)
             full = learner.batch_size + self.num_envs
             given = self.replay.given(self.num_envs) * self.num_envs
-            start = max(self.random_steps, self.first_update + full - given)
+            start = max(0 if learner.early else self.random_steps, self.first_update + full - given)
 
             def one(state: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
                 drawing, updating = keys
-                batch = self.replay.sample(memory, self.spec, learner.batch_size, drawing)
+                batch = self._recall(memory, learner, drawing)
                 return learner.update(state, params, batch, updating)
 
             @once

@@ -24,3 +24,22 @@ def test_colour_undoes_whiten() -> None:
         white = statistics.whiten(stats, x)
         assert jnp.isfinite(white).all()
         np.testing.assert_allclose(statistics.colour(stats, white), x, rtol=1e-5)
+
+
+def test_small_entries_are_whitened_in_their_own_units():
+    """A deviation of 1e-4 or 1e-7 becomes 1; rounding errors beside a large mean do not."""
+    rng = np.random.default_rng(0)
+    rows = rng.normal([0.0, 0.0, 1000.0], [1e-4, 1e-7, 1e-5], size=(512, 3))
+    stats = statistics.update(statistics.init(3), jnp.float32(rows))
+    white = statistics.whiten(stats, jnp.float32(rows)).std(0)
+    np.testing.assert_allclose(white[:2], 1, rtol=1e-3)
+    assert white[2] < 0.2  # float32 holds 1000 to 6e-5: nothing to see there
+
+
+def test_changes_have_the_floor_of_the_states_they_come_from():
+    """What changes by rounding errors alone is not whitened to noise of size one."""
+    x = np.float32(np.random.default_rng(0).normal(100.0, 1.0, size=(512, 1)))
+    errors = jnp.asarray((x + np.float32(1e-6)) - x)
+    state = statistics.update(statistics.init(1), jnp.asarray(x))
+    change = statistics.update(statistics.init(1), errors, state.magnitude)
+    assert float(statistics.whiten(change, errors).std()) < 0.2

@@ -19,7 +19,7 @@ B = 10
 class Counting:
     """x' = x + 1, whatever is done; a reward of x; the episode ends at 2.5 and beyond."""
 
-    def draw(self, params: Any, x: Array, u: Array, noise: Array, place: Array) -> Array:
+    def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """One more."""
         return x + 1
 
@@ -42,6 +42,9 @@ class Keeping:
 
     batch_size: int = B
     updates: float = 1
+
+    batches = 1
+    early = False
 
     def init(self, key: Array, spec: Spec) -> None:
         """Nothing."""

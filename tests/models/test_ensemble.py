@@ -31,20 +31,47 @@ def test_members_differ_and_are_averaged(params) -> None:
     assert each.std(0).min() > 1e-3
     np.testing.assert_allclose(MODEL.each(params, X, U), each, rtol=1e-6)
     np.testing.assert_allclose(MODEL.step(params, X, U), each.mean(0), rtol=1e-5)
-    losses = [ONE.loss(member(params, i), X, U, 2 * X) for i in range(4)]
-    np.testing.assert_allclose(MODEL.loss(params, X, U, 2 * X), np.mean(losses), rtol=1e-5)
 
 
-@pytest.mark.parametrize(("place", "i"), [(0.0, 0), (0.24, 0), (0.26, 1), (0.99, 3)])
-def test_draw_is_one_member(params, place, i) -> None:
-    """With its own noise."""
-    got = MODEL.draw(params, X, U, NOISE, jnp.float32(place))
-    wanted = ONE.draw(member(params, i), X, U, NOISE, jnp.float32(0))
-    np.testing.assert_allclose(got, wanted, rtol=1e-6)
-    std = np.exp(np.asarray(params["weights"]["log_std"][i]))
-    np.testing.assert_allclose(
-        wanted - ONE.step(member(params, i), X, U), std * NOISE, rtol=1e-4, atol=1e-5
+def test_every_member_has_a_batch_of_its_own(params) -> None:
+    """The loss is the mean of each member's on its share of the rows, and no other's."""
+    x, u, after = (
+        jax.random.normal(jax.random.key(i), (8, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
+    shares = [slice(2 * i, 2 * i + 2) for i in range(4)]
+    losses = [ONE.loss(member(params, i), x[s], u[s], after[s]) for i, s in enumerate(shares)]
+    np.testing.assert_allclose(MODEL.loss(params, x, u, after), np.mean(losses), rtol=1e-5)
+    grads = jax.grad(lambda w: MODEL.loss({**params, "weights": w}, x, u, after.at[:2].add(1)))
+    before = jax.grad(lambda w: MODEL.loss({**params, "weights": w}, x, u, after))
+    moved = jax.tree.map(
+        lambda a, b: np.abs(np.asarray(a - b)).reshape(4, -1).max(1) > 0,
+        grads(params["weights"]),
+        before(params["weights"]),
+    )
+    assert np.any(jax.tree.leaves(moved), axis=0).tolist() == [True, False, False, False]
+    with pytest.raises(ValueError, match="7 rows do not divide among 4 members"):
+        MODEL.loss(params, x[:7], u[:7], after[:7])
+
+
+def test_rows_are_drawn_by_all_members_alike(params) -> None:
+    """Each row is one member's draw with the row's own noise; which one, the key decides."""
+    rows = 10
+    x, u, noise = (
+        jax.random.normal(jax.random.key(i), (rows, n)) for i, n in ((1, 3), (2, 2), (3, 3))
+    )
+    each = np.stack([ONE.draw(member(params, i), x, u, noise, None) for i in range(4)])
+    who = []
+    for seed in range(20):
+        got = np.asarray(MODEL.draw(params, x, u, noise, jax.random.key(seed)))
+        assert got.shape == (rows, 3)
+        apart = np.abs(each - got).max(-1)  # [4, rows]
+        assert (apart.min(0) < 1e-5).all()
+        assert np.bincount(apart.argmin(0), minlength=4).max() <= 3  # 10 rows over 4 members
+        who.append(apart.argmin(0))
+    assert all(len(set(row)) == 4 for row in np.transpose(who))
+    std = np.exp(np.asarray(params["weights"]["log_std"][0]))
+    still = ONE.draw(member(params, 0), x, u, 0 * noise, None)
+    np.testing.assert_allclose(each[0] - still, std * np.asarray(noise), rtol=1e-3, atol=1e-5)
 
 
 def test_bad_fields() -> None:

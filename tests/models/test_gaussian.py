@@ -26,9 +26,10 @@ def test_draws_have_the_deviation_of_their_state() -> None:
     for state_noise in (True, False):
         model = Gaussian(hidden=(8,), state_noise=state_noise)
         params = model.init(jax.random.key(0), SPEC)
-        params = model.observe(params, jnp.stack([X, -X]), jnp.stack([3 * X, X]))
+        params = model.observe(params, jnp.stack([X, -X]), jnp.stack([3 * X, 2 * X]))
         noise, here = jnp.array([1.0, -2.0, 0.5]), model.deviation(params, X)
-        apart = model.draw(params, X, U, noise, jnp.zeros(())) - model.step(params, X, U)
+        drawn = model.draw(params, X[None], U[None], noise[None], jax.random.key(1))[0]
+        apart = drawn - model.step(params, X, U)
         np.testing.assert_allclose(apart, params["change"].std * here * noise, rtol=1e-3)
         there = model.deviation(params, 2 * X)
         assert bool(jnp.any(here != there)) == state_noise

@@ -1,4 +1,4 @@
-"""Learning from demonstrations before the first decision, and what experience changes then."""
+"""When which learner learns: before the first decision, during random decisions, after them."""
 
 from dataclasses import replace
 
@@ -81,3 +81,14 @@ def test_a_head_start_needs_demonstrations(agent):
     bare = replace(agent.replay, demonstrations=None)
     with pytest.raises(ValueError, match="head_start=3: there is nothing to learn from"):
         replace(agent, replay=bare)
+
+
+def test_the_model_learns_from_random_decisions_and_the_policy_after_them() -> None:
+    """So that what the policy imagines first is not the prediction of first weights."""
+    line = [*TINY, "algo=hybrid_stochastic", "random_steps=24"]
+    early = config.build(config.load(line)).agent
+    first = early.params(jax.jit(early.init)(KEY))
+    during, later = after(early, 24), after(early, 25)
+    assert not same(first.model, during.model)
+    assert same(first.policy, during.policy)
+    assert not same(first.policy, later.policy)
