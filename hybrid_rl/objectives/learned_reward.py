@@ -10,7 +10,7 @@ The term of x' is left out where an episode ended, at a time limit too, although
 on there: nothing was executed at its last state, so u' is unknown.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
@@ -113,3 +113,13 @@ class LearnedReward:
 
         to_go = jax.lax.scan(back, last, (rewards, ends), reverse=True, unroll=True)[1]
         return jnp.append(to_go, last)
+
+
+def without_critic(objective: Any) -> Any:
+    """`objective` by what the model imagines alone: nothing closes its horizon.
+
+    Other objectives than `LearnedReward`, which have no critic to leave out, stay as they are.
+    """
+    if not isinstance(objective, LearnedReward):
+        return objective
+    return replace(objective, critic=None, policy=None)
