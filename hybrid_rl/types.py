@@ -171,6 +171,9 @@ class Staged(Objective, Protocol):
 
     discount: float  # per decision
 
+    def rewards(self, params: Params, path: Path) -> Array:
+        """r [T] of each decision of the path."""
+
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1]: the return from each time on. S[0] is J, S[T] the value of the last state."""
 

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import pytest
 from hydra import compose, initialize_config_dir
-from hydra.utils import get_class
+from hydra.utils import get_class, instantiate
 from omegaconf import OmegaConf
 from tiny import demonstrate
 
@@ -128,6 +128,54 @@ def test_thesis_parameters() -> None:
         p = c.planner
         got = (c.task, p.horizon, c.episode.steps, p.samples, p.temperature, c.policy.hidden)
         assert got == row
+
+
+PLANNERS = [  # methods that have mode=planner
+    path.stem
+    for path in sorted((config.CONF / "algo").glob("*.yaml"))
+    if "\n  planner: " in path.read_text(encoding="utf-8")
+]
+
+
+@pytest.mark.parametrize("algo", PLANNERS)
+def test_the_planner_alone_has_neither_policy_nor_critic(algo: str) -> None:
+    """Nor has its objective, whatever the method's own has; with none it looks further."""
+    given = config.load([f"algo={algo}"])
+    planner, full = (
+        instantiate(node, _convert_="all") for node in (given.controllers.planner, given.objective)
+    )
+    assert (planner.policy, planner.objective.critic, planner.objective.policy) == (None,) * 3
+    assert planner.objective == dataclasses.replace(full, critic=None, policy=None)
+    assert planner.horizon >= (20 if full.critic else 5)
+    thesis = config.load(["experiment=thesis/fig_3_2_hopper", f"algo={algo}"]).controllers.planner
+    assert thesis.horizon == (20 if algo == "deterministic_mpc" else 5)
+    if "proposal" in thesis:
+        assert (thesis.samples, thesis.proposal.std) == (20, 0.3)
+
+
+@pytest.mark.parametrize("algo", ["hybrid_stochastic", "hybrid_deterministic"])
+def test_the_planner_alone_acts_whatever_the_critic_says(algo: str) -> None:
+    """Its action is that of the model, the same with other parameters of critic and policy."""
+    given = ["task=pendulum", f"algo={algo}", *SMALL, "model_planner.horizon=2"]
+    given += ["model_planner.samples=3", "shooting_planner.horizon=2", "model=gaussian"]
+    given.append("model.hidden=[8]")
+    run = config.build(config.load(given))
+    obs, init = (
+        jnp.array([1.0, 0.0, 0.1]),
+        jax.jit(lambda key: run.agent.params(run.agent.init(key))),
+    )
+    first, second = (init(jax.random.key(seed)) for seed in range(2))
+    others = first._replace(critic=second.critic, policy=second.policy)
+
+    def actions(mode: str) -> tuple[jax.Array, ...]:
+        controller, key = run.controllers[mode], jax.random.key(2)
+        act, start = jax.jit(controller.act), controller.init(run.agent.spec)
+        return tuple(act(params, start, obs, key)[0] for params in (first, others))
+
+    same, other = actions("planner")
+    assert (same == other).all()
+    same, other = actions("full")
+    assert (same != other).all()
 
 
 def test_two_copies_are_equal_by_value() -> None:

@@ -86,11 +86,15 @@ class SamplingController:
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
             "planner/planned_return": w[:, 0] @ returns[:, 0],
-            "planner/planned_reward": w[:, 0]
-            @ (returns[:, 0] - self.objective.discount * returns[:, 1]),
+            "planner/planned_reward": w[:, 0] @ self._rewards(params, samples.path),
             **self._agreement(params, x, plan),
         }
         return action, (sampling.shift(plan, self.rest), carries), metrics
+
+    def _rewards(self, params: Params, paths: Path) -> Array:
+        """Rewards [K] of the first decisions of paths x [K, T+1, n], u [K, T, m]."""
+        first = Path(paths.x[:, :2], paths.u[:, :1])
+        return jax.vmap(lambda path: self.objective.rewards(params, path)[0])(first)
 
     def _agreement(self, params: Params, x: Array, plan: Array) -> dict[str, Array]:
         """How far the weighted mean is from what the policy would do.

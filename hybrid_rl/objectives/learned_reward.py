@@ -4,11 +4,13 @@ c_t is the discount so far, times the chance that the episode goes on where `end
 where episodes end: else a planner expects a robot that fell to go on earning.
 
 r is a network (thesis appendix B: two layers of 200). Its loss is
-0.5 (r + c (1 - end) r(x', u') - r(x, u))^2 with u' from the policy; c = 0 makes r a reward,
-c = 0.95 makes it the thesis' value-like utility, which the planner then sums once more.
+0.5 (r + c (1 - end) r(x', u') - r(x, u))^2 with u' the action that was executed at x'; c = 0 makes
+r a reward, c = 0.95 makes it the thesis' value-like utility, which the planner then sums once more.
+The term of x' is left out where an episode ended, at a time limit too, although the task would go
+on there: nothing was executed at its last state, so u' is unknown.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
@@ -91,6 +93,10 @@ class LearnedReward:
         """J [] of `path`."""
         return self.reward_to_go(params, path)[0]
 
+    def rewards(self, params: Params, path: Path) -> Array:
+        """r [T] along path, x [T+1, n] and u [T, m]."""
+        return jax.vmap(self.reward, (None, 0, 0))(params.reward, path.x[:-1], path.u)
+
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
         rate = jax.vmap(self.outcome, (None, 0, 0))
@@ -107,3 +113,13 @@ class LearnedReward:
 
         to_go = jax.lax.scan(back, last, (rewards, ends), reverse=True, unroll=True)[1]
         return jnp.append(to_go, last)
+
+
+def without_critic(objective: Any) -> Any:
+    """`objective` by what the model imagines alone: nothing closes its horizon.
+
+    Other objectives than `LearnedReward`, which have no critic to leave out, stay as they are.
+    """
+    if not isinstance(objective, LearnedReward):
+        return objective
+    return replace(objective, critic=None, policy=None)

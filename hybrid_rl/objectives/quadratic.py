@@ -47,15 +47,18 @@ class Quadratic:
         """J [] of `path`."""
         return self.reward_to_go(params, path)[0]
 
-    def reward_to_go(self, params: Params, path: Path) -> Array:
-        """S [T+1] along path, x [T+1, o] and u [T, m]; S[T] is 0."""
+    def rewards(self, params: Params, path: Path) -> Array:
+        """r [T] along path, x [T+1, o] and u [T, m]."""
         e, v = jax.vmap(self.world.deviation)(path.x[1:]), path.u - self.world.rest()[1][None]
         q, r = jnp.array(self.state_weights), jnp.array(self.action_weights)
-        rewards = -jnp.sum(q[None] * e**2, -1) - jnp.sum(r[None] * v**2, -1)
+        return -jnp.sum(q[None] * e**2, -1) - jnp.sum(r[None] * v**2, -1)
+
+    def reward_to_go(self, params: Params, path: Path) -> Array:
+        """S [T+1] along path, x [T+1, o] and u [T, m]; S[T] is 0."""
 
         def back(after: Array, r: Array) -> tuple[Array, Array]:
             now = r + self.discount * after
             return now, now
 
-        to_go = jax.lax.scan(back, jnp.zeros(()), rewards, reverse=True)[1]
+        to_go = jax.lax.scan(back, jnp.zeros(()), self.rewards(params, path), reverse=True)[1]
         return jnp.append(to_go, 0.0)

@@ -1,0 +1,78 @@
+"""The sampling controller on candidates that are known."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.controllers.sampling import SamplingController
+from hybrid_rl.core import sampling
+from hybrid_rl.objectives.learned_reward import LearnedReward
+from hybrid_rl.types import Params, Path, Spec
+
+SPEC = Spec(obs=2, act=1, dt=0.1)
+X = jnp.array([0.3, -0.4])
+T, K = 3, 4
+
+
+@dataclass(frozen=True)
+class Cart:
+    """A mass on a line: x' = [p + 0.1 v, v + 0.1 u]."""
+
+    def lift(self, params: Any, obs: Array) -> Array:
+        """As it is."""
+        return obs
+
+    def step(self, params: Any, x: Array, u: Array) -> Array:
+        """One decision."""
+        return jnp.array([x[0] + 0.1 * x[1], x[1] + 0.1 * u[0]])
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Candidate k does u = k / K all along."""
+
+    def init(self, spec: Spec, place: Array) -> Array:
+        """The action."""
+        return place
+
+    def __call__(self, params: Params, carry: Array, x: Array, plan: Array, noise: Array) -> tuple:
+        """The same action again."""
+        return jnp.full(1, carry), jnp.zeros(()), carry
+
+
+@dataclass(frozen=True)
+class Closing:
+    """A policy at rest, and a critic that says 250 of it."""
+
+    def mean(self, params: Any, x: Array) -> Array:
+        """No action."""
+        return jnp.zeros(1)
+
+    def value(self, params: Any, x: Array, u: Array) -> Array:
+        """Much."""
+        return jnp.full((), 250.0)
+
+
+@pytest.mark.parametrize("ends", [False, True])
+def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
+    """The reward network's output at x and u, whatever the chance that the episode ends there."""
+    reward = LearnedReward(hidden=(8,), ends=ends, discount=0.9, critic=Closing(), policy=Closing())
+    params = Params(reward=reward.init(jax.random.key(0), SPEC))
+    paths = Path(jnp.zeros((K, T + 1, 2)), jnp.zeros((K, T, 1)))
+    for k in range(K):
+        x, u = X, jnp.full(1, k / K)
+        paths = Path(paths.x.at[k, 0].set(x), paths.u.at[k].set(u))
+        for t in range(T):
+            x = Cart().step((), x, u)
+            paths = paths._replace(x=paths.x.at[k, t + 1].set(x))
+    to_go = jax.vmap(lambda path: reward.reward_to_go(params, path))(paths)
+    w = np.asarray(sampling.weights(to_go[:, :-1], 0.1))[:, 0]
+    first = [float(reward.reward(params.reward, X, jnp.full(1, k / K))) for k in range(K)]
+    controller = SamplingController(Cart(), reward, Grid(), horizon=T, samples=K)
+    metrics = controller.act(params, controller.init(SPEC), X, jax.random.key(1))[2]
+    assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
