@@ -77,12 +77,15 @@ def test_the_policy_finds_the_best_action() -> None:
 
 
 def test_the_temperature_meets_its_target() -> None:
-    """Entropy settles at the target while the reward asks for none."""
+    """Entropy settles at the target while the reward asks for none.
+
+    The temperature still swings about its end by some 0.04 nat; 4,000 samples are 0.01 nat off.
+    """
     sac = learner(target_entropy=-1.0)
     state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 4000)
     noise = jax.random.normal(jax.random.key(2), (4000, 1))
     log_prob = jax.vmap(lambda e: sac.policy.sample(state.policy, jnp.zeros(1), e)[1])(noise)
-    assert -float(log_prob.mean()) == pytest.approx(-1.0, abs=0.35)
+    assert -float(log_prob.mean()) == pytest.approx(-1.0, abs=0.1)
 
 
 @pytest.mark.parametrize("normalise", [False, True])
