@@ -10,7 +10,7 @@ Algorithm 6 and eq. 6.10). `apply` chooses the time tau and the duration lambda 
 
     first    plan at every decision, tau = now, lambda = one decision
     horizon  plan every T decisions, tau = now, lambda = T
-    search   plan every T decisions, tau and lambda of greatest return; the policy else
+    search   plan every T decisions, tau and lambda of greatest return; lambda = 0 is no correction
 """
 
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ from hybrid_rl.core import adjoint, lyapunov, sampling
 from hybrid_rl.types import Lyapunov, Model, Objective, Params, Path, Policy, Spec
 
 APPLY = ("first", "horizon", "search")
-WINDOWS = 8  # places of tau, and lengths of lambda, that a search tells apart
+WINDOWS = 8  # values of tau, and of lambda, that a search compares
 
 
 class Held(NamedTuple):
@@ -163,12 +163,12 @@ class _Plan:
         return jax.vmap(policy.variance, (None, 0))(self.params.policy, x)
 
     def window(self, v: Array) -> Array:
-        """V [T, m], or with `search` the part of it, zero elsewhere, that earns most."""
+        """V [T, m], or with `search` the part of it, zero elsewhere, or none, that earns most."""
         if self.of.apply != "search":
             return v
         T = len(v)
         marks = sorted({round(T * i / WINDOWS) for i in range(WINDOWS + 1)})
-        begin, end = jnp.array([(a, b) for a in marks for b in marks if a < b]).T
+        begin, end = jnp.array([(0, 0), *((a, b) for a in marks for b in marks if a < b)]).T
         t = jnp.arange(T)[None]
         inside = (begin[:, None] <= t) & (t < end[:, None])
         parts = jnp.where(inside[:, :, None], v[None], 0)

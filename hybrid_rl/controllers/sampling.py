@@ -25,7 +25,7 @@ class SamplingController:
 
     Raises:
         ValueError: for a horizon, a number of samples or a temperature that is not positive,
-            or an unknown way to execute.
+            an unknown way to execute, or `log_density` of candidates that are of several laws.
     """
 
     model: Model
@@ -50,6 +50,11 @@ class SamplingController:
             raise ValueError(f"planner.temperature={self.temperature}: must be above 0")
         if self.execute not in EXECUTE:
             raise ValueError(f"planner.execute={self.execute}: choose {' or '.join(EXECUTE)}")
+        if self.log_density and getattr(self.proposal, "mixed", False):
+            raise ValueError(
+                "planner.log_density=True: needs candidates of one law; "
+                "choose proposal=policy or proposal=noise, or false"
+            )
 
     def init(self, spec: Spec) -> tuple[Array, Any]:
         """The plan [T, m] at `rest`, and the first carries [K, ...] of the proposals."""

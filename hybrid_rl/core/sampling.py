@@ -4,8 +4,12 @@
     S_t^k = return from t on along path k
     w_t^k = softmax_k( S_t^k / lambda  [+ log p(v_t^k)] ),   a_t <- sum_k w_t^k v_t^k
 
-Thesis Algorithm 3 and eq. (3.8), with its p(v) as a switch: where v is drawn from p itself
-the importance ratio cancels it (Williams et al. 2017, eq. 20-27, with proposal = prior).
+Thesis Algorithm 3 and eq. (3.8), with its p(v) as a switch. With q the law that v is drawn from,
+sum_k w_k v_k without the switch estimates the mean of the law proportional to q(v) exp(S / lambda).
+That is the mean of Theorem 2, whose law has p for q, where v is drawn from p itself. Elsewhere the
+importance ratio p / q belongs into the weight, and it is never there: candidates of a mixture
+count as if its law were p. Noise around the plan is Williams et al. 2017, eq. 20-27, with
+alpha = 1: q is the prior, so the weight has no control cost lambda a' Sigma^-1 e.
 """
 
 from collections.abc import Callable

@@ -17,7 +17,7 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, Policy, Spec
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @struct.dataclass
@@ -34,13 +34,13 @@ class DDPGState:
 
 @dataclass(frozen=True)
 class DDPG:
-    """Deterministic policy gradients over a `policy` and an ensemble `critic`.
+    """Deterministic policy gradients over a `policy` that offers `observe`, and a `critic`.
 
     Raises:
         ValueError: for rates, a discount or a smoothing out of range.
     """
 
-    policy: Policy
+    policy: Any
     critic: Any
     policy_learning_rate: float = 1e-4
     critic_learning_rate: float = 1e-3
@@ -83,6 +83,10 @@ class DDPG:
         self, state: DDPGState, params: Params, batch: Batch, key: Array
     ) -> tuple[DDPGState, dict[str, Array]]:
         """One step of critic, policy and targets."""
+        state = state.replace(
+            policy=self.policy.observe(state.policy, batch.obs),
+            target_policy=self.policy.observe(state.target_policy, batch.obs),
+        )
         after = self.critic.value(
             state.target_critic,
             batch.next_obs,

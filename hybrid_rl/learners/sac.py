@@ -17,7 +17,7 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, Policy, Spec
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @struct.dataclass
@@ -35,13 +35,13 @@ class SACState:
 
 @dataclass(frozen=True)
 class SAC:
-    """Soft actor-critic over a `policy` and an ensemble `critic`.
+    """Soft actor-critic over a `policy` that offers `observe`, and an ensemble `critic`.
 
     Raises:
         ValueError: for rates, a discount or a smoothing out of range.
     """
 
-    policy: Policy
+    policy: Any
     critic: Any
     policy_learning_rate: float = 3e-4
     critic_learning_rate: float = 3e-4
@@ -91,6 +91,7 @@ class SAC:
         """One step of critic, policy, temperature and target. The key is consumed."""
         for_target, for_policy = jax.random.normal(key, (2, *batch.action.shape))
         alpha = jnp.exp(state.log_alpha)
+        state = state.replace(policy=self.policy.observe(state.policy, batch.obs))
         y = self._target(state, alpha, batch, for_target)
 
         def critic_loss(critic: Any) -> tuple[Array, Array]:

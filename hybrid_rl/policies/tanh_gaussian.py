@@ -4,7 +4,8 @@ log pi(u|x) = log N(z; mu, sigma) - sum_i log(1 - tanh(z_i)^2)      (Haarnoja et
 
 One trunk with two heads, or two networks (thesis appendix B: a sine layer for the mean, a
 rectified layer for the deviation) where `log_std_activation` is given. With `normalise` they see
-states in units of the deviation that `observe` was told of.
+states in units of their deviation in what the learner learns from: cloning in the demonstrations,
+SAC and DDPG in their batches.
 """
 
 from dataclasses import dataclass

@@ -2,10 +2,16 @@
 
 Policy and noise together: the planner works from the first decisions on, while the policy is
 still wrong, and leaves the field to the policy where that is better.
+
+The candidates are pooled with equal rights, w_k ~ exp(S_k / lambda): the weighted mean estimates
+that of the law proportional to q exp(S / lambda), with q = share first + (1 - share) second. That
+is Theorem 2 with q instead of the policy pi; the importance ratio pi / q, which would make it
+Theorem 2 with pi, is left out. A planner refuses `log_density` here: the densities of candidates
+from different laws would be compared.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jax import Array
@@ -24,6 +30,7 @@ class MixtureProposal:
     first: Proposal
     second: Proposal
     share: float = 0.5
+    mixed: ClassVar[bool] = True  # its candidates are of several laws
 
     def __post_init__(self) -> None:
         """Check the fields."""

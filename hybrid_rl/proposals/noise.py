@@ -1,14 +1,24 @@
-"""v = clip(a + e), e_t = c e_{t-1} + sqrt(1 - c^2) s N(0, 1): noise around the plan.
+"""v = clip(a + e), e_0 ~ N(0, s^2), e_t ~ N(c e_{t-1}, (1 - c^2) s^2): noise around the plan.
 
-The proposals of MPPI (Williams et al. 2017); c > 0 colours them.
+e is stationary: its deviation is s at each decision, the first included, which is the one that
+is executed. c = 0 gives the proposals of MPPI without its control cost (Williams et al. 2017,
+alpha = 1); c > 0 colours them.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.types import Params, Spec
+
+
+class Before(NamedTuple):
+    """What the noise of a path was."""
+
+    e: Array  # [m]
+    colour: Array  # [] its correlation with the next: 0 before the first
 
 
 @dataclass(frozen=True)
@@ -29,14 +39,17 @@ class NoiseProposal:
         if not 0 <= self.colour < 1:
             raise ValueError(f"proposal.colour={self.colour}: must lie in [0, 1)")
 
-    def init(self, spec: Spec, place: Array) -> Array:
-        """No noise [m] before the first action."""
-        return jnp.zeros(spec.act)
+    def init(self, spec: Spec, place: Array) -> Before:
+        """Nothing before the first action."""
+        return Before(jnp.zeros(spec.act), jnp.zeros(()))
 
     def __call__(
-        self, params: Params, carry: Array, x: Array, plan: Array, noise: Array
-    ) -> tuple[Array, Array, Array]:
-        """V [m] around plan [m] and the log-density of its deviation."""
-        noise = self.colour * carry + jnp.sqrt(1 - self.colour**2) * self.std * noise
-        log_prob = jnp.sum(-0.5 * (noise / self.std) ** 2 - jnp.log(self.std * 2.5066283))
-        return jnp.clip(plan + noise, -1, 1), log_prob, noise
+        self, params: Params, carry: Before, x: Array, plan: Array, noise: Array
+    ) -> tuple[Array, Array, Before]:
+        """V [m] around plan [m], and log p(e_t | e_{t-1}) [] of its noise before the clipping."""
+        share = 1 - carry.colour**2  # of the variance that is new
+        new = jnp.sqrt(share) * self.std * noise
+        log_prob = -0.5 * (new / self.std) ** 2 / share - jnp.log(self.std * 2.5066283)
+        log_prob = jnp.sum(log_prob - 0.5 * jnp.log(share))
+        e = carry.colour * carry.e + new
+        return jnp.clip(plan + e, -1, 1), log_prob, Before(e, jnp.full((), self.colour))

@@ -92,7 +92,7 @@ def test_horizon_holds_its_corrections_around_the_measured_state() -> None:
 
 
 def test_search_keeps_the_best_window() -> None:
-    """It earns no less than the whole plan or the policy alone, by the model."""
+    """It earns no less than the whole plan, by the model, and is one part of it."""
     searching = replace(KLE3, apply="search")
     plans = {
         name: c.act(Params(), c.init(WORLD.spec), START, jax.random.key(0))
@@ -104,6 +104,27 @@ def test_search_keeps_the_best_window() -> None:
     on = (searched != 0).ravel()
     np.testing.assert_array_equal(searched[on], whole[on])
     assert np.sum(np.diff(on.astype(int)) == 1) <= 1  # one window
+
+
+def test_search_earns_no_less_than_no_correction() -> None:
+    """Where every part of the plan overshoots, none of it acts."""
+
+    @dataclass(frozen=True)
+    class Gentle(Right):
+        """J = -sum (u - 0.1)^2."""
+
+        def value(self, params: Any, memory: Array, path: Path) -> Array:
+            """J []."""
+            return -jnp.sum((path.u - 0.1) ** 2)
+
+    for gain, acts in ((100.0, False), (0.5, True)):
+        wild = replace(
+            KLE3, objective=Gentle(), policy=None, lyapunov=None, gain=gain, apply="search"
+        )
+        _, state, metrics = wild.act(Params(), wild.init(WORLD.spec), START, jax.random.key(0))
+        assert np.asarray(state.v).any() == acts
+        wanted = 0 if acts else -8 * 0.1**2
+        assert float(metrics["planner/planned_return"]) == pytest.approx(wanted, abs=1e-6)
 
 
 def test_record_by_hand() -> None:

@@ -12,6 +12,7 @@ from jax import Array
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core import sampling
 from hybrid_rl.objectives.learned_reward import LearnedReward
+from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.types import Params, Path, Spec
 
 SPEC = Spec(obs=2, act=1, dt=0.1)
@@ -76,3 +77,11 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     controller = SamplingController(Cart(), reward, Grid(), horizon=T, samples=K)
     metrics = controller.act(params, controller.init(SPEC), X, jax.random.key(1))[2]
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
+
+
+def test_densities_of_several_laws_are_refused() -> None:
+    """They would be compared."""
+    mixture = MixtureProposal(Grid(), Grid())
+    SamplingController(Cart(), LearnedReward(), mixture)
+    with pytest.raises(ValueError, match="log_density=True: needs candidates of one law"):
+        SamplingController(Cart(), LearnedReward(), mixture, log_density=True)

@@ -5,13 +5,15 @@ from dataclasses import replace
 import jax
 import numpy as np
 import pytest
-from scipy.linalg import expm
+from scipy.linalg import expm, logm
 
 from hybrid_rl.core import riccati
 from hybrid_rl.envs.cart_double_pendulum import FORCE, CartDoublePendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.point_mass import PointMass
 from hybrid_rl.policies.regulator import Regulator
+
+WEIGHTS = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)
 
 
 def test_value_is_the_cost_of_the_regulator() -> None:
@@ -35,17 +37,31 @@ def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
     np.testing.assert_allclose(poles, [-10.39, -4.10, 0, 0, 4.10, 10.39], atol=0.01)
 
 
-def test_slow_gains_are_those_of_continuous_time() -> None:
-    """K [N per unit] for Q diag(5 50 50 20 700 700), R 1: within a decision's delay."""
-    weights = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)
-    policy = Regulator(CartDoublePendulum(), weights, (FORCE**2,))
-    K = FORCE * policy.solve()[0][0]
-    continuous = np.array([2.236, -492.6, 570.9, 8.246, -18.98, 88.29])
+def test_gains_tend_to_those_of_continuous_time() -> None:
+    """K [N per unit] for Q diag(5 50 50 20 700 700), R 1, as decisions become ever shorter.
+
+    A decision of 0.01 s is 25% away from continuous time: an action then is held.
+    """
+    A, B = riccati.around_rest(CartDoublePendulum())
+    held = np.eye(7)
+    held[:6] = np.hstack([A, B / FORCE])
+    quick = expm(logm(held).real / 1000)
+    K = riccati.regulator(quick[:6, :6], quick[:6, 6:], np.diag(WEIGHTS), np.eye(1)).gain[0]
+    continuous = [2.2361, -492.63, 570.92, 8.2457, -18.982, 88.293]
+    np.testing.assert_allclose(K, continuous, rtol=1e-3)
+
+
+def test_gains_are_those_of_value_iteration() -> None:
+    """P <- Q + A' P (A - B K), many times, from Q; and they hold the rods upright."""
+    policy = Regulator(CartDoublePendulum(), WEIGHTS, (FORCE**2,))
     A, B = riccati.around_rest(policy.world)
-    held = np.abs(np.linalg.eigvals(A - B * K / FORCE)).max()
-    assert held < 1
-    np.testing.assert_array_equal(np.sign(K), np.sign(continuous))
-    np.testing.assert_allclose(K, continuous, rtol=0.35)
+    Q, R = np.diag(WEIGHTS), np.array([[FORCE**2]])
+    P = Q
+    for _ in range(3000):
+        K = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
+        P = Q + A.T @ P @ (A - B @ K)
+    np.testing.assert_allclose(policy.solve()[0], K, rtol=1e-9)
+    assert np.abs(np.linalg.eigvals(A - B @ K)).max() < 1
 
 
 def test_point_mass_by_hand() -> None:

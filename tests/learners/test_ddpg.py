@@ -1,5 +1,6 @@
 """Deterministic policy gradients on problems whose values are known."""
 
+from dataclasses import replace
 from functools import partial
 
 import jax
@@ -62,6 +63,25 @@ def test_a_time_limit_is_bootstrapped_through() -> None:
     state = train(ddpg, partial(batch, terminated=0.0, truncated=1.0, best=0.5), 4000)
     assert value(ddpg, state, 0.5) == pytest.approx(2.0, abs=0.15)
     assert value(ddpg, state, -0.5) == pytest.approx(1.0, abs=0.2)
+
+
+@pytest.mark.parametrize("normalise", [False, True])
+def test_the_policy_sees_states_in_their_deviation(normalise) -> None:
+    """With `normalise` the statistics are those of the batches; gradients leave them alone."""
+    ddpg = replace(learner(), policy=TanhGaussian(hidden=(8,), normalise=normalise))
+
+    def far(key: Array) -> Batch:
+        drawn = batch(key, 1.0, 0.0, 0.5)
+        x = 50 + 200 * jax.random.normal(key, drawn.obs.shape)
+        return drawn._replace(obs=x, next_obs=x)
+
+    state = train(ddpg, far, 200)
+    parts = [state.policy, state.target_policy]
+    for policy in parts:
+        assert ("state" in policy) == normalise
+        if normalise:
+            assert float(policy["state"].mean[0]) == pytest.approx(50, abs=10)
+            assert float(policy["state"].std[0]) == pytest.approx(200, rel=0.05)
 
 
 @pytest.mark.parametrize("change", [{"discount": 1.0}, {"tau": 0.0}, {"policy_learning_rate": 0}])

@@ -1,5 +1,6 @@
 """Soft actor-critic on problems whose values are known."""
 
+from dataclasses import replace
 from functools import partial
 
 import jax
@@ -76,12 +77,34 @@ def test_the_policy_finds_the_best_action() -> None:
 
 
 def test_the_temperature_meets_its_target() -> None:
-    """Entropy settles at the target while the reward asks for none."""
+    """Entropy settles at the target while the reward asks for none.
+
+    The temperature still swings about its end by some 0.04 nat; 4,000 samples are 0.01 nat off.
+    """
     sac = learner(target_entropy=-1.0)
     state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 4000)
     noise = jax.random.normal(jax.random.key(2), (4000, 1))
     log_prob = jax.vmap(lambda e: sac.policy.sample(state.policy, jnp.zeros(1), e)[1])(noise)
-    assert -float(log_prob.mean()) == pytest.approx(-1.0, abs=0.35)
+    assert -float(log_prob.mean()) == pytest.approx(-1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("normalise", [False, True])
+def test_the_policy_sees_states_in_their_deviation(normalise) -> None:
+    """With `normalise` the statistics are those of the batches; gradients leave them alone."""
+    sac = replace(learner(), policy=TanhGaussian(hidden=(8,), normalise=normalise))
+
+    def far(key: Array) -> Batch:
+        drawn = batch(key, 1.0, 0.0, True)
+        x = 50 + 200 * jax.random.normal(key, drawn.obs.shape)
+        return drawn._replace(obs=x, next_obs=x)
+
+    state = train(sac, far, 200)
+    parts = [state.policy]
+    for policy in parts:
+        assert ("state" in policy) == normalise
+        if normalise:
+            assert float(policy["state"].mean[0]) == pytest.approx(50, abs=10)
+            assert float(policy["state"].std[0]) == pytest.approx(200, rel=0.05)
 
 
 def test_the_smaller_critic_counts() -> None:

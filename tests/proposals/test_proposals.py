@@ -5,6 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
+from scipy.stats import multivariate_normal
 
 from hybrid_rl.core import sampling
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
@@ -48,14 +49,25 @@ def test_a_mixture_is_part_one_and_part_the_other(share, count) -> None:
 
 
 @pytest.mark.parametrize("colour", [0.0, 0.8])
-def test_noise_has_its_deviation_and_its_colour(colour) -> None:
-    """Neighbours in time correlate by `colour`; the deviation settles at std."""
+def test_noise_has_its_deviation_and_its_colour_from_the_first_decision(colour) -> None:
+    """Its law is stationary: deviation std at each decision, neighbours correlate by `colour`."""
     samples = 20_000
     found = imagined(NoiseProposal(std=0.2, colour=colour), samples)
     e = np.asarray(found.path.u)[:, :, 0] - 0.1
-    assert e[:, -1].std() == pytest.approx(0.2 * np.sqrt(1 - colour ** (2 * T)), rel=0.03)
-    wanted = colour * np.sqrt((1 - colour ** (2 * T - 2)) / (1 - colour ** (2 * T)))
-    assert np.corrcoef(e[:, -1], e[:, -2])[0, 1] == pytest.approx(wanted, abs=0.02)
+    np.testing.assert_allclose(e.std(0), 0.2, rtol=0.03)
+    correlation = np.corrcoef(e.T)
+    wanted = colour ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
+    np.testing.assert_allclose(correlation, wanted, atol=0.03)
+
+
+@pytest.mark.parametrize("colour", [0.0, 0.8])
+def test_log_density_is_that_of_the_process(colour) -> None:
+    """Over a whole path it sums to the density of a Gaussian whose covariance is Toeplitz."""
+    found = imagined(NoiseProposal(std=0.2, colour=colour))
+    e = np.asarray(found.path.u, float)[:, :, 0] - 0.1
+    covariance = 0.2**2 * colour ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
+    wanted = multivariate_normal(cov=covariance).logpdf(e)
+    np.testing.assert_allclose(found.log_prob.sum(1), wanted, rtol=1e-3, atol=1e-3)
 
 
 def test_bad_fields() -> None:
