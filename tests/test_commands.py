@@ -14,9 +14,10 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, config, drawing, evaluate, figures, render, train
+from hybrid_rl import command, config, evaluate, figures, render, train
 from hybrid_rl import list as listed
 from hybrid_rl.curves import curves
+from hybrid_rl.envs import offscreen
 from hybrid_rl.envs.native import cores
 from hybrid_rl.training import checkpoint
 
@@ -136,8 +137,8 @@ def test_render_draws_an_episode(trained, tmp_path, capfd):
     given = [f"run={trained}", f"out={out}", "episode_steps=4", "width=64", "height=48"]
     code = call(lambda: command.guarded(render.main), *given)
     try:
-        drawing.backend()
-    except drawing.NoGraphicsError:
+        offscreen.backend()
+    except offscreen.NoGraphicsError:
         assert code == 1
         assert "install libegl1 or libosmesa6" in capfd.readouterr().err
         return

@@ -1,5 +1,8 @@
 """Our worlds as other libraries see them."""
 
+import sys
+from types import SimpleNamespace
+
 import gymnasium
 import jax
 import jax.numpy as jnp
@@ -8,14 +11,68 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
+from hybrid_rl.envs import offscreen
 from hybrid_rl.envs.as_gymnasium import World, Worlds
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 
 
+def can_draw():
+    """Whether this machine draws."""
+    try:
+        offscreen.backend()
+    except offscreen.NoGraphicsError:
+        return False
+    return True
+
+
+@pytest.mark.filterwarnings("ignore:.*Not able to test alternative render modes:UserWarning")
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
 def test_gymnasium_accepts_a_world():
-    check_env(World(Hopper("native"), steps=20), skip_render_check=True)
+    world = World(Hopper("native"), steps=20, render_mode="rgb_array")
+    check_env(world, skip_render_check=not can_draw())
+
+
+def test_a_world_draws_without_a_display():
+    """Each of two, in turn; what one shows changes as it moves."""
+    if not can_draw():
+        return
+    one, two = World(HalfCheetah("native")), World(Hopper("native"))
+    for world in (one, two):
+        world.reset(seed=0)
+    first, other = one.render(), two.render()
+    assert (first.shape, first.dtype) == ((480, 640, 3), np.uint8)
+
+    def apart(one, two):
+        return np.abs(one.astype(int) - two).max()
+
+    assert apart(first, other) > 50
+    assert apart(first, one.render()) < 5  # edges are rounded
+    for _ in range(5):
+        one.step(np.ones(6, np.float32))
+    assert apart(first, one.render()) > 50
+    one.close()
+    one.close()
+    assert two.render().std() > 10
+
+
+def test_without_graphics_a_world_raises_one_line(monkeypatch):
+    """MuJoCo's own renderer would end the process."""
+    monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
+    monkeypatch.setattr(sys, "platform", "linux")
+    offscreen.backend.cache_clear()
+    world = World(Hopper("native"))
+    world.reset(seed=0)
+    with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
+        world.render()
+    offscreen.backend.cache_clear()
+    world.close()
+
+
+def test_a_world_without_a_scene_is_not_drawn():
+    bare = SimpleNamespace(spec=Hopper("native").spec, reset=Hopper("native").reset, step=None)
+    with pytest.raises(ValueError, match="has no `scene` and no `pose`"):
+        World(bare).render()
 
 
 def test_world_is_our_world():
