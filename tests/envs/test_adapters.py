@@ -1,6 +1,9 @@
 """Our worlds as other libraries see them."""
 
+import re
 import sys
+import textwrap
+from functools import partial
 from types import SimpleNamespace
 
 import gymnasium
@@ -15,6 +18,7 @@ from hybrid_rl.envs import offscreen
 from hybrid_rl.envs.as_gymnasium import World, Worlds
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
+from hybrid_rl.envs.pendulum import Pendulum
 
 
 def can_draw():
@@ -169,3 +173,51 @@ def test_brax_wrappers_run():
     assert state.info["truncation"].all()
     np.testing.assert_allclose(state.info["episode_metrics"]["length"], 6)
     np.testing.assert_array_equal(state.obs, first)
+
+
+def test_brax_wrappers_name_the_keys_that_they_take():
+    from brax.envs import training
+
+    from hybrid_rl.envs.as_brax import World as BraxWorld
+
+    env = training.wrap(BraxWorld(Pendulum()), episode_length=6)
+    with pytest.raises(TypeError, match=r"keys of jax\.random\.PRNGKey, not of jax\.random\.key"):
+        env.reset(jax.random.split(jax.random.key(0), 3))
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_brax_trainers_run_with_the_lines_that_as_brax_gives(monkeypatch):
+    """And not without them: once Brax follows JAX, the lines go."""
+    from brax.training.agents.ppo import networks, train
+    from brax.training.pmap import bcast_local_devices
+
+    from hybrid_rl.envs import as_brax
+
+    with pytest.raises(AttributeError, match="device_put_replicated"):
+        bcast_local_devices(0.0)
+    lines = re.findall(
+        r"^    jax\.device_put_replicated = .*?^    \)$", as_brax.__doc__, re.M | re.S
+    )
+    monkeypatch.setattr(jax, "device_put_replicated", None, raising=False)  # undone at the end
+    exec(textwrap.dedent(lines[0]), {"jax": jax})
+    few = partial(
+        networks.make_ppo_networks,
+        policy_hidden_layer_sizes=(8,),
+        value_hidden_layer_sizes=(8,),
+    )
+    with jax.numpy_rank_promotion("allow"):
+        make, params, _ = train.train(
+            as_brax.World(Pendulum()),
+            num_timesteps=64,
+            episode_length=8,
+            num_envs=4,
+            batch_size=4,
+            num_minibatches=1,
+            unroll_length=4,
+            num_updates_per_batch=1,
+            network_factory=few,
+            run_evals=False,
+        )
+        action, _ = make(params, deterministic=True)(jnp.ones(3), jax.random.PRNGKey(0))
+    assert action.shape == (1,)
+    assert np.isfinite(action).all()
