@@ -199,7 +199,7 @@ def test_a_canvas_that_is_not_closed_ends_without_noise(can_draw):
 
 
 def test_drawing_is_counted_in_pictures(monkeypatch, capsys):
-    now = iter(range(0, 1000, 6))
+    now = iter(range(0, 10_000, 20))
     monkeypatch.setattr(time, "monotonic", lambda: float(next(now)))
     assert list(drawing._counted(range(3), 3)) == [0, 1, 2]
     assert "pictures/s" in capsys.readouterr().out
