@@ -76,19 +76,19 @@ def dist_of(wheel):
     return "-".join(wheel.name.split("-")[:2])
 
 
-def test_the_demonstrations_are_found_from_any_folder(python, folder):
+def test_the_demonstrations_are_found_from_any_folder(python, tmp_path):
     """The ant's, which an experiment reads; a file of the user's comes first."""
     code = (
         "from hybrid_rl.data.demonstrations import find, load\n"
         "print(len(load('demonstrations/ant.npz')['reward']), find('demonstrations/ant.npz'))"
     )
-    count, path = run(python, "-c", code, cwd=folder).split(maxsplit=1)
+    count, path = run(python, "-c", code, cwd=tmp_path).split(maxsplit=1)
     assert int(count) == len(load(RECORDED)["reward"])
     assert Path(path.strip()).is_relative_to(python.parents[1])
-    own = folder / "demonstrations" / "ant.npz"
+    own = tmp_path / "demonstrations" / "ant.npz"
     own.parent.mkdir()
     own.write_bytes(RECORDED.read_bytes())
-    assert run(python, "-c", code, cwd=folder).split()[1] == "demonstrations/ant.npz"
+    assert run(python, "-c", code, cwd=tmp_path).split()[1] == "demonstrations/ant.npz"
 
 
 def test_commands_work_from_any_folder(python, folder):
