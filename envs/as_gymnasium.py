@@ -8,8 +8,8 @@ step that ends an episode (AutoresetMode.SAME_STEP): the true last observation i
 `infos["final_obs"]` where `infos["_final_obs"]`.
 
 Stable-Baselines3 on a CPU: `torch.set_num_threads(1)` first. Its small networks gain nothing
-from more threads, and on busy cores the threads wait for each other: 300 steps of SAC took 4 s
-with one and 70 s with two.
+from more threads, and on busy cores they wait for each other: on two of them 300 steps of SAC
+took 4 s with one thread and 70 s with two.
 
 Source: Gymnasium's documentation, "Env", "VectorEnv"; here, and in `as_brax`, classes
 inherit because the other library asks for it.

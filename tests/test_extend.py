@@ -1,6 +1,7 @@
 """A method is one YAML; a part is one Python file and one YAML; nothing else is edited."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -72,7 +73,7 @@ def part(conf, tmp_path, monkeypatch):
     (conf / "proposal").mkdir()
     (conf / "proposal" / "toy.yaml").write_text(PART_YAML)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     yield
     sys.modules.pop("my_part", None)
 
