@@ -334,7 +334,7 @@ def test_a_world_that_cannot_be_drawn_is_one_line(trained, monkeypatch, capsys, 
 
 
 def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsys, can_draw):
-    """OpenGL has a longest side, and less memory than a square of it needs."""
+    """OpenGL has a longest side."""
     if not can_draw:
         return
     assert call(monkeypatch, "run=x", "width=1000000") == 2
