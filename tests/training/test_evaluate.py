@@ -101,7 +101,7 @@ def test_a_trained_policy_acts_from_observations() -> None:
     np.testing.assert_array_equal(other(np.array([0.5])), [-0.5])
 
 
-def test_a_trained_policy_draws_anew_for_each_world_and_decision() -> None:
+def test_a_trained_policy_draws_for_each_world_and_decision() -> None:
     draws, again, other = (run_of(Draws()).policy(key=key) for key in (0, 0, 1))
     first = draws(np.zeros((32, 1)))
     assert 0 < first.sum() < 32
