@@ -1,16 +1,24 @@
-"""A world of ours as a Brax environment, so that Brax's wrappers and trainers run on it.
+"""A world of ours as a Brax environment, so that Brax's wrappers run on it.
 
     pipeline_state = (data, info),   done = 1.0 where terminated
 
 Brax keeps the clock, resets by putting the first `pipeline_state` and `obs` back, and writes
 into `info`; what our world remembers must come back with a reset, so it travels in
-`pipeline_state`.
+`pipeline_state`. Keys are of the old kind, `jax.random.PRNGKey`: Brax reads their shape.
+
+Brax's trainers (PPO, SAC, APG of Brax 0.14.2) call a function that JAX 0.10 removed. They run
+on our worlds once a script gives it back, before training:
+
+    jax.device_put_replicated = lambda tree, devices: jax.tree.map(
+        lambda x: jax.numpy.stack([x] * len(devices)), tree
+    )
 
 Source: Brax's documentation, `brax.envs.base.Env`, `brax.envs.wrappers.training`.
 """
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 from brax.envs.base import Env as BraxEnv
 from brax.envs.base import State
@@ -26,7 +34,13 @@ class World(BraxEnv):
         self.env = env
 
     def reset(self, rng: Array) -> State:
-        """First state of an episode."""
+        """First state of an episode, from a key of the old kind [2].
+
+        Raises:
+            TypeError: for a key of the new kind, which Brax's wrappers cannot batch.
+        """
+        if jnp.issubdtype(rng.dtype, jax.dtypes.prng_key):
+            raise TypeError("Brax takes keys of jax.random.PRNGKey, not of jax.random.key")
         now: Any = self.env.reset(rng)
         done = jnp.float32(0.0)
         kept: Any = (now.data, now.info)

@@ -7,6 +7,10 @@
 step that ends an episode (AutoresetMode.SAME_STEP): the true last observation is
 `infos["final_obs"]` where `infos["_final_obs"]`.
 
+Stable-Baselines3 on a CPU: `torch.set_num_threads(1)` first. Its small networks gain nothing
+from more threads, and on busy cores they wait for each other: on two of them 300 steps of SAC
+took 4 s with one thread and 70 s with two.
+
 Source: Gymnasium's documentation, "Env", "VectorEnv"; here, and in `as_brax`, classes
 inherit because the other library asks for it.
 """
@@ -18,13 +22,13 @@ from typing import Any, ClassVar
 import gymnasium
 import jax
 import jax.numpy as jnp
-import mujoco
 import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from jax import Array
 
+from hybrid_rl.envs.offscreen import Canvas, check_drawable
 from hybrid_rl.types import Env, EnvState
 
 
@@ -46,8 +50,7 @@ class World(gymnasium.Env):
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
         self._reset, self._step = jax.jit(env.reset), jax.jit(partial(_brief_step, env))
-        self._renderer: Any = None
-        self._scene: Any = None
+        self._canvas: Canvas | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -67,21 +70,22 @@ class World(gymnasium.Env):
         return out[:-2], float(out[-2]), bool(out[-1]), truncated, {}
 
     def render(self) -> np.ndarray:
-        """Picture [height, width, 3] of the present state."""
-        if self._renderer is None:
-            model = mujoco.MjModel.from_xml_string(self.env.scene())
-            self._scene = mujoco.MjData(model)
-            self._renderer = mujoco.Renderer(model, 480, 640)
-        self._scene.qpos[:] = self.env.pose(self._state)
-        mujoco.mj_forward(self._renderer.model, self._scene)
-        self._renderer.update_scene(self._scene, camera="track")
-        return self._renderer.render()
+        """Picture [480, 640, 3] (uint8) of the present state; no display is needed.
+
+        Raises:
+            NoGraphicsError: where neither EGL nor OSMesa can draw.
+            ValueError: for a world without `scene` and `pose`.
+        """
+        if self._canvas is None:
+            check_drawable(self.env)
+            self._canvas = Canvas(self.env.scene())
+        return self._canvas.draw(np.asarray(self.env.pose(self._state)))
 
     def close(self) -> None:
-        """Give the renderer back."""
-        if self._renderer is not None:
-            self._renderer.close()
-            self._renderer = None
+        """Free what `render` draws with."""
+        if self._canvas is not None:
+            self._canvas.close()
+            self._canvas = None
 
 
 def _brief_step(env: Env, state: EnvState, action: Array) -> tuple[EnvState, Array]:

@@ -1,6 +1,6 @@
 """`python -m hybrid_rl.demonstrate task=T [episodes=10] [out=FILE]`: an expert in a file.
 
-FILE is demonstrations/T.npz if nothing else is said. The expert is the task's own, by hand, in the
+FILE is demonstrations/T.npz by default. The expert is the task's own, by hand, in the
 task as it stands or as env.KEY=VALUE, episode.KEY=VALUE, expert.KEY=VALUE change it; with run=DIR
 it is what was learned there (mode: full, policy or planner; the first seed), without exploration.
 Episode i begins by the key i of `seed`.

@@ -2,6 +2,13 @@
 
 mode: full (planner and policy together), policy (learned policy alone), planner (learned
 model alone). No exploration, learners as they were at the newest checkpoint.
+
+From Python, `load` reads a run back, `evaluate` gives its returns, and `Trained.policy` its
+actions, in any loop that has observations:
+
+    policy = load("runs/hopper/sac/TIME").policy(seed=0)
+    policy.reset()  # at the start of every episode
+    action = policy(obs)  # [m] in [-1, 1]
 """
 
 import json
@@ -13,6 +20,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import Array
 from omegaconf import OmegaConf
 from rich.console import Console
 from rich.table import Table
@@ -24,7 +32,7 @@ from hybrid_rl.training import checkpoint
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.evaluate import evaluation_keys, outcomes
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.types import Controller, Params
+from hybrid_rl.types import Controller, Params, Spec
 
 DEFAULTS = {"run": "", "episodes": "10", "mode": "full"}
 
@@ -41,14 +49,90 @@ class Trained:
     step: int  # decisions of each learner
     notes: tuple[str, ...]  # checkpoints that were passed over
 
+    def policy(self, seed: int | None = None, mode: str = "full", key: int = 0) -> "TrainedPolicy":
+        """Observations to actions, as the learner of `seed` acts; None is the first.
 
-def load(folder: Path) -> Trained:
+        key: of what a planner draws.
+
+        Raises:
+            UsageError: for a seed that the run does not have, or a mode that its method does not.
+        """
+        seed = self.seeds[0] if seed is None else seed
+        if seed not in self.seeds:
+            raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
+        if mode not in self.controllers:
+            raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
+        params: Any = jax.tree.map(lambda leaf: leaf[self.seeds.index(seed)], self.params)
+        return TrainedPolicy(self.episode.spec, self.controllers[mode], params, key)
+
+
+class TrainedPolicy:
+    """action = policy(obs): a trained controller without exploration, for one world or N.
+
+    obs is [o], or [N, o] of N worlds side by side; the action is [m] or [N, m], in [-1, 1]. A
+    planner keeps its plan from one call to the next, so call `reset` when an episode begins.
+    """
+
+    def __init__(self, spec: Spec, controller: Controller, params: Params, key: int = 0) -> None:
+        self.spec, self._key = spec, jax.random.key(key)
+        self._begin = partial(controller.init, spec)
+        self._state: Any = None  # [N, ...]; None: an episode begins
+        self._worlds = 0  # N
+
+        def act(state: Any, obs: Array, key: Array) -> tuple[Array, Any, Array]:
+            key, *keys = jax.random.split(key, 1 + len(obs))
+            each = jax.vmap(controller.act, (None, 0, 0, 0))
+            u, state, _ = each(params, state, obs, jnp.stack(keys))
+            return u, state, key
+
+        self._act = jax.jit(act)
+
+    def reset(self, where: np.ndarray | None = None) -> None:
+        """Begin an episode; where: [N] bool, only in these worlds."""
+        if where is None:
+            self._state = None
+        elif self._state is not None:
+            self._state = jax.tree.map(
+                lambda first, now: jnp.where(_wide(jnp.asarray(where), now), first, now),
+                self._begin(),
+                self._state,
+            )
+
+    def __call__(self, obs: np.ndarray) -> np.ndarray:
+        """The action [m] at obs [o], or actions [N, m] at [N, o].
+
+        Raises:
+            ValueError: for observations of another size, or another N than since the reset.
+        """
+        obs = np.asarray(obs, np.float32)
+        o = self.spec.obs
+        if obs.ndim not in (1, 2) or obs.shape[-1] != o:
+            raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
+        rows = np.atleast_2d(obs)
+        if self._state is None:
+            self._worlds = len(rows)
+            self._state = jax.tree.map(
+                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *leaf.shape)), self._begin()
+            )
+        if len(rows) != self._worlds:
+            raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
+        u, self._state, self._key = self._act(self._state, rows, self._key)
+        return np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
+
+
+def _wide(mask: Array, like: Array) -> Array:
+    """Mask [N] with as many dimensions as `like` [N, ...]."""
+    return mask.reshape(mask.shape + (1,) * (like.ndim - 1))
+
+
+def load(folder: Path | str) -> Trained:
     """The learners of the run in `folder`, at its newest sound checkpoint.
 
     Raises:
         UsageError: where `folder` holds no run, or no checkpoint.
         CheckpointError: where none of its checkpoints is sound.
     """
+    folder = Path(folder)
     place = folder / "config.yaml"
     if not place.exists():
         raise UsageError(f"run={folder}: no run folder there (no config.yaml in it)")
@@ -56,7 +140,7 @@ def load(folder: Path) -> Trained:
         raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
     config: Any = OmegaConf.load(place)
     command.prepare(config)
-    run = configuration.build(config)
+    run = configuration.build(_without_demonstrations(config))
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
     like = like.replace(env=None, control=None, memory=None, key=None)
     step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
@@ -64,6 +148,16 @@ def load(folder: Path) -> Trained:
     return Trained(
         config.task, run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes)
     )
+
+
+def _without_demonstrations(config: Any) -> Any:
+    """The same run for those who learn no further: it needs no file of demonstrations."""
+    config = config.copy()
+    config.head_start = 0
+    for part in (config.replay, *config.learners.values()):
+        if "demonstrations" in part:
+            part.demonstrations = None
+    return config
 
 
 def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[str, np.ndarray]:

@@ -3,13 +3,16 @@
     python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
     python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
+`out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode.
+
 The episode is the first of the run's own evaluation: same key, no exploration. With task=T it is
 played by the task's expert, which is written by hand.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,8 +32,16 @@ DEFAULTS = {
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
 
 
-def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0) -> tuple:
-    """One episode of a loaded run: poses [frames, nq] and its return.
+class Film(NamedTuple):
+    """One episode, to be drawn."""
+
+    poses: np.ndarray  # [frames, nq]
+    total: float  # undiscounted return
+    success: bool | None  # at the end; None: the task has no measure of it
+
+
+def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0) -> Film:
+    """One episode of a loaded run.
 
     trained: what `hybrid_rl.evaluate.load` returns. seed: of one of its learners; None is
     the first. steps: at most this many decisions; 0 is the task's own limit.
@@ -49,19 +60,51 @@ def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: in
     return film(world, trained.controllers[mode], params, evaluation_keys(seed, 1)[0])
 
 
-def film(world: Any, controller: Any, params: Any, key: Any) -> tuple:
-    """What a controller that knows `params` does in an episode: poses [frames, nq], return."""
+def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
+    """What a controller that knows `params` does in one episode of `world`."""
     import jax
 
     from hybrid_rl.training.evaluate import rollout
 
     def go(params: Any, key: Any) -> tuple:
         states = rollout(world, controller, params, key, world.steps)
-        return jax.vmap(world.env.pose)(states), states.done, states.info["return"]
+        poses = jax.vmap(world.env.pose)(states)
+        return poses, states.done, states.info["return"], states.metrics.get("success")
 
-    poses, done, returns = jax.jit(go)(params, key)
+    poses, done, returns, success = jax.jit(go)(params, key)
     last = int(np.argmax(done)) if np.any(done) else world.steps
-    return np.asarray(poses)[: last + 1], float(returns[last])
+    succeeded = None if success is None else bool(success[last])
+    return Film(np.asarray(poses)[: last + 1], float(returns[last]), succeeded)
+
+
+def _shown(
+    said: dict[str, str], changes: dict[str, str], seed: int | None, steps: int
+) -> tuple[Any, str, Film]:
+    """(world with its clock, whose actions, episode) that the arguments name."""
+    from hybrid_rl.envs.offscreen import check_drawable
+
+    if said["task"]:
+        from hybrid_rl.demonstrate import by_hand
+        from hybrid_rl.training.evaluate import evaluation_keys
+
+        whole, controller, params = by_hand(said["task"], changes)
+        _check(check_drawable, whole.env)
+        world = replace(whole, steps=steps or whole.steps)
+        return world, "by hand", film(world, controller, params, evaluation_keys(seed or 0, 1)[0])
+    from hybrid_rl.evaluate import load
+
+    trained = load(Path(said["run"]))
+    _check(check_drawable, trained.episode.env)
+    shown = episode(trained, said["mode"], seed, steps)
+    return trained.episode, f"step {trained.step:,}", shown
+
+
+def _check(check: Callable[..., None], *values: Any) -> None:
+    """Call `check`; its ValueError becomes the user's."""
+    try:
+        check(*values)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
 def main() -> None:
@@ -78,37 +121,27 @@ def main() -> None:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     if said["task"] and "mode" in given:
         raise UsageError("mode: an expert by hand has none; give it with run=DIR")
-    from hybrid_rl.drawing import SUFFIXES, backend, draw
+    from hybrid_rl.drawing import SUFFIXES, draw
+    from hybrid_rl.envs import offscreen
 
     out = Path(
         said["out"] or (Path(said["run"]) / "video.mp4" if said["run"] else f"{said['task']}.mp4")
     )
     if out.suffix not in SUFFIXES:
-        raise UsageError(f"out={out}: must end in {' or '.join(SUFFIXES)}")
+        raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
     width = command.count("width", said["width"], even=True)
     height = command.count("height", said["height"], even=True)
     steps = command.count("episode_steps", said["episode_steps"]) if said["episode_steps"] else 0
     seed = command.count("seed", said["seed"], least=0) if said["seed"] else None
-    backend()  # before minutes of work: nothing is lost where nothing can draw
+    offscreen.backend()  # before minutes of work: nothing is lost where nothing can draw
+    _check(offscreen.check_size, width, height)
 
-    if said["task"]:
-        from hybrid_rl.demonstrate import by_hand
-        from hybrid_rl.training.evaluate import evaluation_keys
-
-        whole, controller, params = by_hand(said["task"], changes)
-        world = replace(whole, steps=steps or whole.steps)
-        poses, total = film(world, controller, params, evaluation_keys(seed or 0, 1)[0])
-        by = "by hand"
-    else:
-        from hybrid_rl.evaluate import load
-
-        trained = load(Path(said["run"]))
-        world, by = trained.episode, f"step {trained.step:,}"
-        poses, total = episode(trained, said["mode"], seed, steps)
+    world, by, shown = _shown(said, changes, seed, steps)
     rate = 1 / world.spec.dt
     stride = int(np.ceil(rate / FASTEST))
-    draw(world.env.scene(), poses[::stride], out, rate / stride, width, height)
-    print(f"{out}: {len(poses) - 1} decisions, return {total:,.1f}, {by}")
+    draw(world.env.scene(), shown.poses[::stride], out, rate / stride, width, height)
+    ended = {True: ", success", False: ", no success", None: ""}[shown.success]
+    print(f"{out}: {len(shown.poses) - 1} decisions, return {shown.total:,.1f}{ended}, {by}")
 
 
 if __name__ == "__main__":

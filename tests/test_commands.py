@@ -9,16 +9,19 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import imageio.v3 as iio
+import jax
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, config, drawing, evaluate, figures, render, train
+from hybrid_rl import command, config, evaluate, figures, render, train
 from hybrid_rl import list as listed
 from hybrid_rl.curves import curves
+from hybrid_rl.envs import offscreen
 from hybrid_rl.envs.native import cores
 from hybrid_rl.training import checkpoint
+from hybrid_rl.training.evaluate import evaluation_keys
 
 pytestmark = pytest.mark.xdist_group("commands")
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}
@@ -131,13 +134,29 @@ def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
     assert f"{last:,.1f}" in table
 
 
+def test_a_trained_policy_gets_what_the_evaluation_says(trained):
+    """Driven from Python, one observation at a time."""
+    found = evaluate.load(str(trained))
+    expected = evaluate.evaluate(found, "policy", 1)["return"][0, 0]
+    episode, policy = found.episode, found.policy(mode="policy")
+    state = episode.reset(jax.random.split(evaluation_keys(0, 1)[0])[0])
+    step = jax.jit(episode.step)
+    policy.reset()
+    while not state.done:
+        state = step(state, policy(np.asarray(state.obs)))
+    assert float(state.info["return"]) == pytest.approx(float(expected), rel=1e-3)
+    planned = found.policy()(np.asarray(state.obs))
+    assert planned.shape == (1,)
+    assert np.abs(planned).max() <= 1
+
+
 def test_render_draws_an_episode(trained, tmp_path, capfd):
     out = tmp_path / "video.mp4"
     given = [f"run={trained}", f"out={out}", "episode_steps=4", "width=64", "height=48"]
     code = call(lambda: command.guarded(render.main), *given)
     try:
-        drawing.backend()
-    except drawing.NoGraphicsError:
+        offscreen.backend()
+    except offscreen.NoGraphicsError:
         assert code == 1
         assert "install libegl1 or libosmesa6" in capfd.readouterr().err
         return

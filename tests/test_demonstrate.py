@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tiny import TINY, call, call_train, run
+from tiny import demonstrate as recorded
 
-from hybrid_rl import command, config, demonstrate
+from hybrid_rl import command, config, demonstrate, evaluate
 from hybrid_rl.controllers.push import PushController
 from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.sawyer_push import SawyerPush
@@ -72,3 +73,19 @@ def test_the_task_is_changed_as_in_training(tmp_path, capsys):
     said = capsys.readouterr().err
     assert "env.sped: unknown key" in said
     assert "planner.samples=3: unknown argument; give key=value with task" in said
+
+
+def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
+    """To evaluate needs the learned policy alone; to go on learning needs the file."""
+    demonstrations = recorded(tmp_path, config.load(["task=pendulum"]))
+    folder, file = tmp_path / "run", Path(demonstrations.partition("=")[2])
+    few = ["total_steps=20", "checkpoint_every=20", "episode.steps=5", "head_start=2"]
+    run(folder, "algo=bc", demonstrations, *few, "random_steps=0")
+    before = evaluate.evaluate(evaluate.load(folder), "policy", 2)["return"]
+    file.unlink()
+    after = evaluate.evaluate(evaluate.load(folder), "policy", 2)["return"]
+    np.testing.assert_array_equal(after, before)
+    assert call_train(f"resume={folder}", "total_steps=40") == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert f"{file}: no such file" in said

@@ -12,8 +12,9 @@ import jax.numpy as jnp
 import pytest
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, demonstrate, drawing, evaluate, figures, render
+from hybrid_rl import command, demonstrate, evaluate, figures, render
 from hybrid_rl import list as listed
+from hybrid_rl.envs import offscreen
 from hybrid_rl.envs.pendulum import Pendulum
 from hybrid_rl.training import checkpoint, manifest, provenance, session
 
@@ -89,7 +90,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("demonstrate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
     ("demonstrate run={trained} out=file.csv", 2, "out=file.csv: must end in .npz"),
     ("render run=nowhere", 2, "run=nowhere: no run folder there"),
-    ("render run={trained} out=film.avi", 2, "out=film.avi: must end in .mp4 or .gif"),
+    ("render run={trained} out=film.avi", 2, "out=film.avi: must end in .mp4, .gif, .png"),
     ("figures runs=nowhere/*", 2, "runs=nowhere/*: no run there"),
     ("figures runs={trained} metric=train/reward", 2, "metric=train/reward: not in these runs"),
     ("figures runs={trained} out=curve.txt", 2, "out=curve.txt: must end in .png"),
@@ -165,7 +166,7 @@ def test_train_refuses(nothing_lost, capfd, given, words):
 
 @pytest.mark.parametrize(("given", "code", "words"), OTHERS, ids=[given for given, *_ in OTHERS])
 def test_the_other_commands_refuse(nothing_lost, folders, monkeypatch, capfd, given, code, words):
-    monkeypatch.setattr(drawing, "backend", lambda: "egl")
+    monkeypatch.setattr(offscreen, "backend", lambda: "egl")
     name, *arguments = given.format(**folders).split()
     assert call(lambda: command.guarded(MAINS[name]), *arguments) == code
     assert words in only_line(capfd)
@@ -207,9 +208,9 @@ def test_a_run_is_never_written_over(nothing_lost, folders, capfd):
 
 
 def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
-    monkeypatch.setattr(drawing, "TRIAL", "raise SystemExit(1)")
+    monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
     monkeypatch.setattr(sys, "platform", "linux")
-    drawing.backend.cache_clear()
+    offscreen.backend.cache_clear()
     code = call(lambda: command.guarded(render.main), f"run={folders['trained']}")
     assert code == 1
     assert "install libegl1 or libosmesa6" in only_line(capfd)

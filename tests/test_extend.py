@@ -1,16 +1,21 @@
 """A method is one YAML; a part is one Python file and one YAML; nothing else is edited."""
 
 import json
+import os
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train
 
-from hybrid_rl import command, evaluate
+from hybrid_rl import command, evaluate, render
+from hybrid_rl.envs import offscreen
 
 pytestmark = pytest.mark.xdist_group("extend")
+ROOT = Path(__file__).resolve().parents[1]
 METHOD = """\
 # @package _global_
 # Planning around the plan, no policy.
@@ -68,7 +73,7 @@ def part(conf, tmp_path, monkeypatch):
     (conf / "proposal").mkdir()
     (conf / "proposal" / "toy.yaml").write_text(PART_YAML)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     yield
     sys.modules.pop("my_part", None)
 
@@ -114,3 +119,38 @@ def test_what_is_wrong_with_a_part_is_one_line(conf, part, tmp_path, capfd, give
     assert said.count("\n") == 1
     assert words in said
     assert not (tmp_path / "run").exists()
+
+
+@pytest.fixture
+def world(tmp_path, monkeypatch):
+    """The configuration folder of the analytic world of CONTRIBUTING.md, outside the repository."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    section = text.split("## An analytic world\n")[1].split("\n## ")[0]
+    code, yaml = re.findall(r"```(?:python|yaml)\n(.*?)```", section, re.S)
+    (tmp_path / "kettle.py").write_text(code)
+    (tmp_path / "my_conf" / "task").mkdir(parents=True)
+    (tmp_path / "my_conf" / "task" / "kettle.yaml").write_text(yaml)
+    monkeypatch.syspath_prepend(tmp_path)
+    yield tmp_path / "my_conf"
+    sys.modules.pop("kettle", None)
+
+
+def test_the_analytic_world_of_the_how_to_runs(world, tmp_path, monkeypatch, capfd):
+    """Trained, read back from another folder, and drawn as far as it can be."""
+    folder = tmp_path / "run"
+    tiny = [text for text in TINY if text not in ("task=pendulum", "total_steps=600")]
+    given = ["task=kettle", "algo=sac", "total_steps=100", "episode.steps=20", f"run_dir={folder}"]
+    assert call_train("--config-dir", world, *tiny, *given, "env.power=4") == 0
+    assert capfd.readouterr().err == ""
+    said = json.loads((folder / "summary.json").read_text())
+    assert (said["task"], said["finished"]) == ("kettle", True)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    trained = evaluate.load(folder)
+    assert trained.episode.env.power == 4
+    assert (evaluate.evaluate(trained, episodes=2)["return"] < 0).all()
+    monkeypatch.setattr(offscreen, "backend", lambda: "egl")
+    assert call(lambda: command.guarded(render.main), f"run={folder}") == 2
+    line = capfd.readouterr().err
+    assert line.count("\n") == 1
+    assert "Kettle has no `scene` and no `pose`: the world cannot be drawn" in line

@@ -1,7 +1,9 @@
 """Drawing without a display, and the render command."""
 
+import os
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -11,6 +13,7 @@ import numpy as np
 import pytest
 
 from hybrid_rl import command, drawing, render
+from hybrid_rl.envs import offscreen
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Spec
 
@@ -84,10 +87,10 @@ def trained(monkeypatch):
 def can_draw():
     """Whether this machine draws; where not, it has to say what to install."""
     try:
-        drawing.backend()
-    except drawing.NoGraphicsError:
-        with pytest.raises(drawing.NoGraphicsError, match="install libegl1 or libosmesa6"):
-            drawing.backend()
+        offscreen.backend()
+    except offscreen.NoGraphicsError:
+        with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
+            offscreen.backend()
         return False
     return True
 
@@ -170,39 +173,72 @@ def test_what_fails_halfway_leaves_nothing(tmp_path, monkeypatch, can_draw):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_positions_of_another_scene_are_refused():
-    with pytest.raises(ValueError, match=r"qpos is \(2, 3\); the scene takes \[frames, 1\]"):
-        next(drawing.frames(FIXED, np.zeros((2, 3))))
-    with pytest.raises(ValueError, match=r"a\.avi: must end in \.mp4 or \.gif"):
+def test_a_png_is_the_picture_halfway(tmp_path, can_draw):
+    if not can_draw:
+        return
+    out = drawing.draw(FIXED, positions(5), tmp_path / "a.png", 25, 64, 48)
+    film = list(drawing.frames(FIXED, positions(5), 64, 48))
+    np.testing.assert_array_equal(iio.imread(out), film[2])
+
+
+def test_a_canvas_that_is_not_closed_ends_without_noise(can_draw):
+    """And another may be drawn on between two of its pictures."""
+    code = (
+        "import numpy as np, weakref\n"
+        "weakref.finalize(np, print, end='')  # from here on, finalizers run after EGL's end\n"
+        "from hybrid_rl.envs.offscreen import Canvas\n"
+        f"one, two = Canvas({FIXED!r}, 64, 48), Canvas({FIXED!r}, 32, 24)\n"
+        "first, small = one.draw(np.zeros(1)), two.draw(np.zeros(1))\n"
+        "assert (first == one.draw(np.zeros(1))).all() and small.shape == (24, 32, 3)\n"
+        "two.close()\n"
+        "assert (first == one.draw(np.zeros(1))).all()\n"
+    )
+    if can_draw:
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_drawing_is_counted_in_pictures(monkeypatch, capsys):
+    now = iter(range(0, 10_000, 20))
+    monkeypatch.setattr(time, "monotonic", lambda: float(next(now)))
+    assert list(drawing._counted(range(3), 3)) == [0, 1, 2]
+    assert "pictures/s" in capsys.readouterr().out
+
+
+def test_positions_of_another_scene_are_refused(can_draw):
+    if can_draw:
+        with pytest.raises(ValueError, match=r"qpos is \(3,\); the scene takes \[1\]"):
+            next(drawing.frames(FIXED, np.zeros((2, 3))))
+    with pytest.raises(ValueError, match=r"a\.avi: must end in \.mp4, \.gif, \.png"):
         drawing.draw(FIXED, positions(), "a.avi", 25)
 
 
 @pytest.fixture
 def choosing(monkeypatch):
     """Decrees which backends work."""
-    drawing.backend.cache_clear()
+    offscreen.backend.cache_clear()
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
 
     def works(*names):
         code = f"import sys; sys.exit('{{backend}}' not in {names})"
-        monkeypatch.setattr(drawing, "TRIAL", code)
+        monkeypatch.setattr(offscreen, "TRIAL", code)
 
     yield works
-    drawing.backend.cache_clear()
+    offscreen.backend.cache_clear()
 
 
 def test_egl_comes_before_osmesa_unless_the_user_says_otherwise(choosing, monkeypatch):
     choosing("egl", "osmesa")
-    assert drawing.backend() == "egl"
-    drawing.backend.cache_clear()
+    assert offscreen.backend() == "egl"
+    offscreen.backend.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "OSMesa")
-    assert drawing.backend() == "osmesa"
+    assert offscreen.backend() == "osmesa"
 
 
 def test_osmesa_is_taken_where_egl_fails(choosing):
     choosing("osmesa")
-    assert drawing.backend() == "osmesa"
+    assert offscreen.backend() == "osmesa"
 
 
 def test_a_machine_that_cannot_draw_says_what_to_install(choosing, monkeypatch, capsys, tmp_path):
@@ -213,19 +249,20 @@ def test_a_machine_that_cannot_draw_says_what_to_install(choosing, monkeypatch, 
     assert "egl and osmesa failed; install libegl1 or libosmesa6" in said
 
 
-@pytest.mark.parametrize("name", drawing.BACKENDS)
+@pytest.mark.parametrize("name", offscreen.BACKENDS)
 def test_each_backend_draws_or_is_not_chosen(name):
     """In a process of its own, after mujoco was imported for no display at all."""
     code = (
         "import mujoco, numpy as np, sys\n"
         "from hybrid_rl import drawing\n"
-        "try: name = drawing.backend()\n"
-        "except drawing.NoGraphicsError as problem: sys.exit(str(problem))\n"
+        "from hybrid_rl.envs import offscreen\n"
+        "try: name = offscreen.backend()\n"
+        "except offscreen.NoGraphicsError as problem: sys.exit(str(problem))\n"
         f"assert name == {name!r}\n"
         f"pictures = list(drawing.frames('''{FIXED}''', np.zeros((2, 1)), 64, 48))\n"
         "assert (pictures[0] == pictures[1]).all() and pictures[0].std() > 10\n"
     )
-    env = {**drawing.os.environ, "MUJOCO_GL": name}
+    env = {**os.environ, "MUJOCO_GL": name}
     done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
     assert done.stdout == ""
     if done.returncode:
@@ -235,12 +272,12 @@ def test_each_backend_draws_or_is_not_chosen(name):
 
 
 def test_an_episode_ends_where_the_world_ends(trained):
-    poses, total = render.episode(trained)
+    poses, total, success = render.episode(trained)
     np.testing.assert_allclose(poses[:, 0], 0.1 * np.arange(6), atol=1e-6)
-    assert total == 5
-    poses, total = render.episode(trained, seed=4)
+    assert (total, success) == (5, None)
+    poses, total, _ = render.episode(trained, seed=4)
     assert (poses.shape, total) == ((21, 1), 0)
-    poses, total = render.episode(trained, steps=3)
+    poses, total, _ = render.episode(trained, steps=3)
     assert (len(poses), total) == (4, 3)
 
 
@@ -262,7 +299,52 @@ def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_dr
     small = ["width=64", "height=48", "episode_steps=2"]
     assert call(monkeypatch, "task=sawyer_push", f"out={tmp_path}/a.mp4", *small) == 0
     assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3
-    assert capsys.readouterr().out.splitlines()[-1].endswith(", by hand")
+    assert capsys.readouterr().out.splitlines()[-1].endswith(", no success, by hand")
+
+
+@dataclass(frozen=True)
+class Goal(Slider):
+    """A slider that succeeds at `goal`."""
+
+    goal: float = 0.5
+
+    def _judged(self, state):
+        return state.replace(metrics={"success": 1.0 * (state.data[0] > self.goal - 0.05)})
+
+    def reset(self, key):
+        return self._judged(super().reset(key))
+
+    def step(self, state, action):
+        return self._judged(super().step(state, action))
+
+
+def test_success_is_that_of_the_end(trained):
+    trained.episode = Episode(Goal(), steps=20)
+    assert [render.episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
+
+
+def test_a_world_that_cannot_be_drawn_is_one_line(trained, monkeypatch, capsys, tmp_path):
+    monkeypatch.setattr(offscreen, "backend", lambda: "egl")
+    world = SimpleNamespace(spec=SPEC, reset=Slider().reset, step=Slider().step)
+    trained.episode = Episode(world, steps=20)
+    assert call(monkeypatch, f"run={tmp_path}") == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "has no `scene` and no `pose`: the world cannot be drawn" in said
+
+
+def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsys, can_draw):
+    """OpenGL has a longest side."""
+    if not can_draw:
+        return
+    assert call(monkeypatch, "run=x", "width=1000000") == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    most = int(said.split("must be at most ")[1].split(",")[0])
+    assert said.startswith("hybrid_rl: width=1000000: ")
+    offscreen.check_size(most, 2)
+    with pytest.raises(ValueError, match=f"height={most + 2}: must be at most {most}"):
+        offscreen.check_size(2, most + 2)
 
 
 @pytest.mark.parametrize(
@@ -273,7 +355,7 @@ def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_dr
         (["run=x", "env.reward=thesis"], "env, episode, expert: a run has its own"),
         (["task=sawyer_push", "mode=full"], "mode: an expert by hand has none"),
         (["task=pendulum"], "task=pendulum: nobody wrote an expert"),
-        (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4 or .gif"),
+        (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4, .gif, .png"),
         (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
         (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),
         (["run=x", "seed=five"], "seed=five: must be a whole number, 0 or more"),
@@ -283,7 +365,7 @@ def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_dr
     ],
 )
 def test_bad_usage_is_one_line_and_code_2(trained, monkeypatch, capsys, arguments, line):
-    monkeypatch.setattr(drawing, "backend", lambda: "egl")
+    monkeypatch.setattr(offscreen, "backend", lambda: "egl")
     assert call(monkeypatch, *arguments) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1

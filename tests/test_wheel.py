@@ -10,7 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from hybrid_rl.data.demonstrations import load
+
 ROOT = Path(__file__).resolve().parents[1]
+RECORDED = ROOT / "demonstrations" / "ant.npz"
 pytestmark = pytest.mark.xdist_group("wheel")
 
 
@@ -62,13 +65,30 @@ def test_the_wheel_holds_one_top_level_package(wheel):
     assert {name.split("/")[0] for name in names} == {"hybrid_rl", f"{dist_of(wheel)}.dist-info"}
     wanted = ["py.typed", "types.py", "envs/physics.py", "conf/train.yaml"]
     assert not {f"hybrid_rl/{name}" for name in wanted} - set(names)
-    for source in [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml")]:
+    sources = [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml"), RECORDED]
+    for source in sources:
         assert "__pycache__" in source.parts or f"hybrid_rl/{source.relative_to(ROOT)}" in names
+    assert wheel.stat().st_size < 2e6  # [bytes], of which the ant's demonstrations are half
 
 
 def dist_of(wheel):
     """NAME-VERSION of a wheel's file name."""
     return "-".join(wheel.name.split("-")[:2])
+
+
+def test_the_demonstrations_are_found_from_any_folder(python, tmp_path):
+    """The ant's, which an experiment reads; a file of the user's comes first."""
+    code = (
+        "from hybrid_rl.data.demonstrations import find, load\n"
+        "print(len(load('demonstrations/ant.npz')['reward']), find('demonstrations/ant.npz'))"
+    )
+    count, path = run(python, "-c", code, cwd=tmp_path).split(maxsplit=1)
+    assert int(count) == len(load(RECORDED)["reward"])
+    assert Path(path.strip()).is_relative_to(python.parents[1])
+    own = tmp_path / "demonstrations" / "ant.npz"
+    own.parent.mkdir()
+    own.write_bytes(RECORDED.read_bytes())
+    assert run(python, "-c", code, cwd=tmp_path).split()[1] == "demonstrations/ant.npz"
 
 
 def test_commands_work_from_any_folder(python, folder):

@@ -8,6 +8,9 @@ episode after episode:
     task: its name   sizes: (o, m)   dt [s] of a decision
 
 An episode that ends with neither flag counts as truncated.
+
+The files in `demonstrations/` of this repository come with the installed package: a relative path
+that the working directory does not have is searched there.
 """
 
 import zipfile
@@ -20,6 +23,8 @@ import numpy as np
 
 from hybrid_rl.types import Env, Transition
 
+PACKAGE = Path(__file__).parents[1]
+PACKAGED = (PACKAGE, PACKAGE.parent)  # `demonstrations/` lies in one: of a wheel, of a checkout
 ROWS = Transition._fields
 WHOLE = (*ROWS, "episode", "task", "sizes", "dt")
 UNREADABLE = (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile, zlib.error)
@@ -37,6 +42,14 @@ def save(
         np.savez_compressed(out, **rows, episode=np.asarray(episode, np.int32), **told)
 
 
+def find(file: Path | str) -> Path:
+    """`file` where it exists, else the file of that name that comes with the package."""
+    paths = [Path(file)]
+    if paths[0].parts[:1] == ("demonstrations",):
+        paths += [folder / file for folder in PACKAGED]
+    return next((path for path in paths if path.is_file()), paths[0])
+
+
 def load(file: Path | str) -> dict[str, np.ndarray]:
     """All that `file` holds, by name; rows in float32.
 
@@ -44,10 +57,11 @@ def load(file: Path | str) -> dict[str, np.ndarray]:
         ValueError: where there is no such file, it is damaged, or contradicts itself.
     """
     said = f"demonstrations={file}:"
-    if not Path(file).is_file():
+    path = find(file)
+    if not path.is_file():
         raise ValueError(f"{said} no such file; `python -m hybrid_rl.demonstrate` records one")
     try:
-        with Path(file).open("rb") as data, np.load(data, allow_pickle=False) as held:
+        with path.open("rb") as data, np.load(data, allow_pickle=False) as held:
             found = {name: held[name] for name in held.files}
     except UNREADABLE as error:
         raise ValueError(f"{said} is damaged, cut short, or no .npz file") from error

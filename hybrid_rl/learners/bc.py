@@ -31,6 +31,8 @@ class CloningState:
 class BehaviourCloning:
     """Gradient steps on a policy that offers `log_prob`, from what `demonstrations` recalls.
 
+    Without `demonstrations` it holds a learned policy, and cannot be updated.
+
     Raises:
         ValueError: for a rate or an edge out of range.
     """
@@ -54,8 +56,9 @@ class BehaviourCloning:
 
     def init(self, key: Array, spec: Spec) -> CloningState:
         """First parameters and optimiser. The key is consumed."""
-        shown = self.demonstrations.recall()
-        policy = self.policy.observe(self.policy.init(key, spec), jnp.asarray(shown.obs))
+        policy = self.policy.init(key, spec)
+        if self.demonstrations is not None:
+            policy = self.policy.observe(policy, jnp.asarray(self.demonstrations.recall().obs))
         return CloningState(policy, optax.adam(self.learning_rate).init(policy))
 
     def params(self, state: CloningState) -> dict[str, Any]:

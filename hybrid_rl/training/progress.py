@@ -32,8 +32,8 @@ class Progress:
         progress.update(step, {"train/return": 12.0})
     """
 
-    def __init__(self, total: int, start: int = 0, label: str = "") -> None:
-        self.total, self.step, self.label = total, start, label
+    def __init__(self, total: int, start: int = 0, label: str = "", unit: str = "steps") -> None:
+        self.total, self.step, self.label, self.unit = total, start, label, unit
         self._scalars: dict[str, float] = {}
         self._clock: deque[tuple[float, int]] = deque()  # ([s], step), the last WINDOW
         self._began = self._spoke = 0.0  # [s] start, and latest plain line
@@ -116,7 +116,7 @@ class Progress:
         if left is None:
             return known
         if "perf/env_steps_per_s" not in self._scalars and left > 0:
-            known.append(f"{(self.total - self.step) / left:,.0f} steps/s")
+            known.append(f"{(self.total - self.step) / left:,.0f} {self.unit}/s")
         return [*known, f"{clock(left)} left"]
 
     def _picture(self) -> Group:

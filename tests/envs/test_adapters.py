@@ -1,5 +1,11 @@
 """Our worlds as other libraries see them."""
 
+import re
+import sys
+import textwrap
+from functools import partial
+from types import SimpleNamespace
+
 import gymnasium
 import jax
 import jax.numpy as jnp
@@ -8,14 +14,69 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
+from hybrid_rl.envs import offscreen
 from hybrid_rl.envs.as_gymnasium import World, Worlds
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
+from hybrid_rl.envs.pendulum import Pendulum
 
 
+def can_draw():
+    """Whether this machine draws."""
+    try:
+        offscreen.backend()
+    except offscreen.NoGraphicsError:
+        return False
+    return True
+
+
+@pytest.mark.filterwarnings("ignore:.*Not able to test alternative render modes:UserWarning")
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
 def test_gymnasium_accepts_a_world():
-    check_env(World(Hopper("native"), steps=20), skip_render_check=True)
+    world = World(Hopper("native"), steps=20, render_mode="rgb_array")
+    check_env(world, skip_render_check=not can_draw())
+
+
+def test_a_world_draws_without_a_display():
+    """Each of two, in turn; what one shows changes as it moves."""
+    if not can_draw():
+        return
+    one, two = World(HalfCheetah("native")), World(Hopper("native"))
+    for world in (one, two):
+        world.reset(seed=0)
+    first, other = one.render(), two.render()
+    assert (first.shape, first.dtype) == ((480, 640, 3), np.uint8)
+
+    def apart(one, two):
+        return np.abs(one.astype(int) - two).max()
+
+    assert apart(first, other) > 50
+    assert apart(first, one.render()) < 5  # edges are rounded
+    for _ in range(5):
+        one.step(np.ones(6, np.float32))
+    assert apart(first, one.render()) > 50
+    one.close()
+    one.close()
+    assert two.render().std() > 10
+
+
+def test_without_graphics_a_world_raises_one_line(monkeypatch):
+    """MuJoCo's own renderer would end the process."""
+    monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
+    monkeypatch.setattr(sys, "platform", "linux")
+    offscreen.backend.cache_clear()
+    world = World(Hopper("native"))
+    world.reset(seed=0)
+    with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
+        world.render()
+    offscreen.backend.cache_clear()
+    world.close()
+
+
+def test_a_world_without_a_scene_is_not_drawn():
+    bare = SimpleNamespace(spec=Hopper("native").spec, reset=Hopper("native").reset, step=None)
+    with pytest.raises(ValueError, match="has no `scene` and no `pose`"):
+        World(bare).render()
 
 
 def test_world_is_our_world():
@@ -112,3 +173,51 @@ def test_brax_wrappers_run():
     assert state.info["truncation"].all()
     np.testing.assert_allclose(state.info["episode_metrics"]["length"], 6)
     np.testing.assert_array_equal(state.obs, first)
+
+
+def test_brax_wrappers_name_the_keys_that_they_take():
+    from brax.envs import training
+
+    from hybrid_rl.envs.as_brax import World as BraxWorld
+
+    env = training.wrap(BraxWorld(Pendulum()), episode_length=6)
+    with pytest.raises(TypeError, match=r"keys of jax\.random\.PRNGKey, not of jax\.random\.key"):
+        env.reset(jax.random.split(jax.random.key(0), 3))
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_brax_trainers_run_with_the_lines_that_as_brax_gives(monkeypatch):
+    """And not without them: once Brax follows JAX, the lines go."""
+    from brax.training.agents.ppo import networks, train
+    from brax.training.pmap import bcast_local_devices
+
+    from hybrid_rl.envs import as_brax
+
+    with pytest.raises(AttributeError, match="device_put_replicated"):
+        bcast_local_devices(0.0)
+    lines = re.findall(
+        r"^    jax\.device_put_replicated = .*?^    \)$", as_brax.__doc__, re.M | re.S
+    )
+    monkeypatch.setattr(jax, "device_put_replicated", None, raising=False)  # undone at the end
+    exec(textwrap.dedent(lines[0]), {"jax": jax})
+    few = partial(
+        networks.make_ppo_networks,
+        policy_hidden_layer_sizes=(8,),
+        value_hidden_layer_sizes=(8,),
+    )
+    with jax.numpy_rank_promotion("allow"):
+        make, params, _ = train.train(
+            as_brax.World(Pendulum()),
+            num_timesteps=64,
+            episode_length=8,
+            num_envs=4,
+            batch_size=4,
+            num_minibatches=1,
+            unroll_length=4,
+            num_updates_per_batch=1,
+            network_factory=few,
+            run_evals=False,
+        )
+        action, _ = make(params, deterministic=True)(jnp.ones(3), jax.random.PRNGKey(0))
+    assert action.shape == (1,)
+    assert np.isfinite(action).all()
