@@ -150,7 +150,7 @@ def _camera(model: mujoco.MjModel) -> mujoco.MjvCamera:
 
 def _told(pictures: Iterable[np.ndarray], total: int) -> Iterator[np.ndarray]:
     """The same pictures, with progress on the terminal."""
-    with Progress(total, label="drawing") as progress:
+    with Progress(total, label="drawing", unit="pictures") as progress:
         for number, picture in enumerate(pictures, 1):
             yield picture
             progress.update(number, {})

@@ -4,6 +4,11 @@ mode: full (planner and policy together), policy (learned policy alone), planner
 model alone). No exploration, learners as they were at the newest checkpoint.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import json
 from dataclasses import dataclass
 from functools import partial
