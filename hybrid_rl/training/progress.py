@@ -119,8 +119,8 @@ class Progress:
                 print(text, flush=True)
 
     def seconds_left(self) -> float | None:
-        """[s] to go at the present speed; None before there is one."""
-        if len(self._clock) < 2:
+        """[s] to go at the present speed; None before there is one, and at the end."""
+        if len(self._clock) < 2 or self.step >= self.total:
             return None
         (then, before), (now, step) = self._clock[0], self._clock[-1]
         return (self.total - step) * (now - then) / (step - before) if step > before else None

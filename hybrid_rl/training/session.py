@@ -75,7 +75,8 @@ class Session:
 
     def begin(self) -> None:
         """Start from the first state."""
-        self.state = self.loop.init()
+        with self.progress.doing("starting"):
+            self.state = self.loop.init()
         self.returns = [[] for _ in self.loop.seeds]
         self.final_eval = [None for _ in self.loop.seeds]
 
