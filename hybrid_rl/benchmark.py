@@ -16,6 +16,11 @@ Keys of the method's own parts change it. What is compared is run in turns (hybr
 A table is printed; the numbers are written as JSON, and drawn beside it.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import json
 import subprocess
 import sys

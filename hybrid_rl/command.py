@@ -4,7 +4,6 @@ Exit codes: 0 done; 2 bad usage; 130 and 143 after Ctrl-C and SIGTERM; 1 any oth
 """
 
 import os
-import signal
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +13,7 @@ from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
+from hybrid_rl import interrupt
 from hybrid_rl.config import CONF, SHOW, UsageError
 
 
@@ -28,19 +28,18 @@ def hydra_main(job: Callable[[DictConfig], None]) -> None:
         job(config)
 
     def alone(config: DictConfig) -> None:  # ends here, before Hydra adds lines of its own
-        guarded(lambda: checked(config))
+        _reported(lambda: checked(config))
 
     for key in (text.removesuffix("=null") for text in sys.argv if text.endswith("=null")):
         if key != "experiment" and options(key):
             _fail(2, f"{key}=null: choose one of {', '.join(options(key))}")
-    signal.signal(signal.SIGTERM, lambda *_: _fail(143, "terminated"))  # until a run listens
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except (HydraException, OmegaConfBaseException) as error:
         report(error)
     except KeyboardInterrupt:
-        _fail(130, "interrupted")
+        _interrupted()
 
 
 def report(error: Exception) -> NoReturn:
@@ -155,10 +154,21 @@ def count(key: str, text: str, even: bool = False, least: int = 1) -> int:
 
 
 def guarded(job: Callable[[], None]) -> None:
-    """Run `job`; what goes wrong becomes one line and an exit code."""
+    """Run `job`; what goes wrong becomes one line and an exit code, after it has cleaned up."""
+    with interrupt.tidily():
+        _reported(job)
+
+
+def _reported(job: Callable[[], None]) -> None:
     try:
         job()
     except Exception as error:
         report(error)
     except KeyboardInterrupt:
-        _fail(130, "interrupted")
+        _interrupted()
+
+
+def _interrupted() -> NoReturn:
+    if interrupt.installed():
+        interrupt.leave()
+    _fail(130, "interrupted")

@@ -6,6 +6,11 @@ it is what was learned there (mode: full, policy or planner; the first seed), wi
 Episode i begins by the key i of `seed`.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path

@@ -8,6 +8,11 @@
 The numbers drawn are written beside the picture, as JSON.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path

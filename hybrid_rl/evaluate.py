@@ -11,6 +11,11 @@ actions, in any loop that has observations:
     action = policy(obs)  # [m] in [-1, 1]
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import json
 from dataclasses import dataclass
 from functools import partial

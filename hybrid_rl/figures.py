@@ -10,6 +10,11 @@ drawn are written beside the picture, as JSON; what they come to is printed: las
 the run (the area under the curve), decisions to threshold=, and who is ahead of whom.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import itertools
 import json
 import math

@@ -15,6 +15,11 @@ flight and to the fewest trials. The numbers are written beside the picture, as 
     tracking     mean distance to the target over the flight [m]
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import glob
 import json
 from pathlib import Path

@@ -3,6 +3,11 @@
 What each is stands in the first comment of its YAML file.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import sys
 from pathlib import Path
 

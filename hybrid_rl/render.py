@@ -9,6 +9,11 @@ The episode is the first of the run's own evaluation: same key, no exploration. 
 played by the task's expert, which is written by hand.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

@@ -7,6 +7,11 @@ Best value over measurements and the Lyapunov function over time, median and ran
 and the measurements of the first trial of each method. The numbers are written beside it, as JSON.
 """
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import json
 from pathlib import Path
 from typing import Any

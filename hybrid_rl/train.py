@@ -1,5 +1,10 @@
 """`python -m hybrid_rl.train task=T algo=A [key=value ...]`: one run, or a sweep with -m."""
 
+if __name__ == "__main__":
+    from hybrid_rl import interrupt
+
+    interrupt.install()
+
 import sys
 from collections.abc import Mapping
 from datetime import datetime
@@ -11,15 +16,17 @@ from typing import Any
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import command
+from hybrid_rl import command, interrupt
 from hybrid_rl import config as configuration
 from hybrid_rl.config import UNKNOWN, Run, UsageError
-from hybrid_rl.training import checkpoint, provenance
+from hybrid_rl.training import checkpoint, divergence, provenance
 from hybrid_rl.training.log import RunLog
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.manifest import write_text
 from hybrid_rl.training.progress import Progress
-from hybrid_rl.training.session import Schedule, Session
+from hybrid_rl.training.rows import DivergenceError
+from hybrid_rl.training.schedule import Schedule
+from hybrid_rl.training.session import Session
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
@@ -32,7 +39,7 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
 
     Raises:
         UsageError: where the configuration makes no run.
-        DivergenceError: where a learner reached NaN or infinity.
+        DivergenceError: where every learner reached NaN or infinity.
         CheckpointError: where a checkpoint could not be written or read.
     """
     config = _settings(config, asked)
@@ -43,7 +50,7 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
     folder = _folder(config)
     with (
         RunLog(folder, run.seeds) as log,
-        Progress(config.total_steps, label=label) as progress,
+        _progress(config, run, label) as progress,
     ):
         progress.note(f"{label}: run folder {folder}\n{memory}")
         loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
@@ -54,10 +61,28 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
             session.resume()
         kept = OmegaConf.merge(config, {"resume": None})  # a resumed run may have become longer
         write_text(folder / "config.yaml", OmegaConf.to_yaml(kept))
-        session.run()
+        return _run(config, session)
+
+
+def _run(config: DictConfig, session: Session) -> dict[str, Any]:
+    """Run `session` to its end, or to a signal; what summary.json holds."""
+    session.compile()
+    with interrupt.answered(session.ask):
+        try:
+            session.run()
+        except DivergenceError:
+            session.log.summary(_summary(config, session))
+            raise
         summary = _summary(config, session)
-        log.summary(summary)
+        session.log.summary(summary)
     return summary
+
+
+def _progress(config: DictConfig, run: Run, label: str) -> Progress:
+    """The display of a run whose last round may end beyond `total_steps`."""
+    rounds = -(-config.total_steps // config.num_envs)
+    steady = max(run.agent.changes())
+    return Progress(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
 
 
 def _settings(config: DictConfig, asked: Mapping[str, str]) -> DictConfig:
@@ -159,17 +184,18 @@ def _schedule(config: DictConfig) -> Schedule:
 
 def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
     """What summary.json holds."""
-    learners = len(session.loop.seeds)
     return {
         "task": config.task,
         "algo": config.algo,
         "seeds": list(session.loop.seeds),
         "total_steps": session.step,
-        "finished": session.step >= config.total_steps,
+        "finished": session.finished,
         "final_return": session.final_returns(),
+        "final_eval": session.final_evaluations(),
+        "diverged": list(session.diverged.ends.values()),
         "wall_s": session.wall_s,
         "compile_s": session.loop.compile_s,
-        "env_steps_per_s": session.step * learners / session.wall_s,
+        "env_steps_per_s": session.learning.rate,
         "physics": configuration.physics(config).get("physics"),
         "device": provenance.device(),
         "matmul_precision": config.matmul_precision,
@@ -184,10 +210,26 @@ def _job(config: DictConfig) -> None:
     """One run of the command."""
     given = command.asked(list(HydraConfig.get().overrides.task))
     summary = train(configuration.resolved(config), given)
-    shown = ", ".join("-" if r is None else f"{r:,.1f}" for r in summary["final_return"])
-    print(f"final return: {shown} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
+    print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
     if summary["signal"] is not None:
         sys.exit(128 + summary["signal"])
+    if summary["diverged"]:
+        left = len(summary["seeds"]) - len(summary["diverged"])
+        raise DivergenceError(divergence.line(summary["diverged"], left, None))
+
+
+def _result(summary: Mapping[str, Any]) -> str:
+    """The evaluation and the training return, with the mean over seeds."""
+    said = []
+    for name, each in (("evaluation", "final_eval"), ("training return", "final_return")):
+        values = summary[each]
+        known = [value for value in values if value is not None]
+        text = f"{sum(known) / len(known):,.1f}" if known else "none yet"
+        if known and len(values) > 1:
+            listed = ", ".join("-" if v is None else f"{v:,.1f}" for v in values)
+            text += f" (mean of {len(known)} seeds: {listed})"
+        said.append(f"{name} {text}")
+    return "; ".join(said)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,8 @@ from hybrid_rl import command, demonstrate, evaluate, figures, render
 from hybrid_rl import list as listed
 from hybrid_rl.envs import offscreen
 from hybrid_rl.envs.pendulum import Pendulum
-from hybrid_rl.training import checkpoint, manifest, provenance, session
+from hybrid_rl.training import checkpoint, manifest, provenance, rows, session
+from hybrid_rl.training.evaluate import Evaluations
 
 pytestmark = pytest.mark.xdist_group("errors")
 MAINS = {
@@ -275,7 +276,11 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
         patch.setattr(Pendulum, "step", step)
         line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
         assert call_train(*line) == 1
-    assert only_line(capfd) == "hybrid_rl: seed 0, step 51: world/reward is not finite\n"
+    assert only_line(capfd) == (
+        "hybrid_rl: seed 0, step 51: world/reward is not finite; checkpoint 50 is whole: "
+        "evaluate or resume it, or begin again with a lower learning rate\n"
+    )
+    assert not json.loads((folder / "summary.json").read_text())["finished"]
     assert checkpoint.steps(folder / "checkpoints") == [50]
     assert call_train(f"resume={folder}") == 0
     theirs, ours = (copied / "metrics.jsonl", folder / "metrics.jsonl")
@@ -285,21 +290,22 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
 
 def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
     """A parameter that is no number is not saved."""
-    stride = session.Session._stride
+    advance = session.Session._advance
 
-    def spoilt(self, program):
-        stride(self, program)
+    def spoilt(self):
+        advance(self)
         if self.step == 650:
             leaves, form = jax.tree.flatten(self.state.learners)
             leaves = [jnp.full_like(x, jnp.nan) if x.dtype == jnp.float32 else x for x in leaves]
             self.state = self.state.replace(learners=jax.tree.unflatten(form, leaves))
 
-    monkeypatch.setattr(session.Session, "_stride", spoilt)
-    monkeypatch.setattr(session.rows, "check", lambda *_: None)
+    monkeypatch.setattr(session.Session, "_advance", spoilt)
+    monkeypatch.setattr(rows, "infinite", lambda *_: {})
+    monkeypatch.setattr(Evaluations, "__call__", lambda *_: [{"eval/return": 0.0}])
     assert call_train(f"resume={copied}", "total_steps=700") == 1
     said = only_line(capfd)
     assert said.startswith("hybrid_rl: seed 0, step 700: policy.")
-    assert said.endswith(" is not finite\n")
+    assert " is not finite; checkpoint 600 is whole" in said
     assert checkpoint.steps(copied / "checkpoints") == [500, 600]
 
 

@@ -67,6 +67,21 @@ class Agent:
         """The world's sizes and rate."""
         return self.episode.spec
 
+    def starts(self) -> dict[str, int]:
+        """Decisions before the first gradient step of each learner, a head start left out."""
+        given = self.replay.given(self.num_envs) * self.num_envs
+        return {
+            name: max(
+                0 if learner.early else self.random_steps,
+                self.first_update + learner.batch_size + self.num_envs - given,
+            )
+            for name, learner in self.learners.items()
+        }
+
+    def changes(self) -> set[int]:
+        """Decisions after which a decision takes another time: with planning, with learning."""
+        return {self.random_steps, *self.starts().values()}
+
     def init(self, key: Array) -> AgentState:
         """The state before the first decision. The key is consumed."""
         run, world, *learning = jax.random.split(key, 2 + len(self.learners))
@@ -175,11 +190,9 @@ class Agent:
         """Every learner's state after this decision, and the metrics of their last steps."""
         learned, metrics = {}, {}
         keys = jax.random.split(key, len(states)) if states else []
+        starts = self.starts()
         for k, (name, learner) in zip(keys, self.learners.items(), strict=True):
             count, every = _rhythm(name, learner, self.num_envs)
-            full = learner.batch_size + self.num_envs
-            given = self.replay.given(self.num_envs) * self.num_envs
-            start = max(0 if learner.early else self.random_steps, self.first_update + full - given)
 
             def one(state: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
                 drawing, updating = keys
@@ -193,7 +206,7 @@ class Agent:
                 return state, jax.tree.map(lambda m: m[-1], each)
 
             nothing = _zeros(jax.eval_shape(update, states[name], k)[1])
-            due = (step >= start) & ((step // self.num_envs) % every == 0)
+            due = (step >= starts[name]) & ((step // self.num_envs) % every == 0)
             learned[name], of_this = jax.lax.cond(
                 due, update, lambda state, k, nothing=nothing: (state, nothing), states[name], k
             )

@@ -1,32 +1,49 @@
 """What becomes of episodes under a controller whose parameters stay as they are."""
 
+from collections.abc import Callable, Mapping
+from functools import partial
+from time import perf_counter
+
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loop import SAME, SEEDS, Loop
+from hybrid_rl.training.pace import Pace
 from hybrid_rl.types import Controller, EnvState, Params
 
+EVALUATED = {  # mode -> what its outcomes' names begin with
+    "full": "eval/",
+    "policy": "eval/policy_",
+    "planner": "eval/planner_",
+}
 
-def outcomes(
-    episode: Episode, controller: Controller, params: Params, keys: Array
-) -> dict[str, Array]:
-    """Undiscounted `return` [N] of one episode per key [N], and where the task tells it `success`.
 
-    Success is 1 where the last state counts as one, else 0. All N worlds run side by side until
-    all are done.
-    """
+def begin(episode: Episode, controller: Controller, keys: Array) -> tuple:
+    """One episode per key [N] before its first decision: (states, controller states, keys)."""
     starts, keys = _split(keys)
     env = jax.vmap(episode.reset)(starts)
     rest = controller.init(episode.spec)
     control = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(keys), *x.shape)), rest)
+    return env, control, keys
+
+
+def advance(
+    episode: Episode, controller: Controller, params: Params, carry: tuple, rounds: Array
+) -> tuple:
+    """`carry` of `begin` after at most `rounds` [] more decisions in each episode.
+
+    All N worlds run side by side; one that is done stands still.
+    """
     act = jax.vmap(controller.act, in_axes=(None, 0, 0, 0))
 
     def going(carry: tuple) -> Array:
-        return ~jnp.all(carry[0].done)
+        return (carry[0] < rounds) & ~jnp.all(carry[1].done)
 
     def decide(carry: tuple) -> tuple:
-        env, control, keys = carry
+        i, env, control, keys = carry
         keys, now = _split(keys)
         u, control, _ = act(params, control, env.obs, now)
         after = jax.vmap(episode.step)(env, u)
@@ -37,11 +54,80 @@ def outcomes(
             env,
             after,
         )
-        return frozen, control, keys
+        return i + 1, frozen, control, keys
 
-    env = jax.lax.while_loop(going, decide, (env, control, keys))[0]
-    told = {"success": env.metrics["success"]} if "success" in env.metrics else {}
-    return {"return": env.info["return"], **told}
+    return jax.lax.while_loop(going, decide, (jnp.zeros((), jnp.int32), *carry))[1:]
+
+
+def told(env: EnvState) -> dict[str, Array]:
+    """Undiscounted `return` of each finished episode, and where the task has it `success`.
+
+    Success is 1 where the last state counts as one, else 0.
+    """
+    success = {"success": env.metrics["success"]} if "success" in env.metrics else {}
+    return {"return": env.info["return"], **success}
+
+
+def outcomes(
+    episode: Episode, controller: Controller, params: Params, keys: Array
+) -> dict[str, Array]:
+    """What `told` says [N] of one whole episode per key [N]."""
+    carry = begin(episode, controller, keys)
+    return told(advance(episode, controller, params, carry, jnp.int32(episode.steps))[0])
+
+
+class Evaluations:
+    """Evaluations of all learners of `loop` in every mode; `controllers` are by mode."""
+
+    def __init__(
+        self, loop: Loop, controllers: Mapping[str, Controller], episodes: int, params: Params
+    ) -> None:
+        """Compile all of them; params: [S, ...]."""
+        self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
+        self._evaluators = {
+            mode: Evaluator(loop, controller, params, self.keys)
+            for mode, controller in controllers.items()
+        }
+
+    def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
+        """For each learner the mean of every outcome; None as soon as `cut` is true."""
+        found: dict[str, np.ndarray] = {}  # [S]
+        for mode, evaluator in self._evaluators.items():
+            got = evaluator(params, self.keys, cut)
+            if got is None:
+                return None
+            found |= {EVALUATED[mode] + name: each.mean(-1) for name, each in got.items()}
+        return [{name: float(m[s]) for name, m in found.items()} for s in range(len(self.keys))]
+
+
+class Evaluator:
+    """Episodes of every learner of `loop` under `controller`, in calls of a few seconds at most.
+
+    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode.
+    """
+
+    def __init__(self, loop: Loop, controller: Controller, params: Params, keys: Array) -> None:
+        self.steps = loop.agent.episode.steps
+        first = partial(begin, loop.agent.episode, controller)
+        more = partial(advance, loop.agent.episode, controller)
+        program = loop.spread(jax.vmap(first), SEEDS, SEEDS)
+        self._begin = program.lower(keys).compile()
+        takes = SEEDS, SEEDS, SAME
+        program = loop.spread(jax.vmap(more, (0, 0, None)), takes, SEEDS, donate_argnums=1)
+        self._advance = program.lower(params, self._begin(keys), jnp.int32(0)).compile()
+
+    def __call__(
+        self, params: Params, keys: Array, cut: Callable[[], bool]
+    ) -> dict[str, np.ndarray] | None:
+        """What `told` says [S, N]; None as soon as `cut` is true."""
+        carry, pace = self._begin(keys), Pace()
+        while not np.asarray(carry[0].done).all():
+            if cut():
+                return None
+            rounds, began = pace.rounds(self.steps), perf_counter()
+            carry = jax.block_until_ready(self._advance(params, carry, jnp.int32(rounds)))
+            pace.took(rounds, perf_counter() - began)
+        return {name: np.asarray(value) for name, value in told(carry[0]).items()}
 
 
 def rollout(

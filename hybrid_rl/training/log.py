@@ -52,12 +52,16 @@ class RunLog:
         self._rows.close()
 
     def write(self, rows: list[dict[str, Any]]) -> None:
-        """Appends rows {"step", "seed", "wall_s", name: number, ...}."""
+        """Appends rows {"step", "seed", "wall_s", name: number or word, ...}."""
         for row in rows:
-            plain = {name: number(value) for name, value in row.items()}
+            plain = {n: v if isinstance(v, str) else number(v) for n, v in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
             self._rows.write(json.dumps(plain, allow_nan=False).encode("ascii") + b"\n")
-            scalars = {n: v for n, v in plain.items() if n not in PLACE and v is not None}
+            scalars: dict[str, float] = {
+                n: v
+                for n, v in plain.items()
+                if n not in PLACE and v is not None and not isinstance(v, str)
+            }
             self._board(int(row["seed"])).write(int(row["step"]), scalars)
         self._rows.flush()
 

@@ -15,6 +15,7 @@ import numpy as np
 from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
+from hybrid_rl.training import provenance
 from hybrid_rl.training.agent import Agent, AgentState, once
 
 # On a CPU Eigen's matrix products take a sixth less time than those of YNNPACK, XLA's own choice.
@@ -47,6 +48,14 @@ class Loop:
         count = max(n for n in range(1, len(devices) + 1) if len(self.seeds) % n == 0)
         return Mesh(np.array(devices[:count]), ("seeds",))
 
+    @property
+    def idle(self) -> str:
+        """What to say where the learners do not divide among the devices; else nothing."""
+        used, there, learners = self.mesh.size, jax.local_device_count(), len(self.seeds)
+        if used == there:
+            return ""
+        return f" {learners} learners divide evenly over {used} of its {there} devices only"
+
     def spread(self, f: Callable[..., Any], takes: Any, gives: Any, **how: Any) -> Any:
         """`jit(f)`, run on every device with its share of what has learners as an axis."""
         parts: Any = jax.shard_map(
@@ -57,6 +66,15 @@ class Loop:
     def place(self, state: AgentState) -> AgentState:
         """`state`, which was read from a file, on the devices."""
         return jax.device_put(state, NamedSharding(self.mesh, SEEDS))
+
+    def replaced(self, state: AgentState, number: int, learner: AgentState) -> AgentState:
+        """`state` with `learner` [...] in row `number`; the memory of `state` is used again."""
+        put = jax.jit(
+            lambda rows, row: jax.tree.map(lambda x, y: x.at[number].set(y), rows, row),
+            donate_argnums=0,
+            out_shardings=NamedSharding(self.mesh, SEEDS),
+        )
+        return put(state, learner)
 
     def init(self) -> AgentState:
         """The stacked states [S, ...] before the first decision."""
@@ -86,6 +104,16 @@ class Loop:
             return 0.0
         arrays = used.argument_size_in_bytes + used.output_size_in_bytes - used.alias_size_in_bytes
         return float(arrays + used.temp_size_in_bytes)
+
+    def check_memory(self, program: Any) -> None:
+        """Raise MemoryError, with how many learners would fit, where these do not."""
+        need, have = self.memory(program), provenance.memory()
+        if need > have:
+            learners = len(self.seeds)
+            raise MemoryError(
+                f"num_seeds={learners}: the program would take {need / 1e9:,.1f} GB of a device "
+                f"and there are {have / 1e9:,.1f} GB; about {int(learners * have / need)} would fit"
+            )
 
     def _advance(
         self, state: AgentState, start: Array, rounds: Array

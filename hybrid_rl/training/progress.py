@@ -1,8 +1,11 @@
 """How a run is doing, on the terminal: a live bar, or plain lines in a file."""
 
 import sys
+import threading
 import time
 from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Self
 
@@ -13,32 +16,39 @@ from rich.progress import Progress as Bar
 from rich.text import Text
 
 WINDOW = 30.0  # [s] over which the speed is measured
-PAUSE = 5.0  # [s] between two plain lines, at first
-PATIENCE = 0.01  # and later this share of the time gone by
-LONGEST = 60.0  # [s] but never more than this
+PAUSE = 8.0  # [s] between two plain lines
 SHOWN = {  # scalar -> how it reads
     "train/return": "return {:,.1f}",
     "eval/return": "eval {:,.1f}",
     "eval/success": "success {:.0%}",
-    "perf/env_steps_per_s": "{:,.0f} steps/s",
+    "perf/env_steps_per_s": "{} decisions/s",
 }
 
 
 class Progress:
-    """Steps done of `total` [decisions], the latest scalars, speed, time left.
+    """Steps done of `total`, the latest scalars, speed, time left; a line at least every 10 s.
+
+    unit: what a step is; steady: the step from which on the speed says how long the rest takes.
 
     with Progress(total, start, "halfcheetah sac") as progress:
-        progress.note("compiling ...")
+        with progress.doing("compiling"):
+            ...
         progress.update(step, {"train/return": 12.0})
     """
 
-    def __init__(self, total: int, start: int = 0, label: str = "", unit: str = "steps") -> None:
-        self.total, self.step, self.label, self.unit = total, start, label, unit
-        self._scalars: dict[str, float] = {}
+    def __init__(
+        self, total: int, start: int = 0, label: str = "", unit: str = "steps", steady: int = 0
+    ) -> None:
+        self.total, self.step, self.label = total, start, label
+        self.unit, self.steady = unit, steady
+        self._scalars: dict[str, tuple[float, int]] = {}  # name -> value, step
         self._clock: deque[tuple[float, int]] = deque()  # ([s], step), the last WINDOW
-        self._began = self._spoke = 0.0  # [s] start, and latest plain line
+        self._spoke: float | None = None  # [s] latest plain line, or the start
         self._unsaid = False
+        self._task_now: tuple[str, float] | None = None  # what is going on, since when [s]
         self._live: Live | None = None
+        self._lock = threading.RLock()
+        self._ended = threading.Event()
 
     def __enter__(self) -> Self:
         self._began = time.monotonic()
@@ -54,6 +64,9 @@ class Progress:
             self._task = self._bar.add_task(self.label, total=self.total, completed=self.step)
             self._live = Live(get_renderable=self._picture, console=console, refresh_per_second=4)
             self._live.start()
+            console.show_cursor(True)  # nothing to undo where the process ends at once
+        else:
+            threading.Thread(target=self._beat, daemon=True).start()
         return self
 
     def __exit__(
@@ -62,66 +75,92 @@ class Progress:
         problem: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self._ended.set()
         if self._live is not None:
             self._live.stop()
             self._live = None
         elif self._unsaid:
             self._say()
 
-    def update(self, step: int, scalars: dict[str, float]) -> None:
-        """Tells where the run is; a scalar that is not given keeps its latest value."""
+    def update(self, step: int, scalars: dict[str, float], say: bool | None = None) -> None:
+        """Shows where the run is; a scalar that is not given keeps its latest value.
+
+        say: whether a plain line is due; None: where the last one is PAUSE ago.
+        """
         now = time.monotonic()
         self.step = step
-        self._scalars |= scalars
-        self._clock.append((now, step))
+        self._scalars |= {name: (value, step) for name, value in scalars.items()}
+        if step >= self.steady:
+            self._clock.append((now, step))
         while len(self._clock) > 2 and self._clock[1][0] < now - WINDOW:
             self._clock.popleft()
         if self._live is not None:
             self._bar.update(self._task, completed=step)
             return
-        pause = min(max(PAUSE, PATIENCE * (now - self._began)), LONGEST)
         self._unsaid = True
-        if not self._spoke or now - self._spoke >= pause or step >= self.total:
+        if say or (say is None and (self._spoke is None or now - self._spoke >= PAUSE)):
             self._say()
+
+    @contextmanager
+    def doing(self, what: str) -> Iterator[None]:
+        """What goes on meanwhile, for lines that come without an update."""
+        self._task_now = what, time.monotonic()
+        try:
+            yield
+        finally:
+            self._task_now = None
 
     def note(self, text: str) -> None:
         """A line that stays."""
         if self._live is not None:
             self._live.console.print(text, markup=False, highlight=False)
         else:
-            print(text, flush=True)
+            with self._lock:
+                print(text, flush=True)
 
     def seconds_left(self) -> float | None:
-        """[s] to go at the present speed; None before there is one."""
-        if len(self._clock) < 2:
+        """[s] to go at the present speed; None before there is one, and at the end."""
+        if len(self._clock) < 2 or self.step >= self.total:
             return None
         (then, before), (now, step) = self._clock[0], self._clock[-1]
         return (self.total - step) * (now - then) / (step - before) if step > before else None
 
+    def _beat(self) -> None:
+        """A plain line whenever none came for PAUSE, also while a slow call is running."""
+        while not self._ended.wait(1.0):
+            if time.monotonic() - (self._spoke or self._began) >= PAUSE:
+                self._say()
+
     def _say(self) -> None:
         """One plain line."""
-        share = self.step / self.total if self.total else 1.0
-        count = f"{self.step:,}/{self.total:,} ({share:.0%})"
-        print("  ".join([self.label, count, *self._numbers()]).strip(), flush=True)
-        self._spoke, self._unsaid = time.monotonic(), False
+        with self._lock:
+            share = self.step / self.total if self.total else 1.0
+            count = f"{self.step:,}/{self.total:,} ({share:.0%})"
+            print("  ".join([self.label, count, *self._numbers(False)]).strip(), flush=True)
+            self._spoke, self._unsaid = time.monotonic(), False
 
-    def _numbers(self) -> list[str]:
-        """The latest of everything, in words."""
-        known = [
-            text.format(self._scalars[name])
-            for name, text in SHOWN.items()
-            if name in self._scalars
-        ]
+    def _numbers(self, old: bool) -> list[str]:
+        """The latest of everything, in words. old: also an evaluation of an earlier step."""
+        known = []
+        for name, text in SHOWN.items():
+            value, at = self._scalars.get(name, (None, 0))
+            now = at == self.step or not name.startswith("eval/")
+            if value is not None and (now or old):
+                shown = rate(value) if name.startswith("perf/") else value
+                known.append(text.format(shown) + ("" if now else f" at {at:,}"))
         left = self.seconds_left()
-        if left is None:
-            return known
-        if "perf/env_steps_per_s" not in self._scalars and left > 0:
-            known.append(f"{(self.total - self.step) / left:,.0f} {self.unit}/s")
-        return [*known, f"{clock(left)} left"]
+        if left is not None:
+            if "perf/env_steps_per_s" not in self._scalars and left > 0:
+                known.append(f"{rate((self.total - self.step) / left)} {self.unit}/s")
+            known.append(f"{clock(left)} left")
+        if self._task_now is not None:
+            what, since = self._task_now
+            known.append(f"{what} for {clock(time.monotonic() - since)}")
+        return known
 
     def _picture(self) -> Group:
         """The live display: the bar, and the numbers below it."""
-        return Group(self._bar, Text("  ".join(self._numbers()) or " ", style="cyan"))
+        return Group(self._bar, Text("  ".join(self._numbers(True)) or " ", style="cyan"))
 
 
 class _Count(TextColumn):
@@ -129,6 +168,11 @@ class _Count(TextColumn):
 
     def render(self, task: Task) -> Text:
         return Text(f"{int(task.completed):,}/{int(task.total or 0):,}", style="green")
+
+
+def rate(value: float) -> str:
+    """A speed: 52,000 or 3.7."""
+    return f"{value:,.0f}" if value >= 9.95 else f"{value:.1f}"
 
 
 def clock(seconds: float) -> str:

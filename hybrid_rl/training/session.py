@@ -1,52 +1,39 @@
 """The host's side of a run: decide, log, evaluate, save, until the end or a signal.
 
-Strides end at the multiples of `log_every`, `eval_every` and `checkpoint_every`, and there
-alone a signal is heard: a run that was stopped and resumed has the rows of one that was not.
+Rows of means end at the multiples of `log_every`, `eval_every` and `checkpoint_every`. The
+compiled program is called for a second or two at a time, and a run can stop between two calls:
+its checkpoint has the metrics since the last row, so that a run that was stopped and resumed
+has the rows of one that was not.
 """
 
-import signal
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
-from functools import partial
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from time import monotonic, perf_counter
+from types import MappingProxyType
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.training import checkpoint, provenance, rows
-from hybrid_rl.training.evaluate import evaluation_keys, outcomes
+from hybrid_rl.training import divergence, provenance, rows
+from hybrid_rl.training.divergence import Diverged
+from hybrid_rl.training.evaluate import Evaluations
 from hybrid_rl.training.log import RunLog
-from hybrid_rl.training.loop import SEEDS, Loop
-from hybrid_rl.training.progress import Progress
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.pace import Pace, Speed
+from hybrid_rl.training.progress import Progress, clock, rate
+from hybrid_rl.training.schedule import Schedule
+from hybrid_rl.training.store import Store
 from hybrid_rl.types import Controller, Params
 
-EVALUATED = {  # mode -> what its outcomes' names begin with
-    "full": "eval/",
-    "policy": "eval/policy_",
-    "planner": "eval/planner_",
-}
-
-
-@dataclass(frozen=True)
-class Schedule:
-    """What happens when, in decisions of each learner."""
-
-    total_steps: int
-    log_every: int
-    eval_every: int
-    eval_episodes: int
-    eval_modes: tuple[str, ...]
-    checkpoint_every: int
-    checkpoint_replay: bool
+NOTHING: Mapping[str, float] = MappingProxyType({})
+SURE = 100  # decisions with learning after which the time of the whole run is estimated
 
 
 @dataclass
 class Session:
-    """One run on its way."""
+    """One run on its way: `begin` or `resume`, then `compile`, then `run`."""
 
     loop: Loop
     controllers: Mapping[str, Controller]  # mode -> controller without exploration
@@ -58,9 +45,23 @@ class Session:
     before_s: float = 0.0  # [s] in earlier sessions
     began: float = field(default_factory=monotonic)
     returns: list[list[tuple[int, float]]] = field(default_factory=list)  # per seed: (step, return)
-    latest: dict[str, float] = field(default_factory=dict)  # for the display
-    evaluators: dict[str, Any] = field(default_factory=dict)  # mode -> compiled
+    final_eval: list[float | None] = field(default_factory=list)  # per seed: the latest, mode full
+    learning: Speed = field(default_factory=Speed)  # over all sessions of the run
     stop: int | None = None  # the signal that asked for an end
+    unevaluated: bool = False  # an evaluation is due at this step
+    saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
+    gathered: rows.Gathered = field(default_factory=rows.Gathered)  # since the last row of means
+    recent: Speed = field(default_factory=Speed)  # since then
+    trial: Speed | None = field(default_factory=Speed)  # until the whole run's time is estimated
+    pace: Pace = field(default_factory=Pace)
+    program: Any = None  # compiled
+    evaluations: Evaluations | None = None  # compiled
+
+    def __post_init__(self) -> None:
+        """What the parts above make."""
+        folder = self.log.run_dir / "checkpoints"
+        self.store = Store(folder, self.loop, self.schedule.checkpoint_replay)
+        self.diverged = Diverged(self.loop, self.store)
 
     @property
     def wall_s(self) -> float:
@@ -68,13 +69,16 @@ class Session:
         return self.before_s + monotonic() - self.began
 
     @property
-    def _checkpoints(self) -> Path:
-        return self.log.run_dir / "checkpoints"
+    def finished(self) -> bool:
+        """Whether all decisions are made, and evaluated."""
+        return self.step >= self.schedule.total_steps and not self.unevaluated
 
     def begin(self) -> None:
         """Start from the first state."""
-        self.state = self.loop.init()
+        with self.progress.doing("starting"):
+            self.state = self.loop.init()
         self.returns = [[] for _ in self.loop.seeds]
+        self.final_eval = [None for _ in self.loop.seeds]
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint.
@@ -82,194 +86,208 @@ class Session:
         Raises:
             CheckpointError: where there is none, or it is of another run.
         """
-        like = jax.eval_shape(self.loop.init).replace(memory=None)
-        found = checkpoint.restore(self._checkpoints, like, part=True)
-        self.step, self.state, meta, notes = found
-        if self.schedule.checkpoint_replay:
-            self.state = self.state.replace(memory=self._remembered(meta["capacity"]))
-        else:
+        self.state, self.gathered, meta, notes = self.store.restore()
+        self.step = self.progress.step = meta["step"]
+        if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
-            self.state = self.state.replace(memory=self.loop.init().memory)
             notes = [*notes, "no replay memory in checkpoints: it goes on, but not bit for bit"]
-        for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
-            self.progress.note(note)
-        self.state = self.loop.place(self.state)
         self.before_s = meta["wall_s"]
         self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
+        self.final_eval = meta.get("final_eval", [None for _ in self.loop.seeds])
+        self.learning = Speed(**meta.get("learning", {}))
+        self.unevaluated = meta.get("unevaluated", False)
+        self.saved = self.step, self.unevaluated
+        self.diverged.resume(meta.get("diverged", []))
+        for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
+            self.progress.note(note)
         self.progress.note(f"going on from step {self.step:,}")
 
-    def _remembered(self, capacity: int) -> Any:
-        """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
-
-        A longer run has a larger one. What was bounded by the run's length has not come round
-        yet, so that new rows at its end are all that it takes.
-        """
-        agent = self.loop.agent
-        then = replace(agent, replay=replace(agent.replay, capacity=capacity))
-        like = jax.eval_shape(replace(self.loop, agent=then).init)
-        alone = like.replace(env=None, control=None, learners=None, key=None)
-        memory = checkpoint.restore(self._checkpoints, alone, self.step, part=True)[1].memory
-
-        def grown(old: jax.Array, now: Any) -> jax.Array:
-            ends = zip(old.shape, now.shape, strict=True)
-            return jnp.pad(old, [(0, size - filled) for filled, size in ends])
-
-        return jax.tree.map(grown, memory, jax.eval_shape(self.loop.init).memory)
-
-    def run(self) -> None:
-        """Advance to the end or to a signal; the last state is always saved.
+    def compile(self) -> None:
+        """Make all programs that `run` calls.
 
         Raises:
-            DivergenceError: where a learner reached NaN or infinity.
-            CheckpointError: where a checkpoint could not be written.
             MemoryError: where a device has too little memory for the learners.
         """
-        if self.step >= self.schedule.total_steps:
+        if self.finished:
             return
-        with self._signals():
-            self.progress.note(f"compiling on {provenance.device()} ...{self._idle()}")
-            program = self.loop.compile(self.state)
-            self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
-            self._check_memory(program)
-            saved = None
-            while self.step < self.schedule.total_steps and self.stop is None:
-                self._stride(program)
-                if self.stop is not None:
-                    self.progress.note("stopping, with a checkpoint ...")
-                if self._due(self.schedule.eval_every):
-                    self._evaluate()
-                if self._due(self.schedule.checkpoint_every):
-                    self._save()
-                    saved = self.step
-            if saved != self.step:
+        plan = self.schedule
+        self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle}")
+        with self.progress.doing("compiling"):
+            self.program = self.loop.compile(self.state)
+            self.loop.check_memory(self.program)
+            began = perf_counter()
+            modes = {mode: self.controllers[mode] for mode in plan.eval_modes}
+            params = self._params()
+            self.evaluations = Evaluations(self.loop, modes, plan.eval_episodes, params)
+            self.loop.compile_s += perf_counter() - began
+        self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
+
+    def ask(self, number: int) -> None:
+        """Signal `number` asks for an end: with a checkpoint, after the call that is running."""
+        self.stop = number
+        self.progress.note("stopping, with a checkpoint ...")
+
+    def run(self) -> None:
+        """Advance to the end or until `ask`; the last state is always saved.
+
+        Raises:
+            DivergenceError: where the last learner reached NaN or infinity.
+            CheckpointError: where a checkpoint could not be written.
+        """
+        plan, worlds = self.schedule, self.loop.agent.num_envs
+        total, random = plan.total_steps, self.loop.agent.random_steps
+        if total <= random:
+            self.progress.note(f"all {total:,} decisions are random: random_steps={random}")
+        while not self.finished and self.stop is None:
+            if not self.unevaluated:
+                self._advance()
+            if self.unevaluated:
+                self._evaluate()
+            if not self.unevaluated and plan.due(plan.checkpoint_every, self.step, worlds):
                 self._save()
+        if self.saved != (self.step, self.unevaluated):
+            self._save()
 
-    def _check_memory(self, program: Any) -> None:
-        """Raise MemoryError, with how many learners would fit, where these do not."""
-        need, have = self.loop.memory(program), provenance.memory()
-        if need > have:
-            learners = len(self.loop.seeds)
-            raise MemoryError(
-                f"num_seeds={learners}: the program would take {need / 1e9:,.1f} GB of a device "
-                f"and there are {have / 1e9:,.1f} GB; about {int(learners * have / need)} would fit"
-            )
-
-    def _idle(self) -> str:
-        """What to say where the learners do not divide among the devices."""
-        used, there = self.loop.mesh.size, jax.local_device_count()
-        if used == there:
-            return ""
-        learners = len(self.loop.seeds)
-        return f" {learners} learners divide evenly over {used} of its {there} devices only"
-
-    def _due(self, every: int) -> bool:
-        """Whether a multiple of `every`, or the end, lies in the last round."""
-        before = self.step - self.loop.agent.num_envs
-        return self.step // every > before // every or self.step >= self.schedule.total_steps
-
-    @contextmanager
-    def _signals(self) -> Iterator[None]:
-        """Ctrl-C and SIGTERM ask for an end at the next row; a second Ctrl-C ends at once."""
-
-        def ask(number: int, frame: Any) -> None:
-            if self.stop == number == signal.SIGINT:
-                raise KeyboardInterrupt
-            self.stop = number
-
-        old = {s: signal.signal(s, ask) for s in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in old.items():
-                signal.signal(number, handler)
-
-    def _stride(self, program: Any) -> None:
-        """Decisions up to the next mark, and their rows."""
-        plan, worlds, seeds = self.schedule, self.loop.agent.num_envs, self.loop.seeds
-        start = self.step
-        marks = [
-            (start // every + 1) * every
-            for every in (plan.log_every, plan.eval_every, plan.checkpoint_every)
-        ]
-        rounds = -(-(min(plan.total_steps, *marks) - start) // worlds)
+    def _advance(self) -> None:
+        """A call of the program, up to the next mark at most, and its rows."""
+        plan, worlds, start = self.schedule, self.loop.agent.num_envs, self.step
+        changes = self.loop.agent.changes()
+        rounds = self.pace.rounds(-(-(plan.until(start, changes) - start) // worlds))
         began = perf_counter()
-        self.state, metrics = program(self.state, jnp.int32(start), jnp.int32(rounds))
+        self.state, metrics = self.program(self.state, jnp.int32(start), jnp.int32(rounds))
         metrics = {name: np.asarray(m)[:rounds] for name, m in metrics.items()}
-        speed = rounds * worlds * len(seeds) / (perf_counter() - began)
-        rows.check(metrics, seeds, start, worlds)
+        took = perf_counter() - began
         self.step += rounds * worlds
-        episodes = rows.episodes(metrics, seeds, start, worlds)
+        self.pace.took(rounds, took)
+        if any(start < change <= self.step for change in changes):
+            self.pace = Pace()
+        if start >= max(changes):
+            self._count(rounds * worlds * self.diverged.left, took)
+        self._keep(metrics, start)
+        due = plan.due(plan.eval_every, self.step, worlds)
+        self.unevaluated = bool(plan.eval_modes) and due
+        self._show(say=False if self.unevaluated else None)
+
+    def _count(self, decisions: int, seconds: float) -> None:
+        """Measure the speed of learning; say once how long the whole run takes."""
+        self.recent.add(decisions, seconds)
+        self.learning.add(decisions, seconds)
+        if self.trial is not None:
+            self.trial.add(decisions, seconds)
+            if self.trial.decisions >= SURE * self.diverged.left and self.trial.rate:
+                left = (self.schedule.total_steps - self.step) * self.diverged.left
+                whole = clock(self.wall_s + left / self.trial.rate)
+                speed, self.trial = rate(self.trial.rate), None
+                self.progress.note(
+                    f"about {whole} for the whole run at {speed} decisions/s, "
+                    "without the evaluations to come"
+                )
+
+    def _keep(self, metrics: rows.Metrics, start: int) -> None:
+        """Write the rows that follow from the rounds after `start`."""
+        seeds, worlds = self.loop.seeds, self.loop.agent.num_envs
+        infinite = rows.infinite(metrics, start, worlds)
+        ended = self._end(infinite)
+        episodes = rows.episodes(metrics, seeds, start, worlds, self.diverged.steps)
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
             self.returns[seeds.index(row["seed"])].append(pair)
-        means = rows.means(metrics, seeds, self.step)
-        perf = {"perf/env_steps_per_s": speed, "perf/compile_s": self.loop.compile_s}
-        self._write(episodes + [row | perf for row in means])
-        newest = [pairs[-1][1] for pairs in self.returns if pairs]
-        shown = {"train/return": float(np.mean(newest))} if newest else {}
-        self._show(shown | {"perf/env_steps_per_s": speed})
+        self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["seed"])))
+        self._go_on(bool(infinite))
+        self.gathered.add(metrics)
+        if self.schedule.row_due(self.step, worlds):
+            means = rows.means(self.gathered.take(), seeds, self.step, self.diverged.ends)
+            perf = {"perf/compile_s": self.loop.compile_s} | self._speed()
+            self._write([row | perf for row in means])
+            self.recent = Speed()
+
+    def _speed(self) -> dict[str, float]:
+        """Decisions of all learners per second since the last row; empty before they learn."""
+        speed = self.recent.rate
+        return {} if speed is None else {"perf/env_steps_per_s": speed}
+
+    def _params(self) -> Params:
+        """What all learners know [S, ...]."""
+        return jax.vmap(self.loop.agent.params)(self.state)
 
     def _evaluate(self) -> None:
-        """Outcomes of every evaluated mode, with keys of their own."""
-        seeds, agent = self.loop.seeds, self.loop.agent
-        params = jax.vmap(agent.params)(self.state)
-        keys = jnp.stack([evaluation_keys(s, self.schedule.eval_episodes) for s in seeds])
-        found = [{"step": self.step, "seed": seed} for seed in seeds]
-        for mode in self.schedule.eval_modes:
-            for name, got in self._evaluator(mode, params, keys)(params, keys).items():
-                means = np.asarray(got).mean(-1)
-                for row, value in zip(found, means, strict=True):
-                    row[EVALUATED[mode] + name] = value
-                self._show({EVALUATED[mode] + name: float(means.mean())})
-        self._write(found)
+        """The outcomes of every evaluated mode, unless a signal comes."""
+        assert self.evaluations is not None
+        with self.progress.doing("evaluating"):
+            found = self.evaluations(self._params(), lambda: self.stop is not None)
+        if found is None:
+            return
+        self.unevaluated = False
+        infinite = {
+            s: (self.step, name)
+            for s, outcome in enumerate(found)
+            for name in reversed(outcome)  # the first of them stays
+            if not np.isfinite(outcome[name])
+        }
+        ended = self._end(infinite)
+        left = {s: found[s] for s in range(len(found)) if s not in self.diverged.ends}
+        place = [{"step": self.step, "seed": seed} for seed in self.loop.seeds]
+        rows_left = [place[s] | outcome for s, outcome in left.items()]
+        self._write(sorted(rows_left + ended, key=lambda row: row["seed"]))
+        self._go_on(bool(ended))
+        for s, outcome in left.items():
+            self.final_eval[s] = outcome.get("eval/return")
+        means = {n: float(np.mean([each[n] for each in left.values()])) for n in found[0]}
+        self._show(means, say=True)
 
-    def _evaluator(self, mode: str, params: Params, keys: jax.Array) -> Any:
-        """The compiled program (params, keys) -> outcomes [S, N] of `mode`."""
-        if mode not in self.evaluators:
-            began = perf_counter()
-            one = partial(outcomes, self.loop.agent.episode, self.controllers[mode])
-            program = self.loop.spread(jax.vmap(one), SEEDS, SEEDS)
-            self.evaluators[mode] = program.lower(params, keys).compile()
-            self.loop.compile_s += perf_counter() - began
-        return self.evaluators[mode]
+    def _end(self, found: Mapping[int, tuple[int, str]]) -> list[rows.Row]:
+        """The rows of learners that diverged just now; found: learner -> (step, quantity)."""
+        new = self.diverged.add(found)
+        if left := self.diverged.left:  # else the error says it
+            for end in new:
+                self.progress.note(divergence.said(end, left))
+        return [
+            {"step": end["step"], "seed": end["seed"], "diverged": end["quantity"]} for end in new
+        ]
+
+    def _go_on(self, mend: bool) -> None:
+        """Raise DivergenceError where no learner is left; mend those that are not sound."""
+        if not self.diverged.left:
+            ends = list(self.diverged.ends.values())
+            raise rows.DivergenceError(divergence.line(ends, 0, self.store.newest))
+        if mend:
+            self.state = self.diverged.mended(self.state)
 
     def _save(self) -> None:
         """A checkpoint of all that the run needs to go on."""
-        self._check_learned()
-        kept = self.schedule.checkpoint_replay
+        self._write(self._end(divergence.unsound(self.state.learners, self.step)))
+        self._go_on(True)
         meta = {
-            "step": self.step,
             "wall_s": self.wall_s,
             "metrics_bytes": self.log.flush(),
             "returns": self.returns,
-            "capacity": self.loop.agent.replay.capacity,
+            "final_eval": self.final_eval,
+            "learning": asdict(self.learning),
+            "unevaluated": self.unevaluated,
+            "diverged": list(self.diverged.ends.values()),
         }
-        state = self.state if kept else self.state.replace(memory=None)
-        checkpoint.save(self._checkpoints, self.step, state, meta)
+        with self.progress.doing("saving"):
+            self.store.save(self.step, self.state, self.gathered, meta)
+        self.saved = self.step, self.unevaluated
 
-    def _check_learned(self) -> None:
-        """Raise DivergenceError where a learned number is not finite."""
-        for path, leaf in jax.tree_util.tree_leaves_with_path(self.state.learners):
-            if jnp.issubdtype(leaf.dtype, jnp.floating):
-                numbers = np.asarray(leaf).reshape(len(self.loop.seeds), -1)
-                for s in np.flatnonzero(~np.isfinite(numbers).all(1))[:1]:
-                    name = jax.tree_util.keystr(path, simple=True, separator=".")
-                    raise rows.DivergenceError(
-                        f"seed {self.loop.seeds[s]}, step {self.step}: {name} is not finite"
-                    )
-
-    def _write(self, found: list[dict[str, Any]]) -> None:
+    def _write(self, found: list[rows.Row]) -> None:
         self.log.write([{**row, "wall_s": self.wall_s} for row in found])
 
-    def _show(self, scalars: dict[str, float]) -> None:
-        self.latest |= scalars
-        self.progress.update(self.step, self.latest)
+    def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:
+        newest = [p[-1][1] for s, p in enumerate(self.returns) if p and s not in self.diverged.ends]
+        shown = {"train/return": float(np.mean(newest))} if newest else {}
+        self.progress.update(self.step, {**shown, **self._speed(), **scalars}, say)
 
     def final_returns(self) -> list[float | None]:
-        """Per seed the mean training return over the last tenth of the run."""
+        """Per seed the mean training return over the last tenth; None where it diverged."""
         tail = self.step - 0.1 * self.schedule.total_steps
         found = []
-        for pairs in self.returns:
+        for s, pairs in enumerate(self.returns):
             values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
-            found.append(float(np.mean(values)) if values else None)
+            sound = bool(values) and s not in self.diverged.ends
+            found.append(float(np.mean(values)) if sound else None)
         return found
+
+    def final_evaluations(self) -> list[float | None]:
+        """Per seed the last evaluation of mode full; None where it diverged."""
+        return [v if s not in self.diverged.ends else None for s, v in enumerate(self.final_eval)]

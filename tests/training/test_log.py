@@ -75,6 +75,13 @@ def test_what_is_not_finite_is_null(tmp_path, bad):
     assert scalars(tmp_path / "tensorboard") == []
 
 
+def test_a_word_is_a_row_but_no_scalar(tmp_path):
+    with RunLog(tmp_path, [0]) as log:
+        log.write([row(3, diverged="sac/q")])
+    assert json.loads(lines(tmp_path)[0])["diverged"] == "sac/q"
+    assert scalars(tmp_path / "tensorboard") == []
+
+
 def test_several_seeds_have_a_board_each(tmp_path):
     with RunLog(tmp_path, [3, 4]) as log:
         log.write([row(1, 3, a=1), row(1, 4, a=2)])
@@ -150,9 +157,16 @@ def test_the_commit_of_another_checkout_is_not_ours(monkeypatch, tmp_path):
     assert provenance.git_commit() == before
 
 
-def test_plain_lines_come_at_once_and_then_rarely(capsys, monkeypatch):
+@pytest.fixture
+def now(monkeypatch):
+    """The clock [s] of a display, in a list; its own thread stands still."""
     now = [100.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(Progress, "_beat", lambda self: None)
+    return now
+
+
+def test_plain_lines_come_at_once_and_then_every_few_seconds(capsys, now):
     with Progress(2000, start=1000, label="hopper sac") as shown:
         shown.note("compiling ...")
         assert capsys.readouterr().out == "compiling ...\n"
@@ -160,20 +174,52 @@ def test_plain_lines_come_at_once_and_then_rarely(capsys, monkeypatch):
             now[0] += 1
             shown.update(step, {"train/return": 12.34, "perf/env_steps_per_s": 5e4, "x": 1.0})
     said = capsys.readouterr().out.splitlines()
-    assert said[0] == "hopper sac  1,010/2,000 (50%)  return 12.3  50,000 steps/s"
-    assert said[1] == "hopper sac  1,060/2,000 (53%)  return 12.3  50,000 steps/s  0:01:34 left"
-    assert [line.split()[2] for line in said[2:]] == ["1,110/2,000", "1,160/2,000", "1,190/2,000"]
+    assert said[0] == "hopper sac  1,010/2,000 (50%)  return 12.3  50,000 decisions/s"
+    assert said[1] == "hopper sac  1,090/2,000 (55%)  return 12.3  50,000 decisions/s  0:01:31 left"
+    assert [line.split()[2] for line in said[2:]] == ["1,170/2,000", "1,190/2,000"]
 
 
-def test_lines_come_more_rarely_in_a_long_run(capsys, monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+def test_a_line_comes_within_ten_seconds_also_in_a_long_run(capsys, now):
     with Progress(10**6) as shown:
-        for step in range(36_000):  # ten hours
+        for step in range(3600):
             now[0] += 1
             shown.update(step, {})
-    assert len(capsys.readouterr().out.splitlines()) < 900
-    assert progress.LONGEST == 60
+            if step == 3000:
+                capsys.readouterr()
+    assert 60 <= len(capsys.readouterr().out.splitlines()) <= 120
+    assert progress.PAUSE + 1 < 10  # the second is the beat's
+
+
+def test_a_line_comes_while_nothing_is_updated(capsys, monkeypatch):
+    """As in a slow call: a thread of its own says it."""
+    monkeypatch.setattr(progress, "PAUSE", 0.0)
+    with Progress(100, label="ant sac") as shown, shown.doing("compiling"):
+        time.sleep(1.2)
+    assert "ant sac  0/100 (0%)  compiling for 0:00:01" in capsys.readouterr().out
+
+
+def test_an_evaluation_is_shown_with_its_own_step(capsys, now):
+    with Progress(1000, label="ant") as shown:
+        shown.update(500, {"train/return": 1.0}, say=False)
+        shown.update(500, {"eval/return": 2.0}, say=True)
+        now[0] += 60
+        shown.update(600, {"train/return": 3.0})
+        assert " ".join(shown._numbers(True)).startswith("return 3.0 eval 2.0 at 500")
+        shown.update(1000, {}, say=False)
+        shown.update(1000, {"eval/return": 4.0}, say=True)
+    assert [line.split("  ")[1:4] for line in capsys.readouterr().out.splitlines()] == [
+        ["500/1,000 (50%)", "return 1.0", "eval 2.0"],
+        ["600/1,000 (60%)", "return 3.0", "1.7 steps/s"],
+        ["1,000/1,000 (100%)", "return 3.0", "eval 4.0"],
+    ]
+
+
+def test_no_speed_is_told_before_it_is_steady(capsys, now):
+    with Progress(1000, steady=500) as shown:
+        for step in (100, 200, 300):
+            now[0] += 9
+            shown.update(step, {})
+    assert "/s" not in capsys.readouterr().out
 
 
 def test_a_terminal_shows_a_bar(monkeypatch):

@@ -1,0 +1,154 @@
+"""Ctrl-C and SIGTERM, from the first moment of a command to its last.
+
+A command calls `install` before it imports anything heavy. From then on a thread hears both
+signals, also while the main thread is in an import, in XLA's compiler or in compiled code:
+
+* by default the process ends at once, with one line on stderr and exit code 130 or 143;
+* within `tidily` the main thread gets KeyboardInterrupt and PATIENCE seconds to clean up; a
+  second signal ends the process at once;
+* within `answered` the first signal asks for an end; Ctrl-C after it ends the process at once,
+  and SIGTERM after it changes nothing.
+
+Nothing is installed by an import. In a program that never calls `install`, such as a notebook,
+`answered` alone has an effect: it sets Python's handlers for its own time.
+"""
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NoReturn
+
+WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+PATIENCE = 3.0  # [s] for the clean-up after KeyboardInterrupt
+
+Ask = Callable[[int], None]
+
+
+class _State:
+    """What a signal does now."""
+
+    installed = False
+    tidily = False
+    ask: Ask | None = None
+    first: int | None = None  # the signal that was heard first in the present state
+    raised: int | None = None  # the signal that became KeyboardInterrupt
+    leaving = threading.Lock()  # never released: the process ends in one thread alone
+
+
+def install() -> None:
+    """Hear both signals from now on; to be called in the main thread of a command."""
+    if _State.installed:
+        return
+    _State.installed = True
+    heard, told = os.pipe()
+    os.set_blocking(told, False)
+    signal.set_wakeup_fd(told, warn_on_full_buffer=False)
+    for number in WORDS:
+        signal.signal(number, _in_the_main_thread)
+    sys.unraisablehook = _unraisable
+    threading.Thread(target=_listen, args=(heard,), name="signals", daemon=True).start()
+
+
+@contextmanager
+def tidily() -> Iterator[None]:
+    """Within, a signal raises KeyboardInterrupt in the main thread of a command."""
+    _State.tidily, _State.first = True, None
+    try:
+        yield
+    finally:
+        _State.tidily = False
+
+
+@contextmanager
+def answered(ask: Ask) -> Iterator[None]:
+    """Within, the first signal calls ask(number), in another thread than the main one.
+
+    Where nothing is installed a second Ctrl-C raises KeyboardInterrupt.
+    """
+    if _State.installed:
+        _State.first, _State.ask = None, ask
+        try:
+            yield
+        finally:
+            _State.ask = None
+    elif threading.current_thread() is threading.main_thread():
+        old = {number: signal.signal(number, _asking(ask)) for number in WORDS}
+        try:
+            yield
+        finally:
+            for number, handler in old.items():
+                signal.signal(number, handler)
+    else:
+        yield
+
+
+def leave(number: int | None = None) -> NoReturn:
+    """End the process at once, with one line and exit code 128 + number.
+
+    number: None stands for the signal that became KeyboardInterrupt.
+    """
+    _State.leaving.acquire()
+    number = number or _State.raised or signal.SIGINT
+    newline = "\n" if os.isatty(2) else ""  # the cursor stands behind ^C
+    try:
+        os.write(2, f"{newline}hybrid_rl: {WORDS[signal.Signals(number)]}\n".encode())
+    finally:
+        os._exit(128 + number)
+
+
+def installed() -> bool:
+    """Whether this process is a command that called `install`."""
+    return _State.installed
+
+
+def _asking(ask: Ask) -> Callable[[int, Any], None]:
+    """Python's handler for a program without `install`."""
+    first: list[int] = []
+
+    def handler(number: int, frame: Any) -> None:
+        if first and number == signal.SIGINT:
+            raise KeyboardInterrupt
+        if not first:
+            first.append(number)
+            threading.Thread(target=ask, args=(number,)).start()
+
+    return handler
+
+
+def _in_the_main_thread(number: int, frame: Any) -> None:
+    """Python's handler: it runs when the main thread is back in Python."""
+    if _State.tidily:
+        _State.raised = _State.raised or number
+        raise KeyboardInterrupt
+
+
+def _listen(heard: int) -> None:
+    """Act on every signal as it comes."""
+    while True:
+        for number in os.read(heard, 1):
+            _act(number)
+
+
+def _act(number: int) -> None:
+    first, _State.first = _State.first, _State.first or number
+    if _State.ask is not None:
+        if first is None:
+            _State.ask(number)
+        elif number == signal.SIGINT:
+            leave(number)
+    elif _State.tidily and first is None:
+        timer = threading.Timer(PATIENCE, leave, (number,))
+        timer.daemon = True
+        timer.start()
+    else:
+        leave(number)
+
+
+def _unraisable(problem: Any) -> None:
+    """End the process where Python would swallow a KeyboardInterrupt: in a destructor, in gc."""
+    if issubclass(problem.exc_type, KeyboardInterrupt):
+        leave()
+    sys.__unraisablehook__(problem)
