@@ -62,3 +62,19 @@ def test_normalised_it_does_not_depend_on_units() -> None:
     moved = policy.observe(first, there)
     np.testing.assert_allclose(policy.mean(moved, there), policy.mean(plain, x), atol=1e-4)
     assert not np.allclose(policy.mean(first, x), policy.mean(plain, x), atol=1e-2)
+
+
+def test_variance_is_as_far_from_the_true_one_as_its_page_says(monkeypatch) -> None:
+    """The table of `variance`, by Gauss and Hermite's quadrature of 200 points."""
+    rows = [line.split() for line in str(TanhGaussian.variance.__doc__).splitlines()]
+    sigmas = np.array(next(row[1:] for row in rows if row[:1] == ["sigma"]), float)
+    table = {float(row[2]): np.array(row[3:], float) for row in rows if row[:2] == ["mu", "="]}
+    assert len(table) == 4
+    z, weights = np.polynomial.hermite_e.hermegauss(200)
+    for mu, wanted in table.items():
+        given = (jnp.full(len(sigmas), mu), jnp.asarray(sigmas))
+        monkeypatch.setattr(TanhGaussian, "gaussian", lambda *_, given=given: given)
+        u = np.tanh(mu + sigmas[:, None] * z)
+        mean, square = (np.average(power, axis=1, weights=weights) for power in (u, u**2))
+        first_order = TanhGaussian().variance({}, jnp.zeros(1))
+        np.testing.assert_allclose(first_order / (square - mean**2), wanted, atol=0.006)
