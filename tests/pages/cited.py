@@ -1,0 +1,266 @@
+"""Numbers that a page cites, found on the page and recomputed from the JSON beside it.
+
+A page's module lists `CITED`: sentences (`Text`) and tables (`Table`) with their values, and
+`PLAIN`: phrases whose numbers are no measurements of ours (settings, sizes, others' results), or
+that were read off once and of which no file was kept. A number is compared as it is printed: the
+value is rounded to the decimals that the page shows.
+"""
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.stats import mannwhitneyu
+
+from hybrid_rl.curves import RESAMPLES, improvement, iqm
+
+ROOT = Path(__file__).resolve().parents[2]
+RESULTS = ROOT / "docs" / "results"
+NUMBER = r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\.\d)"
+# What carries digits and is no number of a result: code, links, references, comments.
+IGNORED = re.compile(
+    r"```.*?```|^    .*?$|`[^`]*`|\]\([^)]*\)|<!--.*?-->|^#.*?$"
+    r"|(?i:\b(?:figures?|tables?|chapter|section|algorithm|theorem|erratum|eq\.)\s+"
+    r"\(?[A-Z]?\d[\d.\-]*\)?(?:(?:,| and| to)\s+\(?[A-Z]?\d[\d.\-]*\)?)*)"
+    r"|\(\d\.\d+\)",
+    re.MULTILINE | re.DOTALL,
+)
+
+
+class Citation(NamedTuple):
+    """A number on a page: where it stands, how it is printed, and how it should be."""
+
+    start: int
+    end: int
+    shown: str
+    right: str
+
+
+@dataclass(frozen=True)
+class Text:
+    """A phrase that stands once on the page; each # is a number, and has its value."""
+
+    phrase: str
+    values: Sequence[float]
+
+    def citations(self, page: str) -> list[Citation]:
+        (match,) = _once(_pattern(self.phrase), page, self.phrase)
+        spans = [match.span(i + 1) for i in range(len(self.values))]
+        return [_citation(page, *span, x) for span, x in zip(spans, self.values, strict=True)]
+
+
+@dataclass(frozen=True)
+class Table:
+    """The table with this header; `values(label, column)` are those of a cell, in its order.
+
+    A cell may show fewer than it has (no band), or nothing. The label is the row's first cell,
+    the column is the header's, both without marks; None: the column has no measurements.
+    """
+
+    header: str
+    values: Callable[[str, str], Sequence[float] | None]
+
+    def citations(self, page: str) -> list[Citation]:
+        columns = [_bare(cell) for cell in self.header.split("|")]
+        first = r"\|\s*" + r"\s*\|\s*".join(re.escape(c.strip()) for c in self.header.split("|"))
+        (match,) = _once(first + r"\s*\|\n\|[-| ]+\|\n((?:\|.*\n?)+)", page, self.header)
+        found, at, label = [], match.start(1), ""
+        for row in match[1].splitlines(keepends=True):
+            cells = list(re.finditer(r"[^|\n]+", row))
+            label = _bare(cells[0][0]) or label
+            for column, cell in zip(columns[1:], cells[1:], strict=True):
+                tokens = list(re.finditer(NUMBER, _without_marks(cell[0])))
+                values = self.values(label, column) if tokens else None
+                if values is None:
+                    continue
+                assert len(tokens) <= len(values), f"{label}, {column}: {cell[0]}"
+                for token, value in zip(tokens, values, strict=False):
+                    offset = at + cell.start()
+                    span = offset + token.start(), offset + token.end()
+                    found.append(_citation(page, *span, value))
+            at += len(row)
+        return found
+
+
+def citations(page: str, cited: Sequence[Text | Table]) -> list[Citation]:
+    """All of a page's text, in its order."""
+    return sorted({found for one in cited for found in one.citations(page)})
+
+
+def uncited(page: str, cited: Sequence[Text | Table], plain: Sequence[str]) -> list[str]:
+    """Numbers of a page's text that are neither cited nor in a phrase of `plain`, in context.
+
+    Raises:
+        AssertionError: where a phrase of `plain` is not on the page.
+    """
+    covered = np.zeros(len(page), bool)
+    spans = [match.span() for match in IGNORED.finditer(page)]
+    spans += [(one.start, one.end) for one in citations(page, cited)]
+    for phrase in plain:
+        matches = list(re.finditer(_pattern(phrase), page))
+        assert matches, f"not on the page: {phrase}"
+        spans += [match.span() for match in matches]
+    for start, end in spans:
+        covered[start:end] = True
+    return [
+        f"{match[0]}: ... {' '.join(page[max(0, match.start() - 60) : match.end() + 40].split())}"
+        for match in re.finditer(NUMBER, page)
+        if not covered[match.start() : match.end()].all()
+    ]
+
+
+def _once(pattern: str, page: str, name: str) -> list[re.Match]:
+    matches = list(re.finditer(pattern, page))
+    assert len(matches) == 1, f"{len(matches)} times on the page: {name}"
+    return matches
+
+
+def _pattern(phrase: str) -> str:
+    """Its spaces are any white space, its # a number that may be bold."""
+    parts = [r"\s+".join(map(re.escape, part.split(" "))) for part in phrase.split("#")]
+    return rf"\*{{0,2}}({NUMBER})\*{{0,2}}".join(parts)
+
+
+def _bare(cell: str) -> str:
+    return re.sub(r"[*`]", "", cell).strip()
+
+
+def _without_marks(cell: str) -> str:
+    """Of the same length, so that positions stay."""
+    return re.sub(r"\*|`[^`]*`", lambda m: " " * len(m[0]), cell)
+
+
+def _citation(page: str, start: int, end: int, value: float) -> Citation:
+    shown = page[start:end]
+    decimals = len(shown.partition(".")[2])
+    comma = "," if "," in shown or len(shown.lstrip("-").partition(".")[0]) < 4 else ""
+    right = f"{value:{comma}.{decimals}f}"
+    return Citation(start, end, shown, right.lstrip("-") if float(value) == 0 else _zero(right))
+
+
+def _zero(text: str) -> str:
+    """-0 is printed as 0."""
+    return text.lstrip("-") if not re.search("[1-9]", text) else text
+
+
+# ---- values ----
+
+
+@cache
+def read(name: str) -> Any:
+    """docs/results/NAME.json."""
+    return json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
+
+
+@dataclass(frozen=True)
+class Curve:
+    """What a figure's JSON holds of one line."""
+
+    x: np.ndarray  # [G]
+    each: np.ndarray  # [S, G]
+    iqm: np.ndarray  # [G], low and high too: recomputed from `each`
+    low: np.ndarray
+    high: np.ndarray
+
+    def at(self, x: float) -> list[float]:
+        """IQM, low and high there."""
+        i = self.index(x)
+        return [float(line[i]) for line in (self.iqm, self.low, self.high)]
+
+    def index(self, x: float) -> int:
+        """Which of the points is x."""
+        (found,) = np.flatnonzero(self.x == x)
+        return int(found)
+
+    def seeds(self, x: float) -> np.ndarray:
+        """[S] what each has there."""
+        return self.each[:, self.index(x)]
+
+    def area(self, end: float | None = None) -> np.ndarray:
+        """[S] mean of each seed's line to `end`; before its first point it has what it had there."""
+        kept = self.x <= (self.x[-1] if end is None else end)
+        x = np.append(0.0, self.x[kept])
+        y = np.concatenate([self.each[:, :1], self.each[:, kept]], axis=1)
+        return np.trapezoid(y, x, axis=1) / x[-1]
+
+
+@cache
+def curve(name: str, label: str, metric: str = "", task: str = "") -> Curve:
+    """The one line of NAME.json of that label (and metric, and task, where there are several)."""
+    (one,) = (
+        line
+        for line in read(name)["curves"]
+        if line["label"] == label
+        and metric in ("", line.get("metric", read(name)["metric"]))
+        and task in ("", line["task"])
+    )
+    each = np.array(one["each"])
+    return Curve(np.array(one["x"]), each, iqm(each), *band(each))
+
+
+def band(each: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What `hybrid_rl.curves.band` gives, all resamples in one array."""
+    draws = np.random.default_rng(0).integers(len(each), size=(RESAMPLES, len(each)))
+    low, high = np.percentile(iqm(each[draws.T]), [2.5, 97.5], axis=0)
+    return low, high
+
+
+def spread(each: np.ndarray) -> list[float]:
+    """IQM, low and high of [S]."""
+    return [float(iqm(each)), *(float(end) for end in band(each))]
+
+
+def ahead(x: np.ndarray, y: np.ndarray) -> list[float]:
+    """[%] of pairs in which x is greater, and the band of it."""
+    return [100 * part for part in improvement(x, y)]
+
+
+def p_value(x: np.ndarray, y: np.ndarray) -> float:
+    """Mann-Whitney's, two-sided."""
+    return float(mannwhitneyu(x, y).pvalue)
+
+
+def significant(value: float, digits: int) -> float:
+    """Rounded to so many digits."""
+    return float(f"{value:.{digits - 1}e}")
+
+
+def number(text: str) -> float:
+    """The last number of a row's label."""
+    return float(re.findall(NUMBER, text)[-1].replace(",", ""))
+
+
+def returns(header: str, files: dict[str, str], columns: dict[str, str] | None = None) -> Table:
+    """A table of returns: the file by the row's first words, x its last number.
+
+    columns: header of a column to the curve's label, where they differ.
+    """
+
+    def values(label: str, column: str) -> list[float]:
+        name = (columns or {}).get(column, column)
+        return curve(file_of(label, files), name, "eval/return").at(number(label))
+
+    return Table(header, values)
+
+
+def file_of(label: str, files: dict[str, str]) -> str:
+    """That of the longest key with which the label begins."""
+    return files[max((key for key in files if label.startswith(key)), key=len)]
+
+
+def areas(header: str, files: dict[str, str], ours: str) -> Table:
+    """A table of areas under the curve to the row's x; "ahead of B": `ours` against B."""
+
+    def values(label: str, column: str) -> list[float]:
+        def of(name: str) -> np.ndarray:
+            return curve(file_of(label, files), name, "eval/return").area(number(label))
+
+        against = column.removeprefix("ahead of ")
+        return ahead(of(ours), of(against)) if against != column else spread(of(column))
+
+    return Table(header, values)
