@@ -3,16 +3,11 @@
 python tests/test_pages.py    writes onto the pages what the JSON files hold now
 """
 
-import re
-import shlex
-from pathlib import Path
-
-import numpy as np
 import pytest
-from pages import cited, results
+from pages import chapter3, cited, results
 from pages.cited import ROOT
 
-PAGES = [results]
+PAGES = [results, chapter3]
 
 
 def text(page):

@@ -49,7 +49,7 @@ class Text:
     values: Sequence[float]
 
     def citations(self, page: str) -> list[Citation]:
-        (match,) = _once(_pattern(self.phrase), page, self.phrase)
+        match = _once(re.compile(_pattern(self.phrase)), page, self.phrase)
         spans = [match.span(i + 1) for i in range(len(self.values))]
         return [_citation(page, *span, x) for span, x in zip(spans, self.values, strict=True)]
 
@@ -64,14 +64,12 @@ class Table:
 
     header: str
     values: Callable[[str, str], Sequence[float] | None]
+    after: str = ""  # where several tables have this header: a phrase before this one
 
     def citations(self, page: str) -> list[Citation]:
         columns = [_bare(cell) for cell in self.header.split("|")]
-        first = r"\|\s*" + r"\s*\|\s*".join(re.escape(c.strip()) for c in self.header.split("|"))
-        (match,) = _once(first + r"\s*\|\n\|[-| ]+\|\n((?:\|.*\n?)+)", page, self.header)
-        found, at, label = [], match.start(1), ""
-        for row in match[1].splitlines(keepends=True):
-            cells = list(re.finditer(r"[^|\n]+", row))
+        found, label = [], ""
+        for cells in self.rows(page):
             label = _bare(cells[0][0]) or label
             for column, cell in zip(columns[1:], cells[1:], strict=True):
                 tokens = list(re.finditer(NUMBER, _without_marks(cell[0])))
@@ -80,11 +78,32 @@ class Table:
                     continue
                 assert len(tokens) <= len(values), f"{label}, {column}: {cell[0]}"
                 for token, value in zip(tokens, values, strict=False):
-                    offset = at + cell.start()
-                    span = offset + token.start(), offset + token.end()
+                    span = cell.start() + token.start(), cell.start() + token.end()
                     found.append(_citation(page, *span, value))
-            at += len(row)
         return found
+
+    def labels(self, page: str) -> list[tuple[int, int]]:
+        """Spans of the header and of each row's label: they name settings."""
+        start = self._match(page).start()
+        return [(start, page.index("\n", start)), *(cells[0].span() for cells in self.rows(page))]
+
+    def rows(self, page: str) -> list[list[re.Match]]:
+        """The cells of each row, as matches on the page."""
+        lines = re.compile(r"^\|.*\|$", re.MULTILINE)
+        body = self._match(page)
+        cell = re.compile(r"(?<=\|)[^|\n]+")
+        return [
+            list(cell.finditer(page, *line.span())) for line in lines.finditer(page, *body.span(1))
+        ]
+
+    def _match(self, page: str) -> re.Match:
+        header = r"\s*\|\s*".join(re.escape(cell.strip()) for cell in self.header.split("|"))
+        whole = re.compile(rf"\|\s*{header}\s*\|\n\|[-| ]+\|\n((?:\|.*\n?)+)")
+        if not self.after:
+            return _once(whole, page, self.header)
+        match = whole.search(page, page.index(self.after))
+        assert match, f"not after {self.after!r}: {self.header}"
+        return match
 
 
 def citations(page: str, cited: Sequence[Text | Table]) -> list[Citation]:
@@ -101,6 +120,7 @@ def uncited(page: str, cited: Sequence[Text | Table], plain: Sequence[str]) -> l
     covered = np.zeros(len(page), bool)
     spans = [match.span() for match in IGNORED.finditer(page)]
     spans += [(one.start, one.end) for one in citations(page, cited)]
+    spans += [span for one in cited if isinstance(one, Table) for span in one.labels(page)]
     for phrase in plain:
         matches = list(re.finditer(_pattern(phrase), page))
         assert matches, f"not on the page: {phrase}"
@@ -114,10 +134,10 @@ def uncited(page: str, cited: Sequence[Text | Table], plain: Sequence[str]) -> l
     ]
 
 
-def _once(pattern: str, page: str, name: str) -> list[re.Match]:
-    matches = list(re.finditer(pattern, page))
+def _once(pattern: re.Pattern, page: str, name: str) -> re.Match:
+    matches = list(pattern.finditer(page))
     assert len(matches) == 1, f"{len(matches)} times on the page: {name}"
-    return matches
+    return matches[0]
 
 
 def _pattern(phrase: str) -> str:
@@ -182,7 +202,7 @@ class Curve:
         return self.each[:, self.index(x)]
 
     def area(self, end: float | None = None) -> np.ndarray:
-        """[S] mean of each seed's line to `end`; before its first point it has what it had there."""
+        """[S] mean of each line to `end`; before its first point it has what it had there."""
         kept = self.x <= (self.x[-1] if end is None else end)
         x = np.append(0.0, self.x[kept])
         y = np.concatenate([self.each[:, :1], self.each[:, kept]], axis=1)
@@ -253,7 +273,7 @@ def file_of(label: str, files: dict[str, str]) -> str:
     return files[max((key for key in files if label.startswith(key)), key=len)]
 
 
-def areas(header: str, files: dict[str, str], ours: str) -> Table:
+def areas(header: str, files: dict[str, str], ours: str, after: str = "") -> Table:
     """A table of areas under the curve to the row's x; "ahead of B": `ours` against B."""
 
     def values(label: str, column: str) -> list[float]:
@@ -263,4 +283,4 @@ def areas(header: str, files: dict[str, str], ours: str) -> Table:
         against = column.removeprefix("ahead of ")
         return ahead(of(ours), of(against)) if against != column else spread(of(column))
 
-    return Table(header, values)
+    return Table(header, values, after)
