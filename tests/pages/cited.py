@@ -24,7 +24,7 @@ RESULTS = ROOT / "docs" / "results"
 NUMBER = r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\.\d)"
 # What carries digits and is no number of a result: code, links, references, comments.
 IGNORED = re.compile(
-    r"```.*?```|^    .*?$|`[^`]*`|\]\([^)]*\)|<!--.*?-->|^#.*?$"
+    r"```.*?```|!\[[^\]]*\]|^    .*?$|`[^`]*`|\]\([^)]*\)|<!--.*?-->|^#.*?$"
     r"|(?i:\b(?:figures?|tables?|chapter|section|algorithm|theorem|erratum|eq\.)\s+"
     r"\(?[A-Z]?\d[\d.\-]*\)?(?:(?:,| and| to)\s+\(?[A-Z]?\d[\d.\-]*\)?)*)"
     r"|\(\d\.\d+\)",
@@ -58,24 +58,26 @@ class Text:
 class Table:
     """The table with this header; `values(label, column)` are those of a cell, in its order.
 
-    A cell may show fewer than it has (no band), or nothing. The label is the row's first cell,
-    the column is the header's, both without marks; None: the column has no measurements.
+    A cell may show fewer than it has (no band), or nothing. Label and column are text without
+    marks: the label is the row's first cell, or the last one that was not empty, and the second
+    cell where that column has no header.
     """
 
     header: str
-    values: Callable[[str, str], Sequence[float] | None]
+    values: Callable[[str, str], Sequence[float]]
     after: str = ""  # where several tables have this header: a phrase before this one
+    plain: tuple[str, ...] = ()  # columns that hold no measurements of ours
 
     def citations(self, page: str) -> list[Citation]:
-        columns = [_bare(cell) for cell in self.header.split("|")]
-        found, label = [], ""
+        found, first = [], ""
         for cells in self.rows(page):
-            label = _bare(cells[0][0]) or label
-            for column, cell in zip(columns[1:], cells[1:], strict=True):
+            first = _bare(cells[0][0]) or first
+            label = f"{first}, {_bare(cells[1][0])}" if self._labels == 2 else first
+            for column, cell in zip(self._columns, cells, strict=True):
                 tokens = list(re.finditer(NUMBER, _without_marks(cell[0])))
-                values = self.values(label, column) if tokens else None
-                if values is None:
+                if not tokens or column in self.plain or cell in cells[: self._labels]:
                     continue
+                values = self.values(label, column)
                 assert len(tokens) <= len(values), f"{label}, {column}: {cell[0]}"
                 for token, value in zip(tokens, values, strict=False):
                     span = cell.start() + token.start(), cell.start() + token.end()
@@ -83,9 +85,22 @@ class Table:
         return found
 
     def labels(self, page: str) -> list[tuple[int, int]]:
-        """Spans of the header and of each row's label: they name settings."""
+        """Spans of the header, of each row's label and of the plain columns: settings."""
         start = self._match(page).start()
-        return [(start, page.index("\n", start)), *(cells[0].span() for cells in self.rows(page))]
+        spans = [(start, page.index("\n", start))]
+        for cells in self.rows(page):
+            spans += [cell.span() for cell in cells[: self._labels]]
+            named = zip(self._columns, cells, strict=True)
+            spans += [cell.span() for column, cell in named if column in self.plain]
+        return spans
+
+    @property
+    def _columns(self) -> list[str]:
+        return [_bare(cell) for cell in self.header.split("|")]
+
+    @property
+    def _labels(self) -> int:
+        return 2 if self._columns[1] == "" else 1
 
     def rows(self, page: str) -> list[list[re.Match]]:
         """The cells of each row, as matches on the page."""
