@@ -4,10 +4,10 @@ python tests/test_pages.py    writes onto the pages what the JSON files hold now
 """
 
 import pytest
-from pages import chapter3, cited, results, robots, speed
+from pages import chapter3, chapter6, cited, results, robots, speed
 from pages.cited import ROOT
 
-PAGES = [results, chapter3, robots, speed]
+PAGES = [results, chapter3, chapter6, robots, speed]
 
 
 def text(page):

@@ -25,7 +25,7 @@ NUMBER = r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\
 # What carries digits and is no number of a result: code, links, references, comments.
 IGNORED = re.compile(
     r"```.*?```|!\[[^\]]*\]|^    .*?$|`[^`]*`|\]\([^)]*\)|<!--.*?-->|^#.*?$"
-    r"|(?i:\b(?:figures?|tables?|chapter|section|algorithm|theorem|erratum|eq\.)\s+"
+    r"|(?i:\b(?:figures?|tables?|chapter|sections?|algorithm|theorem|erratum|eq\.)\s+"
     r"\(?[A-Z]?\d[\d.\-]*\)?(?:(?:,| and| to)\s+\(?[A-Z]?\d[\d.\-]*\)?)*)"
     r"|\(\d\.\d+\)",
     re.MULTILINE | re.DOTALL,
