@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pages.cited import Curve, Table, Text, ahead, areas, curve, number, returns, spread
+from pages.cited import Table, Text
+from pages.values import Curve, ahead, areas, curve, number, returns, spread
 
 PAGE = "docs/results/chapter3.md"
 TASKS = ("half-cheetah", "hopper", "cartpole", "pendulum")
@@ -53,16 +54,20 @@ def deterministic_areas(label: str, column: str) -> list[float]:
     return ahead(adjoint(task, DETERMINISTIC).area(number(label)), theirs)
 
 
-def agreement(label: str, column: str) -> list[float]:
-    """A cell of the agreement signal's table."""
-    line = curve(ADJOINT[label], DETERMINISTIC, SIGNAL)
-    first, last, top = line.x[0], line.x[-1], line.x[line.iqm.argmax()]
-    return {
-        "first row": [*line.at(first), first],
-        "highest": [line.at(top)[0], top],
-        "last": [*line.at(last), last],
-        "highest over last": [line.at(top)[0] / line.at(last)[0]],
-    }[column]
+def agreement(header: str, metric: str, after: str) -> Table:
+    """A table of the agreement signal, plain or per unit of the policy's variance."""
+
+    def values(label: str, column: str) -> list[float]:
+        line = curve(ADJOINT[label], DETERMINISTIC, metric)
+        first, last, top = line.x[0], line.x[-1], line.x[line.iqm.argmax()]
+        return {
+            "first row": [*line.at(first), first],
+            "highest": [line.at(top)[0], top],
+            "last": [*line.at(last), last],
+            "highest over last": [line.at(top)[0] / line.at(last)[0]],
+        }[column]
+
+    return Table(header, values, after)
 
 
 def side_by_side(header: str, files: dict[str, str | None]) -> Table:
@@ -155,7 +160,9 @@ CITED = [
         "on the half-cheetah (# at 40,000) and at the pendulum's end (# at 6,000)",
         [thesis("half-cheetah", HYBRID).at(40_000)[0], thesis("pendulum", HYBRID).at(6_000)[0]],
     ),
-    Table(" | first row | highest | last | highest over last", agreement),
+    agreement(
+        " | first row | highest | last | highest over last", SIGNAL, after="The agreement signal"
+    ),
     Text(
         "seeds lie on both sides (# to #)",
         [PENDULUM_SIGNAL.seeds(6_000).min(), PENDULUM_SIGNAL.seeds(6_000).max()],

@@ -1,7 +1,8 @@
 """README.md: its results."""
 
-from pages import chapter3, chapter6, results
-from pages.cited import Table, Text, number
+from pages import chapter3, chapter6_values, results
+from pages.cited import Table, Text
+from pages.values import number
 
 PAGE = "README.md"
 
@@ -19,7 +20,7 @@ def sac(label: str, x: float) -> list[float]:
     return results.curve(results.FILE, label, task="halfcheetah").at(x)
 
 
-KLE3 = chapter6.SEARCHES["kle3_bayesopt"]
+KLE3 = chapter6_values.SEARCHES["kle3_bayesopt"]
 CITED = [
     Table(" | hybrid_stochastic | nn_mppi | sac", main_table),
     Text(
@@ -40,14 +41,14 @@ CITED = [
             results.p(100_000, results.GYM),
         ],
     ),
-    Text("rail in # of # trials", chapter6.search(KLE3, "trials that get there")),
+    Text("rail in # of # trials", chapter6_values.search(KLE3, "trials that get there")),
     Text(
         "needs # measurements where LQR-Bayesian optimisation needs #, # times as many",
-        [chapter6.KLE3, chapter6.LQR, chapter6.LQR / chapter6.KLE3],
+        [chapter6_values.KLE3, chapter6_values.LQR, chapter6_values.LQR / chapter6_values.KLE3],
     ),
     Text(
         "and # where it needs #, # times as many",
-        [*chapter6.QUICK[::-1], chapter6.QUICK[0] / chapter6.QUICK[1]],
+        [*chapter6_values.QUICK[::-1], chapter6_values.QUICK[0] / chapter6_values.QUICK[1]],
     ),
 ]
 PLAIN = [

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from pages.cited import Table, Text, curve, number, p_value
+from pages.cited import Table, Text
+from pages.values import curve, number, p_value
 
 PAGE = "docs/results/README.md"
 FILE = "sac_beside_sb3"

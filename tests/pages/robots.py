@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from pages.cited import ROOT, Table, Text, ahead, curve, number
+from pages.cited import ROOT, Table, Text
+from pages.values import ahead, curve, number
 
 PAGE = "docs/results/robots.md"
 

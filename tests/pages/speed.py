@@ -2,17 +2,8 @@
 
 from typing import Any
 
-from pages.cited import (
-    Curve,
-    Table,
-    Text,
-    ahead,
-    curve,
-    p_value,
-    read,
-    significant,
-    spread,
-)
+from pages.cited import Table, Text
+from pages.values import Curve, ahead, curve, p_value, read, significant, spread
 
 PAGE = "docs/results/speed.md"
 LOOP = "hybrid_stochastic"
