@@ -10,12 +10,12 @@ from itertools import cycle, islice
 
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from pages import chapter3, chapter6, cited, readme, results, robots, speed
+from pages import cited
 from pages.cited import ROOT
 
 from hybrid_rl import config
 
-PAGES = [readme, results, chapter3, chapter6, robots, speed]
+PAGES = ["readme", "results", "chapter3", "chapter6", "robots", "speed"]  # modules of `pages`
 WITH_COMMANDS = [
     "README.md",
     "CONTRIBUTING.md",
@@ -28,12 +28,17 @@ def text(page):
     return (ROOT / page).read_text(encoding="utf-8")
 
 
+@pytest.fixture(params=PAGES)
+def page(request):
+    """A page's module; imported here, since it reads the files."""
+    return import_module(f"pages.{request.param}")
+
+
 def test_every_page_of_results_is_checked():
     pages = {str(path.relative_to(ROOT)) for path in (ROOT / "docs" / "results").glob("*.md")}
-    assert {page.PAGE for page in PAGES} == {*pages, "README.md"}
+    assert {import_module(f"pages.{name}").PAGE for name in PAGES} == {*pages, "README.md"}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.PAGE)
 def test_cited_numbers_are_those_of_the_files(page):
     found = cited.citations(text(page.PAGE), page.CITED)
     assert found
@@ -41,7 +46,6 @@ def test_cited_numbers_are_those_of_the_files(page):
     assert not wrong, "`python tests/test_pages.py` writes what the files hold"
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.PAGE)
 def test_no_number_is_without_a_source(page):
     assert not cited.uncited(text(page.PAGE), page.CITED, page.PLAIN)
 
@@ -112,5 +116,5 @@ def write(page):
 
 
 if __name__ == "__main__":
-    for each in PAGES:
-        write(each)
+    for name in PAGES:
+        write(import_module(f"pages.{name}"))

@@ -38,8 +38,9 @@ class Curve:
 
     def index(self, x: float) -> int:
         """Which of the points is x."""
-        (found,) = np.flatnonzero(self.x == x)
-        return int(found)
+        found = np.flatnonzero(self.x == x)
+        assert len(found) == 1, f"no evaluation at {x:,}: {self.x}"
+        return int(found[0])
 
     def seeds(self, x: float) -> np.ndarray:
         """[S] what each has there."""
