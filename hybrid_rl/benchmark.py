@@ -60,7 +60,7 @@ Table = dict[str, Any]
 
 
 def physics(said: dict[str, str], rounds: int) -> list[Table]:
-    """Worlds of every task, ours against bare loops."""
+    """Worlds of every task, ours against bare loops of the same compiled model."""
     from hybrid_rl.bench import others, ours
 
     tables = []
@@ -80,7 +80,8 @@ def physics(said: dict[str, str], rounds: int) -> list[Table]:
                 field += [bare, own]
             theirs = others.playground(count, decisions) if task == "halfcheetah" else None
             field += [theirs] if theirs and said["physics"] != "native" else []
-            tables.append(_race("physics", f"{task}, {count:,} worlds", "steps/s", field, rounds))
+            table = _race("physics", f"{task}, {count:,} worlds", "steps/s", field, rounds)
+            tables.append(table | {"solver": others.solver(task)})
     return tables
 
 

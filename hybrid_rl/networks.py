@@ -1,8 +1,8 @@
 """Multilayer perceptrons as pure functions: `init(key) -> params`, `apply(params, x) -> y`.
 
 y = W_L a(... a(W_1 x + b_1) ...) + b_L, with W ~ U(-1, 1) / sqrt(width of x) and b = 0 at first.
-Small weights matter: with LeCun's, of three times the variance, soft actor-critic on the
-half-cheetah reached 2,490 at 50,000 decisions, with these 3,170 (IQM of 5 and 10 seeds).
+These weights are PyTorch's default, so soft actor-critic starts as Stable-Baselines3's does; they
+have a third of the variance of LeCun's.
 """
 
 from collections.abc import Sequence

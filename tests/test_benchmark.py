@@ -4,11 +4,14 @@ import json
 import time
 
 import imageio.v3 as iio
+import jax
 import pytest
 from tiny import call
 
 from hybrid_rl import benchmark, command
+from hybrid_rl.bench import others, ours
 from hybrid_rl.bench.race import Contestant, race
+from hybrid_rl.envs import accelerated, mjcf
 
 
 def run(*arguments):
@@ -43,7 +46,42 @@ def test_the_command_measures_every_part(tmp_path, capsys):
     tables = json.loads(out.read_text())["tables"]
     assert [table["part"] for table in tables] == ["physics", "plan", "loop"]
     assert all(row["rate"] > 0 for table in tables for row in table["rows"])
+    assert tables[0]["solver"]["iterations"] == mjcf.load("cartpole.xml").opt.iterations
     assert iio.imread(out.with_suffix(".png")).shape[1] > 500
+
+
+@pytest.mark.parametrize("implementation", ["native", "mjx"])
+def test_a_bare_loop_steps_the_model_of_our_world(implementation, monkeypatch):
+    """The same compiled model: solver, iterations, integrator and time step are equal."""
+    stepped, load, template = [], mjcf.load, accelerated.template
+
+    def loaded(asset):
+        stepped.append(id(load(asset)))
+        return load(asset)
+
+    def made(asset, implementation, worlds=1):
+        found = template(asset, implementation, worlds)
+        stepped.append(id(found[0]))
+        return found
+
+    def traced(name, run, *given, work):
+        jax.eval_shape(run, *given)
+        return Contestant(name, lambda: None, work)
+
+    for module in (ours, others):
+        monkeypatch.setattr(module, "compiled", traced)
+    if implementation == "native":
+        monkeypatch.setattr(mjcf, "load", loaded)
+    else:
+        monkeypatch.setattr(accelerated, "template", made)
+    own = ours.worlds("cartpole", implementation, 2, 1)
+    ours_stepped = set(stepped)
+    stepped.clear()
+    bare = others.bare_native if implementation == "native" else others.bare_mjx
+    theirs = bare("cartpole", 2, round(own.work / 2))
+    assert len(ours_stepped) == 1
+    assert set(stepped) == ours_stepped
+    assert theirs.work == own.work
 
 
 def test_gradient_steps_beside_those_of_brax(tmp_path):

@@ -3,6 +3,9 @@
 Bare loops over `mjx.step` and `mujoco.rollout`, without reward, end or reset; MPPI on the true
 model; gradient steps of Brax's soft actor-critic; MuJoCo Playground's CheetahRun where that package
 is installed (extra `bench`).
+
+Bare loops step the compiled model that our world steps, so solver, iterations, integrator and time
+step are equal. Playground's world has a model and solver settings of its own.
 """
 
 from importlib import import_module
@@ -15,7 +18,7 @@ import mujoco
 import numpy as np
 import optax
 
-from hybrid_rl.bench.ours import beginning, compiled, recalled
+from hybrid_rl.bench.ours import beginning, compiled, recalled, world
 from hybrid_rl.bench.race import Contestant
 from hybrid_rl.envs import native
 from hybrid_rl.envs.physics import Physics
@@ -70,6 +73,19 @@ def bare_mjx(task: str, count: int, steps: int, implementation: str = "jax") -> 
     name = {"jax": "bare mjx.step", "warp": "bare mjx.step, Warp"}[implementation]
     with jax.numpy_rank_promotion("allow"):
         return compiled(name, run, first.qpos, first.qvel, first.ctrl, work=count * steps)
+
+
+def solver(task: str) -> dict[str, Any]:
+    """The settings that a world of `task` and the bare loops beside it share."""
+    env: Any = world(task, "native").env
+    option = env._body.model.opt
+    return {
+        "solver": mujoco.mjtSolver(option.solver).name,
+        "iterations": int(option.iterations),
+        "ls_iterations": int(option.ls_iterations),
+        "integrator": mujoco.mjtIntegrator(option.integrator).name,
+        "timestep": float(option.timestep),  # [s]
+    }
 
 
 def playground(count: int, decisions: int) -> Contestant | None:

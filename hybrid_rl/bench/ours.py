@@ -68,9 +68,14 @@ def shares(agent: Agent, learners: int, decisions: int) -> list[Contestant]:
     return [loop(name, part, learners, decisions)[0] for name, part in parts.items()]
 
 
+def world(task: str, physics: str) -> Episode:
+    """The world of a task, in episodes."""
+    return config.build(config.load([f"task={task}", f"physics={physics}"])).agent.episode
+
+
 def beginning(task: str, physics: str, count: int) -> tuple[Episode, EnvState, Array]:
     """A task, `count` first states and an action [count, m] for each: all contestants' alike."""
-    episode = config.build(config.load([f"task={task}", f"physics={physics}"])).agent.episode
+    episode = world(task, physics)
     keys = jax.random.split(jax.random.key(0), count)
     u = jax.random.uniform(jax.random.key(1), (count, episode.spec.act), minval=-1, maxval=1)
     return episode, jax.jit(jax.vmap(episode.reset))(keys), u

@@ -1,0 +1,1 @@
+"""What every number on README.md and docs/results/*.md is recomputed from."""

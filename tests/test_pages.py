@@ -1,0 +1,120 @@
+"""Every number on README.md and docs/results is that of the file beside it; commands exist.
+
+python tests/test_pages.py    writes onto the pages what the files hold now
+"""
+
+import re
+import shlex
+from importlib import import_module
+from itertools import cycle, islice
+
+import pytest
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from pages import cited
+from pages.cited import ROOT
+
+from hybrid_rl import config
+
+PAGES = ["readme", "results", "chapter3", "chapter6", "robots", "speed"]  # modules of `pages`
+WITH_COMMANDS = [
+    "README.md",
+    "CONTRIBUTING.md",
+    *(str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").rglob("*.md"))),
+]
+LINE = re.compile(r"python -m hybrid_rl\.(\w+)([^`#\n]*)")
+
+
+def text(page):
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+@pytest.fixture(params=PAGES)
+def page(request):
+    """A page's module; imported here, since it reads the files."""
+    return import_module(f"pages.{request.param}")
+
+
+def test_every_page_of_results_is_checked():
+    pages = {str(path.relative_to(ROOT)) for path in (ROOT / "docs" / "results").glob("*.md")}
+    assert {import_module(f"pages.{name}").PAGE for name in PAGES} == {*pages, "README.md"}
+
+
+def test_cited_numbers_are_those_of_the_files(page):
+    found = cited.citations(text(page.PAGE), page.CITED)
+    assert found
+    wrong = [f"{one.shown} should be {one.right}" for one in found if one.shown != one.right]
+    assert not wrong, "`python tests/test_pages.py` writes what the files hold"
+
+
+def test_no_number_is_without_a_source(page):
+    assert not cited.uncited(text(page.PAGE), page.CITED, page.PLAIN)
+
+
+def test_a_changed_and_an_added_number_are_noticed():
+    """Of this machinery itself: on a table and a sentence of its own."""
+    cell = cited.Table("seed | a", lambda label, column: [1234.5, -0.4])
+    said = cited.Text("half is # of it", [0.5])
+    page = "| seed | a |\n|---|---|\n| 7 | **1,234** [-0] |\n\nhalf is 0.50 of it in 3 runs\n"
+    found = cited.citations(page, [cell, said])
+    assert [(one.shown, one.right) for one in found] == [
+        ("1,234", "1,234"),
+        ("-0", "0"),
+        ("0.50", "0.50"),
+    ]
+    changed = cited.citations(page.replace("1,234", "1,235"), [cell, said])
+    assert (changed[0].shown, changed[0].right) == ("1,235", "1,234")
+    (left,) = cited.uncited(page, [cell, said], [])
+    assert left.startswith("3:")
+    assert not cited.uncited(page, [cell, said], ["in 3 runs"])
+    with pytest.raises(AssertionError, match="0 times"):
+        cited.citations(page.replace("half is", "half was"), [cell, said])
+
+
+def commands(page):
+    """(command, its words) of every line of a page that runs one of ours."""
+    return [(name, shlex.split(words)) for name, words in LINE.findall(text(page))]
+
+
+def jobs(words):
+    """Overrides of enough jobs of a sweep that each value is in one of them."""
+    parsed = OverridesParser.create().parse_overrides([word for word in words if "=" in word])
+    values = [
+        list(one.sweep_string_iterator()) if one.is_sweep_override() else [one.get_value_string()]
+        for one in parsed
+    ]
+    most = max(map(len, values), default=1)
+    rows = zip(*(islice(cycle(each), most) for each in values), strict=True)
+    keys = [one.get_key_element() for one in parsed]
+    return [tuple(f"{k}={v}" for k, v in zip(keys, row, strict=True)) for row in rows]
+
+
+@pytest.mark.parametrize("page", WITH_COMMANDS)
+def test_training_commands_compose(page):
+    lines = [words for name, words in commands(page) if name == "train"]
+    for overrides in sorted({job for words in lines for job in jobs(words)}):
+        config.load(overrides)
+
+
+@pytest.mark.parametrize("page", WITH_COMMANDS)
+def test_other_commands_have_the_arguments_of_the_page(page):
+    for name, words in commands(page):
+        module = import_module(f"hybrid_rl.{name}")
+        if name in ("train", "list"):
+            continue
+        known = set(module.DEFAULTS)
+        for word in words:
+            key = word.partition("=")[0]
+            assert key in known, f"{name}: {word}"
+
+
+def write(page):
+    """The page with each number as its file has it."""
+    old = new = text(page.PAGE)
+    for one in reversed(cited.citations(old, page.CITED)):
+        new = new[: one.start] + one.right + new[one.end :]
+    (ROOT / page.PAGE).write_text(new, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    for name in PAGES:
+        write(import_module(f"pages.{name}"))
