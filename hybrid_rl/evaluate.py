@@ -13,11 +13,10 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from omegaconf import OmegaConf
 from rich.console import Console
 from rich.table import Table
 
-from hybrid_rl import command
+from hybrid_rl import command, run_folder
 from hybrid_rl import config as configuration
 from hybrid_rl.config import UsageError
 from hybrid_rl.training import checkpoint
@@ -46,20 +45,18 @@ def load(folder: Path) -> Trained:
     """The learners of the run in `folder`, at its newest sound checkpoint.
 
     Raises:
-        UsageError: where `folder` holds no run, or no checkpoint.
+        UsageError: where `folder` holds no run, a damaged configuration, or no checkpoint.
         CheckpointError: where none of its checkpoints is sound.
     """
-    place = folder / "config.yaml"
-    if not place.exists():
-        raise UsageError(f"run={folder}: no run folder there (no config.yaml in it)")
+    config = run_folder.read(folder, "run")
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
-    config: Any = OmegaConf.load(place)
-    command.prepare(config)
-    run = configuration.build(config)
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, memory=None, key=None)
-    step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
+    with run_folder.blamed(folder):
+        command.prepare(config)
+        run = configuration.build(config)
+        like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+        like = like.replace(env=None, control=None, memory=None, key=None)
+        step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
     params = jax.vmap(run.agent.params)(state)
     return Trained(
         config.task, run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes)

@@ -61,6 +61,7 @@ class Session:
     latest: dict[str, float] = field(default_factory=dict)  # for the display
     evaluators: dict[str, Any] = field(default_factory=dict)  # mode -> compiled
     stop: int | None = None  # the signal that asked for an end
+    known: set[int] = field(default_factory=set)  # checkpoints that this session may delete
 
     @property
     def wall_s(self) -> float:
@@ -82,6 +83,7 @@ class Session:
         Raises:
             CheckpointError: where there is none, or it is of another run.
         """
+        self.known = set(checkpoint.steps(self._checkpoints))
         like = jax.eval_shape(self.loop.init).replace(memory=None)
         found = checkpoint.restore(self._checkpoints, like, part=True)
         self.step, self.state, meta, notes = found
@@ -245,7 +247,8 @@ class Session:
             "capacity": self.loop.agent.replay.capacity,
         }
         state = self.state if kept else self.state.replace(memory=None)
-        checkpoint.save(self._checkpoints, self.step, state, meta)
+        checkpoint.save(self._checkpoints, self.step, state, meta, known=self.known)
+        self.known.add(self.step)
 
     def _check_learned(self) -> None:
         """Raise DivergenceError where a learned number is not finite."""
