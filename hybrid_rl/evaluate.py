@@ -23,6 +23,7 @@ from hybrid_rl.training import checkpoint
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.evaluate import evaluation_keys, outcomes
 from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.manifest import write_text
 from hybrid_rl.types import Controller, Params
 
 DEFAULTS = {"run": "", "episodes": "10", "mode": "full"}
@@ -101,26 +102,37 @@ def main() -> None:
     if not given["run"]:
         raise UsageError("run: not given; say run=DIR, a folder that training wrote")
     episodes = command.count("episodes", given["episodes"])
-    trained = load(Path(given["run"]))
-    console = Console()
+    folder = Path(given["run"])
+    trained = load(folder)
+    run_folder.writable(folder, "run")  # before minutes of work
     for note in trained.notes:
-        console.print(note, markup=False)
+        print(note)
     said = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
-    out = Path(given["run"]) / f"evaluation_{given['mode']}.json"
-    out.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
-    table = Table(title=f"{given['run']}, mode {given['mode']}, step {trained.step:,}")
+    print(f"{folder}, mode {given['mode']}, step {trained.step:,}")  # whole, also in a pipe
+    Console().print(_table(said))
+    out = folder / f"evaluation_{given['mode']}.json"
+    write_text(out, json.dumps(said, indent=1) + "\n")
+    print(f"{episodes} episodes a seed; written to {out}")
+
+
+def _table(said: dict[str, Any]) -> Table:
+    """A row for each seed, and one for the episodes of all of them."""
+    table = Table()
     shares = said.get("success", [])
     columns = ("seed", "mean return", "std", "lowest", "highest", *["successes"][: len(shares)])
     for name in columns:
         table.add_column(name, justify="right")
-    for i, (seed, each) in enumerate(zip(said["seeds"], said["returns"], strict=True)):
-        numbers = (np.mean(each), np.std(each), min(each), max(each))
-        row = [f"{value:,.1f}" for value in numbers] + [
-            f"{share:.0%}" for share in shares[i : i + 1]
-        ]
-        table.add_row(str(seed), *row)
-    console.print(table)
-    console.print(f"{episodes} episodes a seed; written to {out}", markup=False)
+    lines = [
+        (str(seed), each, shares[i : i + 1])
+        for i, (seed, each) in enumerate(zip(said["seeds"], said["returns"], strict=True))
+    ]
+    if len(lines) > 1:
+        lines.append(("all", np.ravel(said["returns"]), [np.mean(shares)] if shares else []))
+    for name, each, share in lines:
+        numbers = (np.mean(each), np.std(each), np.min(each), np.max(each))
+        row = [f"{value:,.1f}" for value in numbers] + [f"{part:.0%}" for part in share]
+        table.add_row(name, *row, end_section=len(lines) > 1 and name == lines[-2][0])
+    return table
 
 
 if __name__ == "__main__":

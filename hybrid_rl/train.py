@@ -43,7 +43,7 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
     folder = Path(str(config.resume))
     if done := _done(_settings(config, asked), folder):
         print(f"{folder}: finished already at {done['total_steps']:,}; raise total_steps to go on")
-        return done
+        return done | {"signal": None}
     with run_folder.locked(run_folder.writable(folder, "resume"), "resume"):
         config = _settings(config, asked)  # read again: another process may have gone on with it
         with run_folder.blamed(folder):

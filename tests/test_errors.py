@@ -54,6 +54,8 @@ USAGE = [  # overrides of train, words of the line
     ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
     ("num_envs=many", f"num_envs=many: {COUNT}"),
     ("seed=-1", "seed=-1: must be a whole number, 0 or more"),
+    ("seed=4294967296", "seed=4294967296: must be at most 4294967295 with num_seeds=1"),
+    ("seed=4294967290 num_seeds=8", "seed=4294967290: must be at most 4294967288 with num_seeds=8"),
     ("planner.temperature=0", "planner.temperature=0: must be above 0"),
     ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
     ("planner.temperature=hot", "planner.temperature=hot: must be a number"),

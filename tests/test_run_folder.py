@@ -2,6 +2,7 @@
 
 import errno
 import fcntl
+import json
 import re
 import shutil
 import signal
@@ -9,6 +10,7 @@ import socket
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from tiny import TINY, call, call_train, contents, run
 
@@ -203,6 +205,29 @@ def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
         assert words in line
     assert contents(copied) == before
+
+
+def test_an_evaluation_that_cannot_be_written_is_not_made(copied, monkeypatch, capfd):
+    def full(dir):
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(run_folder, "TemporaryFile", full)
+    monkeypatch.setattr(evaluate, "evaluate", lambda *_: pytest.fail("it was evaluated"))
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}") == 2
+    assert f"run={copied}: cannot be written to (Read-only file system)" in only_line(capfd)
+
+
+def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd):
+    """And ends with a row for the episodes of all seeds."""
+    folder = shutil.copytree(trained, tmp_path / ("long" * 20) / "run")
+    assert call(lambda: command.guarded(evaluate.main), f"run={folder}", "episodes=2") == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert f"{folder}, mode full, step 100" in lines
+    assert f"2 episodes a seed; written to {folder}/evaluation_full.json" in lines
+    returns = np.array(json.loads((folder / "evaluation_full.json").read_text())["returns"])
+    (row,) = [line.split("\u2502")[1:-1] for line in lines if " all " in line]
+    wanted = (returns.mean(), returns.std(), returns.min(), returns.max())
+    assert [cell.strip() for cell in row] == ["all", *(f"{value:,.1f}" for value in wanted)]
 
 
 def test_a_value_of_the_user_is_not_blamed_on_the_file(copied, capfd):
