@@ -31,6 +31,8 @@ COUNTS = (
     "log_every",
 )
 
+SEEDS = 2**32  # that JAX's generator tells apart
+
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 
 MODES = ("full", "policy", "planner")
@@ -170,6 +172,11 @@ def check(config: DictConfig) -> None:
         _whole(config, key)
     if type(config.seed) is not int or config.seed < 0:
         raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
+    if config.seed + config.num_seeds > SEEDS:
+        raise UsageError(
+            f"seed={config.seed}: must be at most {SEEDS - config.num_seeds} with "
+            f"num_seeds={config.num_seeds}: JAX takes seeds of 32 bits"
+        )
     modes = config.eval_modes
     if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
         raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")

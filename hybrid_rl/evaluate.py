@@ -26,17 +26,17 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from omegaconf import OmegaConf
 from rich.console import Console
 from rich.table import Table
 
-from hybrid_rl import command
+from hybrid_rl import command, run_folder
 from hybrid_rl import config as configuration
 from hybrid_rl.config import UsageError
 from hybrid_rl.training import checkpoint
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.evaluate import evaluation_keys, outcomes
 from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.manifest import write_text
 from hybrid_rl.types import Controller, Params, Spec
 
 DEFAULTS = {"run": "", "episodes": "10", "mode": "full"}
@@ -134,21 +134,19 @@ def load(folder: Path | str) -> Trained:
     """The learners of the run in `folder`, at its newest sound checkpoint.
 
     Raises:
-        UsageError: where `folder` holds no run, or no checkpoint.
+        UsageError: where `folder` holds no run, a damaged configuration, or no checkpoint.
         CheckpointError: where none of its checkpoints is sound.
     """
     folder = Path(folder)
-    place = folder / "config.yaml"
-    if not place.exists():
-        raise UsageError(f"run={folder}: no run folder there (no config.yaml in it)")
+    config = run_folder.read(folder, "run")
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
-    config: Any = OmegaConf.load(place)
-    command.prepare(config)
-    run = configuration.build(_without_demonstrations(config))
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, memory=None, key=None)
-    step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
+    with run_folder.blamed(folder):
+        command.prepare(config)
+        run = configuration.build(_without_demonstrations(config))
+        like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+        like = like.replace(env=None, control=None, memory=None, key=None)
+        step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
     params = jax.vmap(run.agent.params)(state)
     return Trained(
         config.task, run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes)
@@ -203,26 +201,37 @@ def main() -> None:
     if not given["run"]:
         raise UsageError("run: not given; say run=DIR, a folder that training wrote")
     episodes = command.count("episodes", given["episodes"])
-    trained = load(Path(given["run"]))
-    console = Console()
+    folder = Path(given["run"])
+    trained = load(folder)
+    run_folder.writable(folder, "run")  # before minutes of work
     for note in trained.notes:
-        console.print(note, markup=False)
+        print(note)
     said = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
-    out = Path(given["run"]) / f"evaluation_{given['mode']}.json"
-    out.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
-    table = Table(title=f"{given['run']}, mode {given['mode']}, step {trained.step:,}")
+    print(f"{folder}, mode {given['mode']}, step {trained.step:,}")  # whole, also in a pipe
+    Console().print(_table(said))
+    out = folder / f"evaluation_{given['mode']}.json"
+    write_text(out, json.dumps(said, indent=1) + "\n")
+    print(f"{episodes} episodes a seed; written to {out}")
+
+
+def _table(said: dict[str, Any]) -> Table:
+    """A row for each seed, and one for the episodes of all of them."""
+    table = Table()
     shares = said.get("success", [])
     columns = ("seed", "mean return", "std", "lowest", "highest", *["successes"][: len(shares)])
     for name in columns:
         table.add_column(name, justify="right")
-    for i, (seed, each) in enumerate(zip(said["seeds"], said["returns"], strict=True)):
-        numbers = (np.mean(each), np.std(each), min(each), max(each))
-        row = [f"{value:,.1f}" for value in numbers] + [
-            f"{share:.0%}" for share in shares[i : i + 1]
-        ]
-        table.add_row(str(seed), *row)
-    console.print(table)
-    console.print(f"{episodes} episodes a seed; written to {out}", markup=False)
+    lines = [
+        (str(seed), each, shares[i : i + 1])
+        for i, (seed, each) in enumerate(zip(said["seeds"], said["returns"], strict=True))
+    ]
+    if len(lines) > 1:
+        lines.append(("all", np.ravel(said["returns"]), [np.mean(shares)] if shares else []))
+    for name, each, share in lines:
+        numbers = (np.mean(each), np.std(each), np.min(each), np.max(each))
+        row = [f"{value:,.1f}" for value in numbers] + [f"{part:.0%}" for part in share]
+        table.add_row(name, *row, end_section=len(lines) > 1 and name == lines[-2][0])
+    return table
 
 
 if __name__ == "__main__":

@@ -103,14 +103,15 @@ def cost(flight: Flight) -> dict[str, np.ndarray]:
 def learn(run: Run, memory: Any, updates: int, key: Array) -> Params:
     """A model of the decisions in one trial's memory. The key is consumed."""
     learner, replay = run.agent.learners["model"], run.agent.replay
-    first, rest = jax.random.split(key)
+    first, drawing, updating = jax.random.split(key, 3)
 
-    def one(state: Any, key: Array) -> tuple[Any, None]:
-        batch = replay.sample(memory, run.agent.spec, learner.batch_size, key)
-        return learner.update(state, Params(), batch, key)[0], None
+    def one(state: Any, keys: tuple[Array, Array]) -> tuple[Any, None]:
+        batch = replay.sample(memory, run.agent.spec, learner.batch_size, keys[0])
+        return learner.update(state, Params(), batch, keys[1])[0], None
 
     state = learner.init(first, run.agent.spec)
-    state = jax.lax.scan(one, state, jax.random.split(rest, updates))[0]
+    each = jax.random.split(drawing, updates), jax.random.split(updating, updates)
+    state = jax.lax.scan(one, state, each)[0]
     return Params(**learner.params(state))
 
 

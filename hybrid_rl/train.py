@@ -5,21 +5,20 @@ if __name__ == "__main__":
 
     interrupt.install()
 
+import json
 import sys
 from collections.abc import Mapping
-from datetime import datetime
 from pathlib import Path
-from tempfile import TemporaryFile
 from types import MappingProxyType
 from typing import Any
 
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import command, interrupt
+from hybrid_rl import command, interrupt, run_folder
 from hybrid_rl import config as configuration
 from hybrid_rl.config import UNKNOWN, Run, UsageError
-from hybrid_rl.training import checkpoint, divergence, provenance
+from hybrid_rl.training import checkpoint, divergence, manifest, provenance
 from hybrid_rl.training.log import RunLog
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.manifest import write_text
@@ -42,13 +41,29 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
         DivergenceError: where every learner reached NaN or infinity.
         CheckpointError: where a checkpoint could not be written or read.
     """
-    config = _settings(config, asked)
-    run = configuration.build(config)
-    command.prepare(config)
+    if config.resume is None:
+        run = configuration.build(config)
+        command.prepare(config)
+        memory = _memory(run)
+        with run_folder.fresh(config) as folder:
+            return _train(config, run, folder, memory)
+    folder = Path(str(config.resume))
+    if done := _done(_settings(config, asked), folder):
+        print(f"{folder}: finished already at {done['total_steps']:,}; raise total_steps to go on")
+        return done | {"signal": None}
+    with run_folder.locked(run_folder.writable(folder, "resume"), "resume"):
+        config = _settings(config, asked)  # read again: another process may have gone on with it
+        with run_folder.blamed(folder):
+            run = configuration.build(config)
+            command.prepare(config)
+        return _train(config, run, folder, _memory(run))
+
+
+def _train(config: DictConfig, run: Run, folder: Path, memory: str) -> dict[str, Any]:
+    """What summary.json holds, after a session in `folder`; memory: a line about the replay."""
     label = f"{config.task} {config.algo}"
-    memory = _memory(run)
-    folder = _folder(config)
     with (
+        manifest.naming(folder),
         RunLog(folder, run.seeds) as log,
         _progress(config, run, label) as progress,
     ):
@@ -58,7 +73,8 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
         if config.resume is None:
             session.begin()
         else:
-            session.resume()
+            with run_folder.blamed(folder):
+                session.resume()
         kept = OmegaConf.merge(config, {"resume": None})  # a resumed run may have become longer
         write_text(folder / "config.yaml", OmegaConf.to_yaml(kept))
         return _run(config, session)
@@ -86,27 +102,25 @@ def _progress(config: DictConfig, run: Run, label: str) -> Progress:
 
 
 def _settings(config: DictConfig, asked: Mapping[str, str]) -> DictConfig:
-    """The configuration to run: `config`, or that of the run that it resumes."""
-    if config.resume is None:
-        return config
+    """The configuration of the run that `config` resumes, as long as the user asked for."""
     configuration.check(config)
-    place = Path(str(config.resume)) / "config.yaml"
-    if not place.exists():
-        raise UsageError(f"resume={config.resume}: no run folder there (no config.yaml in it)")
-    if not checkpoint.steps(place.parent / "checkpoints"):
-        raise UsageError(f"resume={config.resume}: holds no checkpoint; start the run anew")
-    old = OmegaConf.load(place)
+    folder = Path(str(config.resume))
+    old = run_folder.read(folder, "resume")
+    if not checkpoint.steps(folder / "checkpoints"):
+        raise UsageError(f"resume={folder}: holds no checkpoint; start the run again")
     for key in asked.keys() - {"resume", "total_steps"}:
         before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
         if before is UNKNOWN or before != now:
-            has = "" if before is UNKNOWN else f"; the run in resume={config.resume} has {before}"
+            has = "" if before is UNKNOWN else f"; the run in resume={folder} has {before}"
             raise UsageError(
                 f"{key}={asked[key]}: beside resume only total_steps can be changed{has}"
             )
+    with run_folder.blamed(folder):
+        configuration.check(old)
     if "total_steps" in asked:
         if config.total_steps < old.total_steps:
             raise UsageError(
-                f"total_steps={config.total_steps}: the run in resume={config.resume} "
+                f"total_steps={config.total_steps}: the run in resume={folder} "
                 f"has {old.total_steps}; it can be raised, not lowered"
             )
         old.total_steps = config.total_steps
@@ -114,42 +128,15 @@ def _settings(config: DictConfig, asked: Mapping[str, str]) -> DictConfig:
     return old
 
 
-def _folder(config: DictConfig) -> Path:
-    """The run folder: the resumed one, or one that is new and ours alone."""
-    if config.resume is not None:
-        return _writable(Path(str(config.resume)), "resume")
-    if config.run_dir is not None:
-        folder = Path(str(config.run_dir))
-        if (folder / "config.yaml").exists():
-            raise UsageError(
-                f"run_dir={folder}: holds a run already; choose another, or resume={folder}"
-            )
-        return _writable(folder, "run_dir")
-    parent = _writable(Path("runs") / config.task / config.algo, "run_dir")
-    stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}"
-    for number in range(10_000):
-        folder = parent / (f"{stem}_{number}" if number else stem)
-        try:
-            folder.mkdir()
-        except FileExistsError:
-            continue
-        return folder
-    raise UsageError(f"run_dir=null: no free name left for {parent / stem}")
-
-
-def _writable(folder: Path, key: str) -> Path:
-    """`folder`, made if need be.
-
-    Raises:
-        UsageError: where it cannot be written to.
-    """
+def _done(config: DictConfig, folder: Path) -> dict[str, Any] | None:
+    """What summary.json holds where the run in `folder` has come to its end, with a checkpoint."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=folder):  # of no other run that begins at the same time
-            pass
-    except OSError as error:
-        raise UsageError(f"{key}={folder}: cannot be written to ({error.strerror})") from error
-    return folder
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        done = summary["finished"] and summary["total_steps"] >= config.total_steps
+        newest = folder / "checkpoints" / str(summary["total_steps"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return summary if done and manifest.flaw(newest) is None else None
 
 
 def _memory(run: Run) -> str:
@@ -213,7 +200,7 @@ def _job(config: DictConfig) -> None:
     print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
     if summary["signal"] is not None:
         sys.exit(128 + summary["signal"])
-    if summary["diverged"]:
+    if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])
         raise DivergenceError(divergence.line(summary["diverged"], left, None))
 
@@ -222,7 +209,7 @@ def _result(summary: Mapping[str, Any]) -> str:
     """The evaluation and the training return, with the mean over seeds."""
     said = []
     for name, each in (("evaluation", "final_eval"), ("training return", "final_return")):
-        values = summary[each]
+        values = summary.get(each, [])
         known = [value for value in values if value is not None]
         text = f"{sum(known) / len(known):,.1f}" if known else "none yet"
         if known and len(values) > 1:

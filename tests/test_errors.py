@@ -56,6 +56,8 @@ USAGE = [  # overrides of train, words of the line
     ("num_envs=2.5", f"num_envs=2.5: {COUNT}"),
     ("num_envs=many", f"num_envs=many: {COUNT}"),
     ("seed=-1", "seed=-1: must be a whole number, 0 or more"),
+    ("seed=4294967296", "seed=4294967296: must be at most 4294967295 with num_seeds=1"),
+    ("seed=4294967290 num_seeds=8", "seed=4294967290: must be at most 4294967288 with num_seeds=8"),
     ("planner.temperature=0", "planner.temperature=0: must be above 0"),
     ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
     ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
@@ -199,7 +201,7 @@ def test_resume_refuses_other_settings(nothing_lost, folders, capfd, given, word
 
 def test_resume_needs_a_checkpoint(nothing_lost, folders, capfd):
     assert call_train(f"resume={folders['begun']}") == 2
-    assert "holds no checkpoint; start the run anew" in only_line(capfd)
+    assert "holds no checkpoint; start the run again" in only_line(capfd)
 
 
 def test_a_run_is_never_written_over(nothing_lost, folders, capfd):
@@ -247,10 +249,10 @@ def test_a_full_disk_leaves_the_last_checkpoint(copied, monkeypatch, capfd):
     kept = contents(copied / "checkpoints")
     save, limits = checkpoint.save, resource.getrlimit(resource.RLIMIT_FSIZE)
 
-    def save_on_a_full_disk(*arguments):
+    def save_on_a_full_disk(*arguments, **known):
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
         try:
-            save(*arguments)
+            save(*arguments, **known)
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
@@ -260,6 +262,20 @@ def test_a_full_disk_leaves_the_last_checkpoint(copied, monkeypatch, capfd):
     assert "checkpoint 700" in said
     assert "File too large; checkpoint 600 is whole" in said
     assert contents(copied / "checkpoints") == kept
+
+
+def test_a_full_disk_is_named(copied, capfd):
+    """Also where the system itself names no file: it refuses any longer than 1,000 bytes."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    try:
+        assert call_train(f"resume={copied}", "total_steps=700") == 1
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    said = only_line(capfd)
+    assert f"File too large: '{copied}/config.yaml'" in said
+    assert checkpoint.steps(copied / "checkpoints") == [500, 600]
+    assert not list(copied.glob(".*"))
 
 
 def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, capfd):

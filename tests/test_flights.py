@@ -1,6 +1,8 @@
 """The command that tells what flights cost and taught."""
 
 import json
+from types import SimpleNamespace
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -98,6 +100,21 @@ def test_runs_become_a_picture_and_its_numbers(tmp_path) -> None:
     assert out.stat().st_size > 1000
     assert call(lambda: command.guarded(flights.main), *arguments[:2], "updates=0") == 0
     assert "tracking" not in json.loads(out.with_suffix(".json").read_text())["ou_noise 0.1"]
+
+
+def test_a_batch_and_its_update_have_keys_of_their_own() -> None:
+    """A learner whose state counts the updates that were given the key of their batch."""
+    same = lambda batch, key: jnp.all(batch == jax.random.key_data(key))  # noqa: E731
+    learner = SimpleNamespace(
+        batch_size=1,
+        init=lambda key, spec: jnp.zeros((), int),
+        update=lambda state, params, batch, key: (state + same(batch, key), {}),
+        params=lambda state: {"model": state},
+    )
+    replay = SimpleNamespace(sample=lambda memory, spec, size, key: jax.random.key_data(key))
+    agent = SimpleNamespace(learners={"model": learner}, replay=replay, spec=None)
+    run: Any = SimpleNamespace(agent=agent)
+    assert flights.learn(run, None, 5, jax.random.key(0)).model == 0
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call_train, run
+from tiny import TINY, call_train, contents, run
 
 from hybrid_rl.training import checkpoint
 
@@ -118,11 +118,11 @@ def test_a_run_made_longer_is_the_longer_run(interrupt, whole, halves, tmp_path)
     assert (kept.total_steps, kept.resume) == (600, None)
 
 
-def test_a_finished_run_stays_as_it_is(interrupt, whole, capsys):
-    before = (whole / "metrics.jsonl").read_bytes()
+def test_a_finished_run_stays_as_it_is(whole, capsys):
+    before = contents(whole)
     assert call_train(f"resume={whole}", *HYBRID, "policy.hidden=[16]") == 0
-    assert (whole / "metrics.jsonl").read_bytes() == before
-    assert json.loads((whole / "summary.json").read_text())["finished"]
+    assert "finished already at 600; raise total_steps to go on" in capsys.readouterr().out
+    assert contents(whole) == before
 
 
 def test_without_replay_it_goes_on_and_says_so(interrupt, whole, tmp_path, capsys):

@@ -84,7 +84,7 @@ class Agent:
 
     def init(self, key: Array) -> AgentState:
         """The state before the first decision. The key is consumed."""
-        run, world, *learning = jax.random.split(key, 2 + len(self.learners))
+        run, world, *learning, ahead = jax.random.split(key, 3 + len(self.learners))
         env = jax.vmap(self.episode.reset)(jax.random.split(world, self.num_envs))
         memory = self.replay.init(self.spec, self.num_envs)
         learners = {
@@ -92,7 +92,7 @@ class Agent:
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
         if self.head_start:
-            learners = self._ahead(learners, memory, jax.random.fold_in(run, self.head_start))
+            learners = self._ahead(learners, memory, ahead)
         return AgentState(env, self._at_rest(), memory, learners, run)
 
     def params(self, state: AgentState) -> Params:

@@ -6,35 +6,31 @@
                /manifest.json  every file above with its size and SHA-256
 
 A checkpoint is written as FOLDER/.STEP.tmp, forced to the disk, then renamed:
-whatever has a number for a name was finished. Leaves are stored flat, by their
-path in the state, so that containers of any type are welcome and a part of the
-state (say, parameters without replay memory) can be restored alone.
+whatever has a number for a name was finished. An older one of that step is
+FOLDER/.STEP.replaced.tmp for the moment between the two renames, and counts as
+STEP until there is a new one. A checkpoint is renamed before it is deleted, so
+that another process reads all of it or finds it gone, and takes a newer one.
+Leaves are stored flat, by their path in the state, so that containers of any
+type are welcome and a part of the state (say, parameters without replay memory)
+can be restored alone.
 """
 
 import contextlib
-import io
 import json
-import logging
 import re
 import shutil
-import sys
-import time
-from collections.abc import Iterator
+from collections.abc import Collection
 from pathlib import Path
-from urllib.parse import quote
 
 import jax
-import numpy as np
 
-from hybrid_rl.training import manifest
+from hybrid_rl.training import leaves, manifest
+from hybrid_rl.training.leaves import CheckpointError
 from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints that stay
-AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write
-
-
-class CheckpointError(OSError):
-    """A checkpoint that cannot be written, or none that can be read; one line says why."""
+ATTEMPTS = 100  # at reading a folder whose checkpoints are replaced meanwhile
+NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.tmp")  # of a finished checkpoint
 
 
 def nbytes(state: PyTree) -> int:
@@ -44,30 +40,57 @@ def nbytes(state: PyTree) -> int:
 
 def steps(folder: Path) -> list[int]:
     """Steps of the finished checkpoints in `folder`, oldest first."""
-    if not folder.is_dir():
-        return []
-    return sorted(int(path.name) for path in folder.iterdir() if path.name.isdecimal())
+    return sorted(_finished(folder))
 
 
-def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -> Path:
+def _finished(folder: Path) -> dict[int, Path]:
+    """The finished checkpoints in `folder` by step."""
+    found: dict[int, Path] = {}
+    for path in folder.iterdir() if folder.is_dir() else ():
+        if match := NAME.fullmatch(path.name):
+            step = int(match[1] or match[2])
+            if match[1] or step not in found:  # the replaced one counts where there is no other
+                found[step] = path
+    return found
+
+
+def shapes(folder: Path) -> dict[str, tuple[int, ...]]:
+    """Shape of each leaf of the newest checkpoint that can be read; empty where none can."""
+    for path in (path for _, path in sorted(_finished(folder).items(), reverse=True)):
+        with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
+            return leaves.shapes(path)
+    return {}
+
+
+def save(
+    folder: Path,
+    step: int,
+    state: PyTree,
+    meta: dict,
+    keep: int = KEEP,
+    known: Collection[int] | None = None,
+) -> Path:
     """Writes FOLDER/STEP, then deletes all but the newest `keep`.
 
-    Checkpoints beyond `step` go too: they belong to a future that was left when
-    the run went on from here. `meta` is anything that JSON holds.
+    Checkpoints beyond `step` are deleted too: they belong to a future that was left when
+    the run went on from here. Of checkpoints other than `known` none is deleted: another
+    process wrote them; None: all are known. `meta` is anything that JSON holds.
+
+    Raises:
+        CheckpointError: where it cannot be written; what was there stays.
     """
-    leaves, kinds = _flatten(state)
+    arrays, kinds = leaves.flatten(state)
     texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
     draft = folder / f".{step}.tmp"
     try:
-        for stale in folder.glob(".*.tmp"):
-            shutil.rmtree(stale)
+        _recover(folder)
         draft.mkdir(parents=True)
-        _fits(folder, sum(leaf.nbytes for leaf in leaves.values()))
+        _fits(folder, sum(array.nbytes for array in arrays.values()))
         for name, text in texts.items():
             (draft / name).write_text(text + "\n", encoding="utf-8")
-        _write(draft.resolve() / "state", leaves)
+        leaves.write(draft.resolve() / "state", arrays)
         manifest.seal(draft)
-        place = _rename(draft, folder / str(step))
+        path = _rename(draft, folder / str(step))
     except Exception as problem:
         line = _refusal(folder, step, problem)
         shutil.rmtree(draft, ignore_errors=True)
@@ -75,8 +98,8 @@ def save(folder: Path, step: int, state: PyTree, meta: dict, keep: int = KEEP) -
     except BaseException:  # Ctrl-C and the like
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    _prune(folder, step, keep)
-    return place
+    _prune(folder, step, keep, known)
+    return path
 
 
 def restore(
@@ -86,51 +109,55 @@ def restore(
 
     `like` gives the structure, shapes and dtypes (arrays, or what `jax.eval_shape`
     returns); leaves come back as arrays on the default device. part: `like` may lack leaves
-    that the checkpoint has. `notes` says in one line each what was passed over.
+    that the checkpoint has. `notes` says in one line each what was passed over. Another
+    process may write checkpoints to `folder` and delete older ones meanwhile.
+
+    Raises:
+        CheckpointError: where there is none that is sound.
+        MisfitError: where the checkpoint has other leaves than `like`.
     """
-    found = steps(folder)
-    if step is not None and step not in found:
-        raise CheckpointError(f"{folder} has no checkpoint {step}; it has {found or 'none'}")
-    wanted = found[::-1] if step is None else [step]
-    notes = []
-    for candidate in wanted:
-        place = folder / str(candidate)
-        flaw = manifest.flaw(place)
-        if flaw is None:
-            try:
-                return candidate, *_read(place, like, part), notes
-            except CheckpointError:
-                raise
-            except (OSError, ValueError) as problem:  # TensorStore raises ValueError
-                flaw = " ".join(str(problem).split())
-        notes.append(f"checkpoint {candidate} is passed over: {flaw}")
-    if not notes:
-        raise CheckpointError(f"{folder} holds no checkpoint")
-    raise CheckpointError(f"{folder} holds no sound checkpoint: " + "; ".join(notes))
+    for _ in range(ATTEMPTS):
+        found = _finished(folder)
+        if step is not None and step not in found:
+            has = sorted(found) or "none"
+            raise CheckpointError(f"{folder} has no checkpoint {step}; it has {has}")
+        notes = []
+        for candidate in sorted(found, reverse=True) if step is None else [step]:
+            path = found[candidate]
+            before = _identity(path)
+            read, flaw = _attempt(path, like, part)
+            if before is None or _identity(path) != before:
+                break  # deleted or replaced while it was read
+            if read is not None:
+                return candidate, *read, notes
+            notes.append(f"checkpoint {candidate} is passed over: {flaw}")
+        else:
+            if not notes:
+                raise CheckpointError(f"{folder} holds no checkpoint")
+            raise CheckpointError(f"{folder} holds no sound checkpoint: " + "; ".join(notes))
+    raise CheckpointError(f"{folder}: checkpoints are replaced faster than they can be read")
 
 
-def _flatten(state: PyTree) -> tuple[dict[str, np.ndarray], dict[str, dict]]:
-    """Arrays on the host by name, and what each was."""
-    leaves, kinds = {}, {}
-    for name, leaf in _named(state):
-        key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
-        kinds[name] = {
-            "shape": list(leaf.shape),
-            "dtype": str(leaf.dtype),
-            "key": str(jax.random.key_impl(leaf)) if key else None,
-        }
-        leaves[name] = np.asarray(jax.device_get(jax.random.key_data(leaf) if key else leaf))
-    return leaves, kinds
+def _identity(path: Path) -> tuple[int, int, int] | None:
+    """What a folder keeps when it is renamed and no other has; None where there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino, found.st_mtime_ns
 
 
-def _named(tree: PyTree) -> list[tuple[str, jax.Array]]:
-    """Leaves beside their names, in the order of the tree: "learners.sac.params"."""
-    pairs = jax.tree_util.tree_flatten_with_path(tree)[0]
-    names = [quote(jax.tree_util.keystr(path, simple=True, separator=".")) for path, _ in pairs]
-    if len(set(names)) < len(names):
-        twice = sorted(name for name in set(names) if names.count(name) > 1)
-        raise ValueError(f"leaves of one state share a name: {twice}")
-    return [(name or "state", leaf) for name, (_, leaf) in zip(names, pairs, strict=True)]
+def _attempt(path: Path, like: PyTree, part: bool) -> tuple[tuple[PyTree, dict] | None, str]:
+    """State and meta of the checkpoint at `path`, or None and why it has none."""
+    flaw = manifest.flaw(path)
+    if flaw is not None:
+        return None, flaw
+    try:
+        return leaves.read(path, like, part), ""
+    except CheckpointError:
+        raise
+    except (OSError, ValueError) as problem:  # TensorStore raises ValueError
+        return None, " ".join(str(problem).split())
 
 
 def _fits(folder: Path, needed: int) -> None:
@@ -140,22 +167,33 @@ def _fits(folder: Path, needed: int) -> None:
         raise OSError(f"it needs {needed / 1e6:.0f} MB and the disk has {free / 1e6:.0f} MB left")
 
 
-def _rename(draft: Path, place: Path) -> Path:
+def _recover(folder: Path) -> None:
+    """Gives a replaced checkpoint its name back where a kill left no other; drops old drafts."""
+    for step, path in _finished(folder).items():
+        if path.name != str(step):
+            path.rename(folder / str(step))
+    for stale in folder.glob(".*.tmp"):
+        shutil.rmtree(stale)
+
+
+def _rename(draft: Path, path: Path) -> Path:
     """Gives a finished draft its name, and takes the name from an older one."""
-    if place.exists():
-        place.rename(place.with_name(f".{place.name}.replaced.tmp"))
-    draft.rename(place)
-    manifest.sync(place.parent)
-    return place
+    if path.exists():
+        path.rename(path.with_name(f".{path.name}.replaced.tmp"))
+    draft.rename(path)
+    manifest.sync(path.parent)
+    return path
 
 
-def _prune(folder: Path, newest: int, keep: int) -> None:
-    """Deletes what a new checkpoint makes superfluous."""
-    sound = [s for s in steps(folder) if s <= newest and not manifest.flaw(folder / str(s), False)]
-    stays = {str(s) for s in sound[-keep:]}
-    for path in folder.iterdir():
-        if (path.name.isdecimal() and path.name not in stays) or path.match(".*.tmp"):
-            shutil.rmtree(path, ignore_errors=True)
+def _prune(folder: Path, newest: int, keep: int, known: Collection[int] | None) -> None:
+    """Deletes those of the `known` checkpoints that a new one makes superfluous."""
+    ours = [s for s in steps(folder) if known is None or s in known or s == newest]
+    sound = [s for s in ours if s <= newest and not manifest.flaw(folder / str(s), False)]
+    for step in set(ours) - set(sound[-keep:]):
+        with contextlib.suppress(OSError):
+            (folder / str(step)).rename(folder / f".{step}.pruned.tmp")
+    for path in folder.glob(".*.tmp"):
+        shutil.rmtree(path, ignore_errors=True)
 
 
 def _refusal(folder: Path, step: int, problem: Exception) -> str:
@@ -166,73 +204,3 @@ def _refusal(folder: Path, step: int, problem: Exception) -> str:
     before = [s for s in steps(folder) if not manifest.flaw(folder / str(s), False)]
     kept = f"checkpoint {before[-1]} is whole" if before else "there is no earlier one"
     return f"checkpoint {step} in {folder} was not written: {reason}; {kept}"
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Keeps Orbax's and TensorStore's running commentary off the terminal."""
-    logger = logging.getLogger("absl")
-    level, hook = logger.level, sys.unraisablehook
-    logger.setLevel(logging.CRITICAL + 1)
-    sys.unraisablehook = lambda _: None
-    try:
-        with contextlib.redirect_stderr(io.StringIO()):
-            yield
-    finally:
-        logger.setLevel(level)
-        sys.unraisablehook = hook
-
-
-def _write(path: Path, leaves: dict[str, np.ndarray]) -> None:
-    """Orbax, uncompressed: three times as fast as compressed, and random bits do not shrink."""
-    import orbax.checkpoint as ocp  # 1 s
-
-    filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
-    handler = ocp.PyTreeCheckpointHandler(use_compression=False)
-    with _quiet(), ocp.Checkpointer(handler) as writer:
-        try:
-            writer.save(path, ocp.args.PyTreeSave(filled))
-        except Exception:
-            time.sleep(AFTERMATH)
-            raise
-
-
-def _read(place: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
-    """State and meta of a sound checkpoint."""
-    import orbax.checkpoint as ocp  # 1 s
-
-    meta = json.loads((place / "meta.json").read_text(encoding="utf-8"))
-    kinds = json.loads((place / "leaves.json").read_text(encoding="utf-8"))
-    wanted = dict(_named(like))
-    _match(place, kinds, wanted, part)
-    filled = {name: 0 for name in wanted if 0 not in kinds[name]["shape"]}
-    host = dict.fromkeys(filled, ocp.RestoreArgs(restore_type=np.ndarray))
-    args = ocp.args.PyTreeRestore(item=filled, restore_args=host, partial_restore=True)
-    with _quiet(), ocp.Checkpointer(ocp.PyTreeCheckpointHandler()) as reader:
-        arrays = reader.restore(place.resolve() / "state", args)
-    state = []
-    for name, leaf in wanted.items():
-        array = jax.numpy.array(arrays.pop(name) if name in arrays else np.zeros(**_empty(leaf)))
-        kind = kinds[name]["key"]
-        state.append(jax.random.wrap_key_data(array, impl=kind) if kind else array)
-    return jax.tree.unflatten(jax.tree.structure(like), state), meta
-
-
-def _empty(leaf: jax.Array) -> dict:
-    """Shape and dtype of an array without elements, of keys as of numbers."""
-    key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
-    data = jax.eval_shape(jax.random.key_data, leaf) if key else leaf
-    return {"shape": data.shape, "dtype": data.dtype}
-
-
-def _match(place: Path, kinds: dict[str, dict], wanted: dict, part: bool) -> None:
-    """Raises where a sound checkpoint is of another run than `wanted`."""
-    for name, leaf in wanted.items():
-        here = f"{leaf.dtype}{list(leaf.shape)}"
-        there = f"{kinds[name]['dtype']}{kinds[name]['shape']}" if name in kinds else "absent"
-        if here != there:
-            line = f"{place} does not fit this run: {name} is {here} here and {there} there"
-            raise CheckpointError(line)
-    surplus = sorted(set(kinds) - set(wanted))
-    if surplus and not part:
-        raise CheckpointError(f"{place} does not fit this run: {surplus[0]} is there and not here")

@@ -9,6 +9,8 @@ whose writer never finished.
 import hashlib
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 MANIFEST = "manifest.json"
@@ -66,7 +68,23 @@ def sync(path: Path) -> None:
 def write_text(path: Path, text: str) -> None:
     """Replaces the text of a file so that a reader sees the old or the new, never a part."""
     draft = path.with_name(f".{path.name}.tmp")
-    draft.write_text(text, encoding="utf-8")
-    sync(draft)
-    draft.replace(path)
-    sync(path.parent)
+    with naming(path):
+        try:
+            draft.write_text(text, encoding="utf-8")
+            sync(draft)
+            draft.replace(path)
+        except OSError:
+            draft.unlink(missing_ok=True)
+            raise
+        sync(path.parent)
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Adds `path` to an OSError that names no file: writing to a full disk raises such ones."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None and error.errno is not None:
+            error.filename = str(path)
+        raise

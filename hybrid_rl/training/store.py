@@ -1,6 +1,6 @@
 """The checkpoints of a run: the learners' state, and the metrics since the last row."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ class Store:
     loop: Loop
     replay: bool
     newest: int | None = None  # step of the checkpoint that was written or read last
+    known: set[int] = field(default_factory=set)  # checkpoints that this session may delete
 
     def save(self, step: int, state: Any, gathered: Gathered, meta: dict) -> None:
         """A checkpoint of all that the run needs to go on.
@@ -35,7 +36,8 @@ class Store:
         shape = [] if array is None else list(array.shape)
         here = {"step": step, "capacity": self.loop.agent.replay.capacity}
         here |= {"gathered": {"names": names, "shape": shape}}
-        checkpoint.save(self.folder, step, leaves, here | meta)
+        checkpoint.save(self.folder, step, leaves, here | meta, known=self.known)
+        self.known.add(step)
         self.newest = step
 
     def restore(self) -> tuple[Any, Gathered, dict, list[str]]:
@@ -46,6 +48,7 @@ class Store:
         Raises:
             CheckpointError: where there is none, or it is of another run.
         """
+        self.known = set(checkpoint.steps(self.folder))
         like = self._like().replace(memory=None)
         self.newest, state, meta, notes = checkpoint.restore(self.folder, like, part=True)
         memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory

@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from threading import Thread
 from typing import NamedTuple
 
 import jax
@@ -13,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.training import checkpoint
+from hybrid_rl.training import checkpoint, leaves
 from hybrid_rl.training.checkpoint import CheckpointError
 
 
@@ -204,7 +205,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.training import checkpoint
+from hybrid_rl.training import checkpoint, leaves
 folder = Path(sys.argv[1])
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
 checkpoint._rename = lambda draft, place: os.kill(os.getpid(), signal.SIGKILL)
@@ -220,6 +221,81 @@ def test_a_kill_before_the_rename_leaves_the_one_before(tmp_path):
     assert (step, found["x"].tolist(), notes) == (1, [1, 1, 1], [])
     checkpoint.save(tmp_path, 3, {"x": jnp.zeros(3)}, {})
     assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "3"]
+
+
+BETWEEN = """
+import os, signal, sys
+from pathlib import Path
+import jax.numpy as jnp
+from hybrid_rl.training import checkpoint
+folder = Path(sys.argv[1])
+checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
+rename = Path.rename
+def killed(path, target):
+    rename(path, target)
+    if target.name == ".1.replaced.tmp":
+        os.kill(os.getpid(), signal.SIGKILL)
+Path.rename = killed
+checkpoint.save(folder, 1, {"x": jnp.zeros(3)}, {})
+"""
+
+
+def test_a_kill_between_the_renames_leaves_the_replaced_one(tmp_path):
+    done = subprocess.run([sys.executable, "-c", BETWEEN, str(tmp_path)], check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert not (tmp_path / "1").exists()
+    assert checkpoint.steps(tmp_path) == [1]
+    step, found, _, notes = checkpoint.restore(tmp_path, {"x": jnp.zeros(3)})
+    assert (step, found["x"].tolist(), notes) == (1, [1, 1, 1], [])
+    checkpoint.save(tmp_path, 2, {"x": jnp.zeros(3)}, {})
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "2"]
+
+
+def test_what_another_process_wrote_stays(three):
+    """A session deletes what it saw at its start and what it wrote, also beyond its step."""
+    checkpoint.save(three, 60, state_at(60), {}, known={20, 30})
+    assert checkpoint.steps(three) == [30, 60]
+    checkpoint.save(three, 25, state_at(25), {}, known={30, 20})
+    assert checkpoint.steps(three) == [25, 60]
+    checkpoint.save(three, 40, state_at(40), {}, keep=1, known={25})
+    assert checkpoint.steps(three) == [40, 60]
+
+
+def test_a_folder_is_read_while_its_checkpoints_are_deleted(three, monkeypatch):
+    """Each time that one was read in part, its writer deletes it; a newer one is there."""
+    read, behind = leaves.read, [30, 40, 50]
+
+    def overtaken(path, like, part):
+        got = read(path, like, part)
+        if behind:
+            checkpoint.save(three, behind.pop(0) + 10, state_at(0), {}, keep=1)
+        return got
+
+    monkeypatch.setattr(leaves, "read", overtaken)
+    step, _, _, notes = checkpoint.restore(three, state_at(0))
+    assert (step, notes) == (60, [])
+
+
+def test_a_folder_is_read_while_a_thread_saves_and_deletes(tmp_path):
+    """Every state that is read is one that was saved, whole."""
+    states = {step: {"x": jnp.full(1000, step)} for step in range(1, 31)}
+    checkpoint.save(tmp_path, 1, states[1], {"step": 1}, keep=1)
+
+    def go_on():
+        for step in range(2, 31):
+            checkpoint.save(tmp_path, step, states[step], {"step": step}, keep=1)
+
+    writer = Thread(target=go_on)
+    writer.start()
+    seen = []
+    while writer.is_alive() or not seen:
+        step, found, meta, notes = checkpoint.restore(tmp_path, states[1])
+        assert (meta["step"], notes) == (step, [])
+        assert np.all(found["x"] == step)
+        seen.append(step)
+    writer.join()
+    assert seen == sorted(seen)
+    assert checkpoint.steps(tmp_path) == [30]
 
 
 def assert_untouched(folder):
@@ -246,7 +322,7 @@ def test_a_full_disk_is_one_clear_line(three, monkeypatch):
         path.mkdir()
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(checkpoint, "_write", full)
+    monkeypatch.setattr(leaves, "write", full)
     with pytest.raises(CheckpointError) as caught:
         checkpoint.save(three, 40, state_at(40), {})
     assert str(caught.value) == (
@@ -259,7 +335,7 @@ def test_a_full_disk_is_one_clear_line(three, monkeypatch):
 def test_a_disk_too_small_is_not_filled(three, monkeypatch):
     usage = shutil.disk_usage(three)._replace(free=100)
     monkeypatch.setattr(shutil, "disk_usage", lambda path: usage)
-    monkeypatch.setattr(checkpoint, "_write", lambda *_: pytest.fail("it was written to"))
+    monkeypatch.setattr(leaves, "write", lambda *_: pytest.fail("it was written to"))
     with pytest.raises(CheckpointError, match="it needs 0 MB and the disk has 0 MB left"):
         checkpoint.save(three, 40, state_at(40), {})
     assert_untouched(three)
@@ -269,7 +345,7 @@ def test_an_interrupt_leaves_no_draft(three, monkeypatch):
     def interrupted(path, leaves):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(checkpoint, "_write", interrupted)
+    monkeypatch.setattr(leaves, "write", interrupted)
     with pytest.raises(KeyboardInterrupt):
         checkpoint.save(three, 40, state_at(40), {})
     assert_untouched(three)

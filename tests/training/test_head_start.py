@@ -70,11 +70,22 @@ def test_the_head_start_is_gradient_steps_on_demonstrations(agent):
     count = ahead.optimiser[0].count
     assert (int(count), int(still.optimiser[0].count)) == (3, 0)
     state = still
-    run = jax.random.split(KEY, 3)[0]
-    for key in jax.random.split(jax.random.fold_in(run, 3), 3):
+    for key in jax.random.split(jax.random.split(KEY, 4)[3], 3):
         ((_, updating),) = jax.random.split(key, (1, 2))
         state = learners["cloning"].update(state, None, None, updating)[0]
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
+
+
+def test_no_key_of_the_head_start_is_used_again(agent, monkeypatch):
+    """Its own, and those of its steps, are none of the first state's or the first decision's."""
+    given = []
+    monkeypatch.setattr(Agent, "_ahead", lambda _, states, memory, key: given.append(key) or states)
+    state = agent.init(KEY)
+    first = jax.random.split(KEY, 2 + len(agent.learners))
+    decision = jax.random.split(state.key, 3 + 2 * agent.num_envs)
+    steps = jax.random.split(given[0], agent.head_start)
+    keys = jnp.concatenate([given[0][None], steps, first, decision])
+    assert len(np.unique(jax.random.key_data(keys), axis=0)) == len(keys)
 
 
 def test_a_head_start_needs_demonstrations(agent):
