@@ -1,7 +1,6 @@
 """A method is one YAML; a part is one Python file and one YAML; nothing else is edited."""
 
 import json
-import subprocess
 import sys
 
 import pytest
@@ -68,7 +67,6 @@ def part(conf, tmp_path, monkeypatch):
     (conf / "proposal").mkdir()
     (conf / "proposal" / "toy.yaml").write_text(PART_YAML)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     yield
     sys.modules.pop("my_part", None)
 
@@ -85,12 +83,11 @@ def test_a_method_is_one_yaml(conf, tmp_path, capfd):
     assert (said["algo"], said["finished"]) == ("toy", True)
 
 
-def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path):
+def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path, capfd):
     folder = tmp_path / "run"
     line = [*TINY, "algo=toy", "proposal=toy", "total_steps=200", f"run_dir={folder}"]
-    whole = [sys.executable, "-m", "hybrid_rl.train", "--config-dir", str(conf), *line]
-    done = subprocess.run(whole, cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert call_train("--config-dir", conf, *line) == 0
+    assert capfd.readouterr().err == ""
     kept = OmegaConf.load(folder / "config.yaml")
     assert kept.controllers.full.proposal == {"_target_": "my_part.Anywhere", "reach": 0.5}
     assert call(lambda: command.guarded(evaluate.main), f"run={folder}", "episodes=1") == 0
