@@ -106,6 +106,16 @@ def test_a_method_that_needs_a_formula_says_so(algo: str) -> None:
         config.build(config.load(["task=halfcheetah", f"algo={algo}"]))
 
 
+def test_settings_stand_on_the_command_line() -> None:
+    """They come after the method, and before what else the line says."""
+    c = config.load(["settings=thesis"])
+    assert (c.planner.horizon, c.model.hidden, c.imagining.share) == (5, [200], 0)
+    c = config.load(["settings=light", "total_steps=10", "algo=hybrid_stochastic"])
+    learner = c.learners.policy.learner
+    assert (learner.updates, learner.critic.hidden, c.total_steps) == (4, [128, 128], 10)
+    config.build(c)
+
+
 def test_thesis_parameters() -> None:
     """Table B.1, with its swapped columns put right."""
     table = {  # H, T, K, lambda
