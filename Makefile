@@ -15,7 +15,7 @@ setup: .venv/.installed
 	@$(PYTHON) scripts/bootstrap.py
 
 train: setup
-	$(RUN) hybrid_rl.train $(ARGS)
+	$(RUN) hybrid_rl.train $(or $(ARGS),settings=light)
 
 test: setup
 	$(RUN) pytest -n $(WORKERS) --dist loadgroup $(ARGS)

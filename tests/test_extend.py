@@ -90,12 +90,11 @@ def test_a_method_is_one_yaml(conf, tmp_path, capfd):
     assert (said["algo"], said["finished"]) == ("toy", True)
 
 
-def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path):
+def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path, capfd):
     folder = tmp_path / "run"
     line = [*TINY, "algo=toy", "proposal=toy", "total_steps=200", f"run_dir={folder}"]
-    whole = [sys.executable, "-m", "hybrid_rl.train", "--config-dir", str(conf), *line]
-    done = subprocess.run(whole, cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert call_train("--config-dir", conf, *line) == 0
+    assert capfd.readouterr().err == ""
     kept = OmegaConf.load(folder / "config.yaml")
     assert kept.controllers.full.proposal == {"_target_": "my_part.Anywhere", "reach": 0.5}
     assert call(lambda: command.guarded(evaluate.main), f"run={folder}", "episodes=1") == 0

@@ -1,4 +1,4 @@
-"""An installed wheel works: from an empty folder, and from one with envs/ and conf/ of its own."""
+"""An installed wheel works from any folder, even one with envs/ and conf/ of its own."""
 
 import json
 import os
@@ -49,14 +49,13 @@ def python(wheel, tmp_path_factory):
     return python
 
 
-@pytest.fixture(params=["empty", "with its own envs and conf"])
-def folder(request, tmp_path):
-    """Where a user stands."""
-    if request.param != "empty":
-        for name in ("envs", "conf", "tests"):
-            tmp_path.joinpath(name).mkdir()
-            tmp_path.joinpath(name, "__init__.py").write_text("raise RuntimeError('not ours')")
-        tmp_path.joinpath("conf", "train.yaml").write_text("task: not ours")
+@pytest.fixture
+def folder(tmp_path):
+    """A user's working directory, with folders of its own whose names are ours in a checkout."""
+    for name in ("envs", "conf", "tests"):
+        tmp_path.joinpath(name).mkdir()
+        tmp_path.joinpath(name, "__init__.py").write_text("raise RuntimeError('not ours')")
+    tmp_path.joinpath("conf", "train.yaml").write_text("task: not ours")
     return tmp_path
 
 

@@ -33,6 +33,7 @@ TINY = [
     "model_learner.batch_size=16",
     "policy_learner.batch_size=16",
     "policy_learner.updates=1",
+    "imagining.steps=1",
     "compile_cache=null",  # that of conftest.py
 ]
 

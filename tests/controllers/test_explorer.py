@@ -129,16 +129,16 @@ def test_search_earns_no_less_than_no_correction() -> None:
 
 def test_record_by_hand() -> None:
     """V, its change under the policy, and the bound, of the exact model."""
-    controller = replace(KLE3, model=Exact(WORLD))
-    _, state, metrics = controller.act(
-        Params(), controller.init(WORLD.spec), START, jax.random.key(0)
-    )
+    controller = replace(KLE3, model=Exact(WORLD), horizon=3)
+    begin = controller.init(WORLD.spec)
+    _, state, metrics = jax.jit(controller.act)(Params(), begin, START, jax.random.key(0))
+    flow, mean = jax.jit(WORLD.flow), jax.jit(lambda x: PI.mean((), x))
     P = PI.solve()[1]
 
     def value(x: Array) -> float:
         return float(np.float64(x) @ P @ np.float64(x))
 
-    after = WORLD.flow(START, PI.mean((), START))
+    after = flow(START, mean(START))
     assert float(metrics["planner/lyapunov"]) == pytest.approx(value(START), rel=1e-4)
     assert float(metrics["planner/lyapunov_rate"]) == pytest.approx(
         value(after) - value(START), rel=0.02
@@ -146,9 +146,9 @@ def test_record_by_hand() -> None:
     assert value(after) < value(START)
     x, apart = START, []
     for v in state.v:
-        u = PI.mean((), x)
-        apart.append(value(WORLD.flow(x, u + v)) - value(WORLD.flow(x, u)))
-        x = WORLD.flow(x, u + v)
+        u = mean(x)
+        apart.append(value(flow(x, u + v)) - value(flow(x, u)))
+        x = flow(x, u + v)
     assert float(metrics["planner/lyapunov_bound"]) == pytest.approx(max(apart), abs=0.02)
 
 
@@ -162,7 +162,7 @@ def test_value_falls_under_the_regulator() -> None:
 def test_level_is_never_left() -> None:
     """With the guard V stays below the level, and corrections still act; without, it does not."""
     level = 100.0
-    free = replace(KLE3, model=Exact(WORLD), gain=1.0)
+    free = replace(KLE3, model=Exact(WORLD), gain=10.0, horizon=3)
     guarded = replace(free, level=level)
     near = 0.2 * START
     x, u, _, metrics = follow(guarded, 300, near)

@@ -193,7 +193,7 @@ def _replay(implementation, task, decisions):
     return jax.tree.map(lambda a: a[:, -1], path), path
 
 
-@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids="sawyer_push-{}".format)
 def test_the_expert_pushes_the_block_home(implementation):
     _, path = _replay(implementation, "sawyer_push", 100)
     assert path.metrics["success"].any(1).all()
@@ -202,7 +202,7 @@ def test_the_expert_pushes_the_block_home(implementation):
     assert jnp.abs(path.data.qvel).max() < 5.0
 
 
-@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids="panda_stack-{}".format)
 def test_the_expert_stacks_the_block(implementation):
     end, path = _replay(implementation, "panda_stack", 120)
     assert path.metrics["success"].any(1).all()

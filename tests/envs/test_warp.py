@@ -12,7 +12,8 @@ from hybrid_rl.envs import accelerated
 @pytest.fixture(scope="module")
 def env():
     """A hopper, for which a CPU counts as a GPU."""
-    pytest.importorskip("warp").config.quiet = True
+    config = pytest.importorskip("warp").config
+    config.quiet, config.optimization_level = True, 0  # a third less to compile
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(jax, "default_backend", lambda: "gpu")
         yield make("hopper", "warp")

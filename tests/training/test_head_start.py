@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from jax import Array
 from tiny import TINY, demonstrate
 
 from hybrid_rl import config
@@ -23,7 +24,7 @@ def agent(tmp_path_factory) -> Agent:
     return config.build(config.load([*line, demonstrate(folder, config.load(line))])).agent
 
 
-def paid(agent: Agent, reward: float):
+def paid(agent: Agent, reward: Array | float):
     """The same agent in a world whose rewards are `reward`."""
     world = agent.episode.env
 
@@ -52,7 +53,8 @@ def same(a, b) -> bool:
 
 def test_experience_changes_the_models_and_not_the_policy(agent):
     """Two worlds that pay differently: one policy, two rewards; and all of it goes on learning."""
-    one, other = (after(paid(agent, reward), 6) for reward in (1.0, -1.0))
+    learned = jax.jit(lambda reward: after(paid(agent, reward), 6))
+    one, other = learned(1.0), learned(-1.0)
     first = agent.params(jax.jit(agent.init)(KEY))
     assert same(one.policy, other.policy)
     assert not same(one.reward, other.reward)
