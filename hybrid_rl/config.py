@@ -13,6 +13,7 @@ from hydra.errors import InstantiationException
 from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
+from hybrid_rl import overrides as given
 from hybrid_rl.envs.physics import resolve
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -32,6 +33,11 @@ COUNTS = (
 )
 
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
+READ = (  # what a run reads, and with it all that these name by interpolation
+    *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "head_start"),
+    *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
+    "matmul_precision",
+)
 
 MODES = ("full", "policy", "planner")
 PRECISIONS = ("highest", "high", "default")
@@ -65,31 +71,72 @@ class Run:
         return tuple(range(self.config.seed, self.config.seed + self.config.num_seeds))
 
 
-def load(overrides: Sequence[str] = ()) -> DictConfig:
+def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) -> DictConfig:
     """The resolved configuration of `python -m hybrid_rl.train OVERRIDES`.
+
+    config_dir: a folder with groups of your own, as of `--config-dir`.
 
     Raises:
         hydra.errors.HydraException: where an override fits nothing in conf/.
-        UsageError: where one appends a key that nothing reads.
+        UsageError: where one names a key that does not exist, or that the method does not use.
     """
     if not GlobalHydra.instance().is_initialized():
         with initialize_config_dir(str(CONF), version_base="1.3"):
-            return load(overrides)
-    refuse_new_keys(overrides)
-    return resolved(compose("train", list(overrides)))
+            return load(overrides, config_dir)
+    more = [] if config_dir is None else [search_path(config_dir)]
+    refuse_new_keys(overrides, more)
+    composed = compose("train", [*more, *overrides])
+    refuse_unused([composed], overrides)
+    return resolved(composed)
 
 
-def refuse_new_keys(overrides: Sequence[str]) -> None:
-    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it."""
-    added = [text.lstrip("+").partition("=")[0] for text in overrides if text.startswith("+")]
-    if not added:
+def search_path(config_dir: str | Path) -> str:
+    """The override by which Hydra finds the groups in a folder of the user's.
+
+    Raises:
+        UsageError: where there is no such folder.
+    """
+    folder = Path(config_dir).expanduser().resolve()
+    if not folder.is_dir():
+        raise UsageError(f"config_dir={config_dir}: no such folder")
+    return f"hydra.searchpath=['file://{folder}']"
+
+
+def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
+    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it.
+
+    more: overrides of Hydra's own keys.
+    """
+    if not any(text.startswith("+") for text in overrides):
         return
-    known = compose("train", [text for text in overrides if not text.startswith("+")])
-    groups = GlobalHydra.instance().config_loader()
-    for key in added:
-        new = OmegaConf.select(known, key, default=UNKNOWN) is UNKNOWN
-        if new and not groups.get_group_options(key.partition("@")[0]):
-            raise UsageError(f"{key}: unknown key; {SHOW}")
+    known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
+    for key in given.new(overrides, known):
+        raise UsageError(unknown(known, key))
+
+
+def refuse_unused(composed: Sequence[DictConfig], overrides: Sequence[str]) -> None:
+    """Raise UsageError for an override that none of the configurations reads.
+
+    composed: with their interpolations; several where a sweep makes several jobs. A resumed run
+    has settings of its own, so there nothing is refused here.
+    """
+    if any(config.resume is not None for config in composed):
+        return
+    each = [given.unused(config, given.parse(overrides), READ) for config in composed]
+    for key in each[0]:
+        if all(key in lost for lost in each):
+            instead = next(filter(None, (lost[key] for lost in each)), "")
+            methods = list(dict.fromkeys(config.algo for config in composed))
+            does = "does" if len(methods) == 1 else "do"
+            use = f"it uses {instead}" if len(methods) == 1 else f"what they use is {instead}"
+            line = f"{key}: {', '.join(methods)} {does} not use it"
+            raise UsageError(f"{line}; {use}" if instead else line)
+
+
+def unknown(config: DictConfig, key: str) -> str:
+    """The line for a key that `config`, any node of what was composed, does not have."""
+    near = given.near(config, key)
+    return f"{key}: unknown key; " + (f"did you mean {near}?" if near else SHOW)
 
 
 def resolved(config: DictConfig) -> DictConfig:
