@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from hybrid_rl.config import UsageError
+from hybrid_rl.overrides import UsageError
 
 Kind = Callable[[str, str], Any]  # (name, text) -> value
 HELP = ("--help", "-h")

@@ -21,6 +21,7 @@ from hybrid_rl import arguments, overrides
 from hybrid_rl import config as configuration
 from hybrid_rl.config import CONF, UsageError
 
+CACHE = "JAX_COMPILATION_CACHE_DIR"  # JAX's own variable, which wins over compile_cache
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
     **dict.fromkeys(("--hydra-help", "-sc", "--shell-completion"), 0),
@@ -54,8 +55,8 @@ def hydra_main(job: Callable[[DictConfig], Any]) -> None:
     def checked(config: DictConfig) -> None:
         typed = list(HydraConfig.get().overrides.task)
         with as_typed(typed):
-            configuration.refuse_new_keys(typed)
-            configuration.refuse_unused([config], typed)
+            overrides.refuse_new_keys(typed)
+            overrides.refuse_unused([config], typed, configuration.READ)
             job(config)
 
     def alone(config: DictConfig) -> Any:
@@ -160,7 +161,7 @@ def explain(error: Exception) -> str:
         return f"{group}={value}: unknown; choose one of {', '.join(known)}{close}"
     cause = error.__cause__
     if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
-        return configuration.unknown(cause.parent_node, str(cause.full_key))
+        return overrides.unknown(cause.parent_node, str(cause.full_key))
     if isinstance(error, OverrideParseException):
         return f"{error.override}: {str(error).splitlines()[-2]}; write key=value, text in quotes"
     return f"{error} {cause or ''}"
@@ -188,7 +189,9 @@ def prepare(config: DictConfig) -> None:
     if config.physics == "mjx" and cores() < 8:
         os.environ.setdefault("NPROC", "8")
     jax.config.update("jax_default_matmul_precision", config.matmul_precision)
-    if config.compile_cache is not None and (cache := _cache(str(config.compile_cache))):
+    if config.compile_cache is None or CACHE in os.environ:
+        return
+    if cache := _cache(str(config.compile_cache)):
         _mend(cache)
         jax.config.update("jax_compilation_cache_dir", str(cache))
         jax.config.update("jax_compilation_cache_max_size", 4 * 2**30)

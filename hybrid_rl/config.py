@@ -1,5 +1,7 @@
 """From overrides to parts: composes conf/, checks it, builds a run."""
 
+import logging
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -13,8 +15,8 @@ from hydra.errors import InstantiationException
 from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
-from hybrid_rl import overrides as given
 from hybrid_rl.envs.physics import resolve
+from hybrid_rl.overrides import SHOW, UsageError, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Controller
@@ -50,11 +52,6 @@ KINDS = {  # type of a part's field -> how its values are called
     NoneType: "null",
 }
 UNKNOWN = object()  # what OmegaConf selects where there is nothing
-SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
-
-
-class UsageError(ValueError):
-    """What the user asked for makes no run; the message is one line that says what would."""
 
 
 @dataclass(frozen=True)
@@ -86,57 +83,8 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
     more = [] if config_dir is None else [search_path(config_dir)]
     refuse_new_keys(overrides, more)
     composed = compose("train", [*more, *overrides])
-    refuse_unused([composed], overrides)
+    refuse_unused([composed], overrides, READ)
     return resolved(composed)
-
-
-def search_path(config_dir: str | Path) -> str:
-    """The override by which Hydra finds the groups in a folder of the user's.
-
-    Raises:
-        UsageError: where there is no such folder.
-    """
-    folder = Path(config_dir).expanduser().resolve()
-    if not folder.is_dir():
-        raise UsageError(f"config_dir={config_dir}: no such folder")
-    return f"hydra.searchpath=['file://{folder}']"
-
-
-def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
-    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it.
-
-    more: overrides of Hydra's own keys.
-    """
-    if not any(text.startswith("+") for text in overrides):
-        return
-    known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
-    for key in given.new(overrides, known):
-        raise UsageError(unknown(known, key))
-
-
-def refuse_unused(composed: Sequence[DictConfig], overrides: Sequence[str]) -> None:
-    """Raise UsageError for an override that none of the configurations reads.
-
-    composed: with their interpolations; several where a sweep makes several jobs. A resumed run
-    has settings of its own, so there nothing is refused here.
-    """
-    if any(config.resume is not None for config in composed):
-        return
-    each = [given.unused(config, given.parse(overrides), READ) for config in composed]
-    for key in each[0]:
-        if all(key in lost for lost in each):
-            instead = next(filter(None, (lost[key] for lost in each)), "")
-            methods = list(dict.fromkeys(config.algo for config in composed))
-            does = "does" if len(methods) == 1 else "do"
-            use = f"it uses {instead}" if len(methods) == 1 else f"what they use is {instead}"
-            line = f"{key}: {', '.join(methods)} {does} not use it"
-            raise UsageError(f"{line}; {use}" if instead else line)
-
-
-def unknown(config: DictConfig, key: str) -> str:
-    """The line for a key that `config`, any node of what was composed, does not have."""
-    near = given.near(config, key)
-    return f"{key}: unknown key; " + (f"did you mean {near}?" if near else SHOW)
 
 
 def resolved(config: DictConfig) -> DictConfig:
@@ -155,7 +103,7 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
     _whole(config.replay, "capacity", "replay.")
-    with _usage():
+    with _usage(config):
         controllers = {mode: _instantiate(node) for mode, node in config.controllers.items()}
         env = _instantiate({**config.env, **physics(config)})
         replay = _instantiate(config.replay)
@@ -180,7 +128,7 @@ def expert(config: DictConfig) -> Controller:
     """
     if config.expert is None:
         raise UsageError(f"task={config.task}: nobody wrote an expert; give run=DIR, a trained one")
-    with _usage():
+    with _usage(config):
         return _instantiate(config.expert)
 
 
@@ -196,16 +144,30 @@ def _instantiate(node: Any) -> Any:
 
 
 @contextmanager
-def _usage() -> Iterator[None]:
+def _usage(config: DictConfig) -> Iterator[None]:
     """A part's ValueError about its fields becomes the user's."""
     try:
         yield
-    except InstantiationException as error:
-        if isinstance(error.__cause__, (ValueError, TypeError)):
-            raise UsageError(str(error.__cause__)) from error
-        raise
-    except ValueError as error:
-        raise UsageError(str(error)) from error
+    except (InstantiationException, ValueError) as error:
+        cause = error.__cause__ if isinstance(error, InstantiationException) else error
+        if not isinstance(cause, (ValueError, TypeError)):
+            raise
+        line = str(cause)
+        if "needs a world that is a formula" in line:
+            needs = f"task={config.task}: {config.algo} needs a world that is a formula"
+            line = f"{needs}; choose one of {', '.join(formulas())}"
+        field = line.partition("=")[0]  # of the world, whose keys are typed as env.KEY
+        raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error
+
+
+def _of_world(config: DictConfig, field: str) -> bool:
+    return field in config.env and field not in config
+
+
+def formulas(conf: Path = CONF) -> list[str]:
+    """Tasks whose world is a formula, as the methods with an equilibrium need it."""
+    tasks = ((path.stem, OmegaConf.load(path)) for path in sorted((conf / "task").glob("*.yaml")))
+    return [name for name, task in tasks if "env" in task and "physics" not in task.env]
 
 
 def check(config: DictConfig) -> None:
@@ -225,6 +187,7 @@ def check(config: DictConfig) -> None:
     if config.matmul_precision not in PRECISIONS:
         known = ", ".join(PRECISIONS)
         raise UsageError(f"matmul_precision={config.matmul_precision}: choose one of {known}")
+    _check_kinds(OmegaConf.create({"env": config.env}))  # first: other parts hold copies of it
     _check_kinds(config)
 
 
@@ -232,6 +195,9 @@ def _check_kinds(node: DictConfig, where: str = "") -> None:
     """Raise UsageError for a value of a part, here or below, that its field cannot hold."""
     kinds = _kinds(node, where)
     for key, value in node.items():
+        each = value if isinstance(value, ListConfig) else [value]
+        if any(isinstance(item, float) and not math.isfinite(item) for item in each):
+            raise UsageError(f"{where}{key}={value}: must be finite")
         if isinstance(value, DictConfig):
             _check_kinds(value, f"{where}{key}.")
             continue
@@ -246,10 +212,13 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     """Field -> types it can hold, of the part that `node` names; fields of other types left out."""
     if "_target_" not in node:
         return {}
+    logging.getLogger("hydra").addHandler(logging.NullHandler())  # says the same in three lines
     try:
         part = get_object(node._target_)
     except (ImportError, ValueError) as error:
-        raise UsageError(f"{where}_target_={node._target_}: {error}") from error
+        hint = "is its folder on PYTHONPATH?"
+        line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"
+        raise UsageError(f"{line}; {hint}") from error
     found = {}
     for field in fields(part) if is_dataclass(part) else ():
         several = get_origin(field.type) in (Union, UnionType)

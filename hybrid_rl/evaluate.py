@@ -1,7 +1,8 @@
-"""`python -m hybrid_rl.evaluate run=DIR [episodes=10] [mode=full]`: returns of a trained run.
+"""Returns of a trained run, as a table and in DIR/evaluation_<mode>.json.
 
-mode: full (planner and policy together), policy (learned policy alone), planner (learned
-model alone). No exploration, learners as they were at the newest checkpoint.
+    python -m hybrid_rl.evaluate run=runs/hopper/sac/TIME mode=policy episodes=20
+
+Without exploration, with the learners as they were at the newest checkpoint.
 """
 
 import json
@@ -19,6 +20,7 @@ from rich.table import Table
 
 from hybrid_rl import command
 from hybrid_rl import config as configuration
+from hybrid_rl.arguments import Argument, read, whole
 from hybrid_rl.config import UsageError
 from hybrid_rl.training import checkpoint
 from hybrid_rl.training.episode import Episode
@@ -26,7 +28,11 @@ from hybrid_rl.training.evaluate import evaluation_keys, outcomes
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Controller, Params
 
-DEFAULTS = {"run": "", "episodes": "10", "mode": "full"}
+ARGUMENTS = (
+    Argument("run", "", "folder of the run", needed="run=DIR, a folder that training wrote"),
+    Argument("episodes", 10, "episodes of each seed", whole()),
+    Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
+)
 
 
 @dataclass(frozen=True)
@@ -100,10 +106,8 @@ def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str,
 
 def main() -> None:
     """The command."""
-    given = DEFAULTS | command.arguments(DEFAULTS)
-    if not given["run"]:
-        raise UsageError("run: not given; say run=DIR, a folder that training wrote")
-    episodes = command.count("episodes", given["episodes"])
+    given, _ = read(__doc__, ARGUMENTS)
+    episodes = given["episodes"]
     trained = load(Path(given["run"]))
     console = Console()
     for note in trained.notes:

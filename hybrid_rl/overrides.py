@@ -8,8 +8,10 @@ several methods.
 import difflib
 import re
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any
 
+from hydra import compose
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
@@ -17,7 +19,12 @@ from omegaconf import DictConfig, OmegaConf
 
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, by the key that it names
 MOST = 4  # keys that one line suggests
+SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
 LACKING: Any = object()  # what is found where there is nothing
+
+
+class UsageError(ValueError):
+    """What the user asked for makes no run; the message is one line that says what would."""
 
 
 def parse(texts: Iterable[str]) -> list[Override]:
@@ -181,3 +188,54 @@ def new(texts: Sequence[str], known: DictConfig) -> list[str]:
         if OmegaConf.select(known, each, default=LACKING) is LACKING
         and not groups.get_group_options(each.partition("@")[0])
     ]
+
+
+def search_path(config_dir: str | Path) -> str:
+    """The override by which Hydra finds the groups in a folder of the user's.
+
+    Raises:
+        UsageError: where there is no such folder.
+    """
+    folder = Path(config_dir).expanduser().resolve()
+    if not folder.is_dir():
+        raise UsageError(f"config_dir={config_dir}: no such folder")
+    return f"hydra.searchpath=['file://{folder}']"
+
+
+def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
+    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it.
+
+    more: overrides of Hydra's own keys.
+    """
+    if not any(text.startswith("+") for text in overrides):
+        return
+    known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
+    for each in new(overrides, known):
+        raise UsageError(unknown(known, each))
+
+
+def refuse_unused(
+    composed: Sequence[DictConfig], overrides: Sequence[str], roots: Sequence[str]
+) -> None:
+    """Raise UsageError for an override that none of the configurations reads.
+
+    composed: with their interpolations, several where a sweep makes several jobs. roots: the keys
+    that a run reads. A resumed run has settings of its own, so there nothing is refused here.
+    """
+    if any(config.resume is not None for config in composed):
+        return
+    each = [unused(config, parse(overrides), roots) for config in composed]
+    for path in each[0]:
+        if all(path in lost for lost in each):
+            instead = next(filter(None, (lost[path] for lost in each)), "")
+            methods = list(dict.fromkeys(config.algo for config in composed))
+            does = "does" if len(methods) == 1 else "do"
+            use = f"it uses {instead}" if len(methods) == 1 else f"what they use is {instead}"
+            line = f"{path}: {', '.join(methods)} {does} not use it"
+            raise UsageError(f"{line}; {use}" if instead else line)
+
+
+def unknown(config: DictConfig, key: str) -> str:
+    """The line for a key that `config`, any node of what was composed, does not have."""
+    close = near(config, key)
+    return f"{key}: unknown key; " + (f"did you mean {close}?" if close else SHOW)

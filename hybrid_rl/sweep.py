@@ -21,7 +21,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import command
 from hybrid_rl import config as configuration
-from hybrid_rl.config import UsageError
+from hybrid_rl.overrides import UsageError, refuse_new_keys, refuse_unused
 from hybrid_rl.submitted import Result, watched
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that would set up a GPU, were a world built here
@@ -118,7 +118,7 @@ class Sweeper(BasicSweeper):
         assert self.config is not None
         assert self.hydra_context is not None
         here = _here(self.config.hydra)
-        configuration.refuse_new_keys(jobs[0])
+        refuse_new_keys(jobs[0])
         configs = []
         loader = self.hydra_context.config_loader
         for overrides in jobs:
@@ -126,7 +126,7 @@ class Sweeper(BasicSweeper):
             with open_dict(config):
                 del config["hydra"]
             configs.append(config)
-        configuration.refuse_unused(configs, typed)
+        refuse_unused(configs, typed, configuration.READ)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
             whole = configuration.resolved(config)
             if not here and whole.physics in ACCELERATED:
