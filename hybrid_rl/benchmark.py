@@ -164,13 +164,12 @@ def compiling(said: dict[str, str], rounds: int) -> list[Table]:
     with tempfile.TemporaryDirectory() as place:
         line = [sys.executable, "-m", "hybrid_rl.train", f"experiment={said['experiment']}"]
         line += [f"algo={said['algo']}", "total_steps=1", "log_every=1", "eval_modes=[]"]
-        line += [f"compile_cache={place}/cache"]
         own = {key: text for key, text in os.environ.items() if key != command.CACHE}
         rows = []
         for name in ("cold", "cached"):
             began = perf_counter()
-            whole_line = [*line, f"run_dir={place}/{name}"]
-            subprocess.run(whole_line, check=True, capture_output=True, env=own)
+            run = [*line, f"compile_cache={place}/cache", f"run_dir={place}/{name}"]
+            subprocess.run(run, check=True, capture_output=True, env=own)
             rows.append({"name": name, "seconds": perf_counter() - began})
     for row in rows:
         row |= {"rate": 1 / row["seconds"], "best": 1 / row["seconds"], "memory": None}
@@ -273,8 +272,8 @@ def main() -> None:
 
     from hybrid_rl.training import provenance
 
-    said, changes = read(__doc__, ARGUMENTS, GROUPS)
-    said |= changes
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    said = given | changes
     out, rounds = output("out", said["out"], (".json",), ".png"), said["rounds"]
     _check(said)
     threads = ["physics=mjx"] if "mjx" in said["physics"] else []
@@ -284,12 +283,12 @@ def main() -> None:
     machine = provenance.device()
     print(f"{machine}; medians of {rounds} rounds, ratios to the first line of a table")
     tables: list[Table] = []
+    asked = {key: value for key, value in said.items() if key != "out"}
     began = perf_counter()
     for number, part in enumerate(said["parts"], 1):
         passed = f"{perf_counter() - began:,.0f} s so far"
         print(f"\npart {number} of {len(said['parts'])}: {part}; {passed}", flush=True)
         tables += PARTS[part](said, rounds)
-        asked = {key: value for key, value in said.items() if key != "out"}
         numbers = {"machine": machine, "versions": provenance.versions(), "asked": asked}
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps({**numbers, "tables": tables}, indent=1) + "\n")

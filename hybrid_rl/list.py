@@ -46,7 +46,7 @@ def about(path: Path) -> str:
 
 def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
     """Group -> name -> what restricts it: tasks that are formulas, and methods that need one."""
-    tasks = {name: "a formula" for name in formulas(conf)}
+    tasks = dict.fromkeys(formulas(conf), "a formula")
     methods = {
         path.stem: "tasks that are formulas"
         for path in sorted((conf / "algo").glob("*.yaml"))
@@ -56,10 +56,11 @@ def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
 
 
 def _needs_a_formula(path: Path) -> bool:
-    """Whether a part that the method of a YAML file uses knows the world itself."""
+    """Whether a part that the method of a YAML file uses knows the world; demonstrations may."""
     own: Any = OmegaConf.load(path)
     raw = plain(cast(DictConfig, OmegaConf.merge(_parts(), own)))
-    return "${env}" in reached(raw, ("controllers", "learners")).values()
+    read = reached(raw, ("controllers", "learners"))
+    return any(value == "${env}" and key != "recorded.world" for key, value in read.items())
 
 
 @cache

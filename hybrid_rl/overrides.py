@@ -132,15 +132,13 @@ def near(config: DictConfig, path: str) -> str:
     """
     whole: Any = config._get_root()
     raw = plain(whole)
-    at = source(raw, path)
-    if at != path and select(raw, at) is not LACKING:
-        return at
     parent, _, name = path.rpartition(".")
     siblings = select(raw, parent) if parent else raw
     close = difflib.get_close_matches(name, siblings if isinstance(siblings, dict) else ())
     if close:
         return ", ".join(f"{parent}.{each}".lstrip(".") for each in close)
     named = [each for each in reached(raw, raw) if each.rsplit(".", 1)[-1] == name]
+    named.sort(key=lambda each: each.split(".")[-2:] != path.split(".")[-2:])
     return ", ".join(named[:MOST])
 
 
