@@ -65,7 +65,7 @@ def test_a_message_shows_what_was_typed(line, typed, shown):
 
 
 def test_python_refuses_what_the_command_refuses():
-    with pytest.raises(config.UsageError, match="planner.horizon: sac does not use it"):
+    with pytest.raises(config.UsageError, match=r"planner\.horizon: sac does not use it"):
         config.load(["algo=sac", "planner.horizon=7"])
     assert config.load(["algo=sac", "experiment=thesis/fig_3_2_pendulum"]).planner.horizon == 5
 
