@@ -273,7 +273,7 @@ def main() -> None:
     from hybrid_rl.training import provenance
 
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
-    said = given | changes
+    said: dict[str, Any] = {**given, **changes}
     out, rounds = output("out", said["out"], (".json",), ".png"), said["rounds"]
     _check(said)
     threads = ["physics=mjx"] if "mjx" in said["physics"] else []

@@ -1,6 +1,7 @@
 """A method is one YAML; a part is one Python file and one YAML; nothing else is edited."""
 
 import json
+import os
 import subprocess
 import sys
 
@@ -68,7 +69,7 @@ def part(conf, tmp_path, monkeypatch):
     (conf / "proposal").mkdir()
     (conf / "proposal" / "toy.yaml").write_text(PART_YAML)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     yield
     sys.modules.pop("my_part", None)
 
@@ -86,7 +87,7 @@ def test_a_method_is_one_yaml(conf, tmp_path, capfd):
 
 
 def test_python_takes_the_same_folder(conf):
-    made = config.load([*TINY, "algo=toy"], config_dir=conf)
+    made = config.load(["task=pendulum", "algo=toy"], config_dir=conf)
     assert list(made.learners) == ["model"]
     with pytest.raises(config.UsageError, match="config_dir=nowhere: no such folder"):
         config.load(config_dir="nowhere")
