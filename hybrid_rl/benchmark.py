@@ -13,7 +13,7 @@ loop      decisions a second of the whole training loop, by number of learners
 compile   seconds from start to the first decision, with an empty cache and a filled one
 
 Keys of the method's own parts change it. What is compared is run in turns (hybrid_rl.bench.race).
-A table is printed; the numbers are written as JSON, and drawn beside it.
+The numbers are printed, written as JSON and drawn; by default it takes six minutes on two cores.
 """
 
 if __name__ == "__main__":
@@ -22,6 +22,7 @@ if __name__ == "__main__":
     interrupt.install()
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -31,21 +32,12 @@ from time import perf_counter
 from typing import Any
 
 from hybrid_rl import command, config
+from hybrid_rl.arguments import Argument, one_of, output, read, several, whole
 from hybrid_rl.config import UsageError
 
-DEFAULTS = {
-    "parts": "physics,plan,shares,loop",
-    "tasks": "halfcheetah,hopper,cartpole",
-    "experiment": "thesis/fig_3_2_halfcheetah",  # of plan, shares, loop and compile
-    "algo": "hybrid_stochastic",
-    "physics": "",  # "": native on a CPU, native and mjx elsewhere; warp by name
-    "worlds": "",
-    "learners": "",
-    "plans": "",  # KxT, such as 20x10,64x20
-    "matmul_precision": "highest",  # of float32 products on a GPU; worlds are always exact
-    "rounds": "5",
-    "out": "benchmark.json",
-}
+TASKS = "halfcheetah,hopper,cartpole"
+LEARNERS = ("plan", "act", "updates", "shares", "loop")
+OF = {"tasks": ("physics",), "worlds": ("physics",), "plans": ("plan",), "learners": LEARNERS}
 PLANNED = ("planner", "objective", "model", "policy", "critic", "model_learner", "policy_learner")
 SIZES = {  # what is left empty, on a CPU and elsewhere
     "cpu": {"physics": "native", "worlds": "1,64", "learners": "1,4", "plans": "20x10,64x20"},
@@ -64,7 +56,7 @@ def physics(said: dict[str, str], rounds: int) -> list[Table]:
     from hybrid_rl.bench import others, ours
 
     tables = []
-    for task in said["tasks"].split(","):
+    for task in (said["tasks"] or TASKS).split(","):
         for count in _counts(said, "worlds"):
             field = []
             for implementation in said["physics"].split(","):
@@ -80,7 +72,8 @@ def physics(said: dict[str, str], rounds: int) -> list[Table]:
                 field += [bare, own]
             theirs = others.playground(count, decisions) if task == "halfcheetah" else None
             field += [theirs] if theirs and said["physics"] != "native" else []
-            table = _race("physics", f"{task}, {count:,} worlds", "steps/s", field, rounds)
+            name = f"{task}, {_many(count, 'world')}"
+            table = _race("physics", name, "steps/s", field, rounds)
             tables.append(table | {"solver": others.solver(task)})
     return tables
 
@@ -92,7 +85,7 @@ def plan(said: dict[str, str], rounds: int) -> list[Table]:
     agent, world = _agent(said), _agent(said, said["physics"].split(",")[-1]).episode
     tables = []
     for text in said["plans"].split(","):
-        samples, horizon = (command.count("plans", part) for part in text.split("x"))
+        samples, horizon = (whole()("plans", part) for part in text.split("x"))
         most = 2**20 // samples  # a large plan is for few learners
         try:
             planner = replace(agent.controller, horizon=horizon, samples=samples)
@@ -100,7 +93,7 @@ def plan(said: dict[str, str], rounds: int) -> list[Table]:
             raise UsageError(f"plan: {said['algo']} has no planner by samples") from error
         planning = replace(agent, controller=planner)
         field = [
-            ours.decisions(f"{learners:,} learners", planning, learners, samples * horizon)
+            ours.decisions(_many(learners, "learner"), planning, learners, samples * horizon)
             for learners in _counts(said, "learners")
             if learners <= max(most, 1)
         ]
@@ -115,7 +108,7 @@ def act(said: dict[str, str], rounds: int) -> list[Table]:
     from hybrid_rl.bench import ours
 
     agent = _agent(said)
-    field = [ours.decisions(f"{n:,} robots", agent, n) for n in _counts(said, "learners")]
+    field = [ours.decisions(_many(n, "robot"), agent, n) for n in _counts(said, "learners")]
     real = f"real time: {1 / agent.spec.dt:,.0f} each"
     return [_race("act", f"{said['experiment']}, {said['algo']}, {real}", "acts/s", field, rounds)]
 
@@ -132,7 +125,7 @@ def updates(said: dict[str, str], rounds: int) -> list[Table]:
             if critic is not None:
                 size = learner.batch_size
                 field.append(others.brax_sac(agent.spec, critic.hidden, size, count))
-        what = f"{said['algo']}, {count:,} learners"
+        what = f"{said['algo']}, {_many(count, 'learner')}"
         tables.append(_race("updates", what, "gradient steps/s", field, rounds))
     return tables
 
@@ -146,7 +139,7 @@ def shares(said: dict[str, str], rounds: int) -> list[Table]:
     tables = [
         _race(
             "shares",
-            f"{said['algo']}, {count:,} learners",
+            f"{said['algo']}, {_many(count, 'learner')}",
             "decisions/s",
             ours.shares(agent, count, decisions),
             rounds,
@@ -165,7 +158,7 @@ def loop(said: dict[str, str], rounds: int) -> list[Table]:
     for implementation in said["physics"].split(","):
         agent = _agent(said, implementation)
         for count in _counts(said, "learners"):
-            name = f"{count:,} learners, {implementation}"
+            name = f"{_many(count, 'learner')}, {implementation}"
             decisions = max(10, 200 // -(-count // 64))
             field.append(ours.loop(name, agent, count, decisions)[0])
     return [_race("loop", said["algo"], "decisions/s", field, rounds)]
@@ -176,11 +169,12 @@ def compiling(said: dict[str, str], rounds: int) -> list[Table]:
     with tempfile.TemporaryDirectory() as place:
         line = [sys.executable, "-m", "hybrid_rl.train", f"experiment={said['experiment']}"]
         line += [f"algo={said['algo']}", "total_steps=1", "log_every=1", "eval_modes=[]"]
-        line += [f"compile_cache={place}/cache"]
+        own = {key: text for key, text in os.environ.items() if key != command.CACHE}
         rows = []
         for name in ("cold", "cached"):
             began = perf_counter()
-            subprocess.run([*line, f"run_dir={place}/{name}"], check=True, capture_output=True)
+            run = [*line, f"compile_cache={place}/cache", f"run_dir={place}/{name}"]
+            subprocess.run(run, check=True, capture_output=True, env=own)
             rows.append({"name": name, "seconds": perf_counter() - began})
     for row in rows:
         row |= {"rate": 1 / row["seconds"], "best": 1 / row["seconds"], "memory": None}
@@ -197,6 +191,20 @@ PARTS = {
     "loop": loop,
     "compile": compiling,
 }
+ARGUMENTS = (
+    Argument("parts", ["physics", "plan", "shares", "loop"], "what to measure", several(*PARTS)),
+    Argument("tasks", "", f"of part physics; empty: {TASKS}"),
+    Argument("experiment", "thesis/fig_3_2_halfcheetah", "of all other parts; may be empty"),
+    Argument("algo", "hybrid_stochastic", "of all parts but physics"),
+    Argument("physics", "", "empty: native on a CPU, native,mjx elsewhere; warp by name"),
+    Argument("worlds", "", "numbers of them, of part physics"),
+    Argument("learners", "", f"numbers of them, of parts {', '.join(LEARNERS)}"),
+    Argument("plans", "", "KxT, such as 20x10,64x20, of part plan"),
+    Argument("matmul_precision", "highest", "of float32 products", one_of(*config.PRECISIONS)),
+    Argument("rounds", 5, "of which medians are taken", whole()),
+    Argument("out", "benchmark.json", "the numbers; a picture beside it"),
+)
+GROUPS = {name: f"a key of the method's {name}" for name in PLANNED}
 
 
 def _agent(said: dict[str, str], physics: str = "auto") -> Any:
@@ -207,8 +215,21 @@ def _agent(said: dict[str, str], physics: str = "auto") -> Any:
     return config.build(config.load([*names, steps])).agent
 
 
+def _check(said: dict[str, Any]) -> None:
+    """Raise UsageError for a list that none of the parts uses, or an unknown task."""
+    for name, parts in OF.items():
+        if said[name] and not set(parts) & set(said["parts"]):
+            line = f"{name}={said[name]}: parts={','.join(said['parts'])} does not use it"
+            raise UsageError(f"{line}; {', '.join(parts)} would")
+    several(*command.options("task"))("tasks", said["tasks"] or TASKS)
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count:,} {what}{'s' * (count != 1)}"
+
+
 def _counts(said: dict[str, str], key: str) -> list[int]:
-    return [command.count(key, text) for text in said[key].split(",")]
+    return [whole()(key, text) for text in said[key].split(",")]
 
 
 def _race(part: str, what: str, unit: str, field: list[Any], rounds: int) -> Table:
@@ -256,25 +277,23 @@ def main() -> None:
 
     from hybrid_rl.training import provenance
 
-    said = DEFAULTS | command.arguments(DEFAULTS, *PLANNED)
-    out, rounds = Path(said["out"]), command.count("rounds", said["rounds"])
-    if out.suffix != ".json":
-        raise UsageError(f"out={out}: must end in .json")
-    unknown = sorted(set(said["parts"].split(",")) - set(PARTS))
-    if unknown:
-        raise UsageError(f"parts={','.join(unknown)}: unknown; choose of {', '.join(PARTS)}")
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    said: dict[str, Any] = {**given, **changes}
+    out, rounds = output("out", said["out"], (".json",), ".png"), said["rounds"]
+    _check(said)
+    threads = ["physics=mjx"] if "mjx" in said["physics"] else []
+    command.prepare(config.load([*threads, f"matmul_precision={said['matmul_precision']}"]))
     sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"]
     said |= {key: value for key, value in sizes.items() if not said[key]}
-    if said["matmul_precision"] not in config.PRECISIONS:
-        known = ", ".join(config.PRECISIONS)
-        raise UsageError(f"matmul_precision={said['matmul_precision']}: choose one of {known}")
-    jax.config.update("jax_default_matmul_precision", said["matmul_precision"])
     machine = provenance.device()
     print(f"{machine}; medians of {rounds} rounds, ratios to the first line of a table")
     tables: list[Table] = []
-    for part in said["parts"].split(","):
+    asked = {key: value for key, value in said.items() if key != "out"}
+    began = perf_counter()
+    for number, part in enumerate(said["parts"], 1):
+        passed = f"{perf_counter() - began:,.0f} s so far"
+        print(f"\npart {number} of {len(said['parts'])}: {part}; {passed}", flush=True)
         tables += PARTS[part](said, rounds)
-        asked = {key: value for key, value in said.items() if key != "out"}
         numbers = {"machine": machine, "versions": provenance.versions(), "asked": asked}
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps({**numbers, "tables": tables}, indent=1) + "\n")

@@ -1,7 +1,9 @@
 """From overrides to parts: composes conf/, checks it, builds a run."""
 
+import logging
+import math
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from types import NoneType, UnionType
@@ -14,6 +16,7 @@ from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl.envs.physics import resolve
+from hybrid_rl.overrides import SHOW, UsageError, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Controller
@@ -34,6 +37,11 @@ COUNTS = (
 SEEDS = 2**32  # that JAX's generator tells apart
 
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
+READ = (  # what a run reads, and with it all that these name by interpolation
+    *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "head_start"),
+    *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
+    "matmul_precision",
+)
 
 MODES = ("full", "policy", "planner")
 PRECISIONS = ("highest", "high", "default")
@@ -46,11 +54,6 @@ KINDS = {  # type of a part's field -> how its values are called
     NoneType: "null",
 }
 UNKNOWN = object()  # what OmegaConf selects where there is nothing
-SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
-
-
-class UsageError(ValueError):
-    """What the user asked for makes no run; the message is one line that says what would."""
 
 
 @dataclass(frozen=True)
@@ -67,31 +70,23 @@ class Run:
         return tuple(range(self.config.seed, self.config.seed + self.config.num_seeds))
 
 
-def load(overrides: Sequence[str] = ()) -> DictConfig:
+def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) -> DictConfig:
     """The resolved configuration of `python -m hybrid_rl.train OVERRIDES`.
+
+    config_dir: a folder with groups of your own, as of `--config-dir`.
 
     Raises:
         hydra.errors.HydraException: where an override fits nothing in conf/.
-        UsageError: where one appends a key that nothing reads.
+        UsageError: where one names a key that does not exist, or that the method does not use.
     """
     if not GlobalHydra.instance().is_initialized():
         with initialize_config_dir(str(CONF), version_base="1.3"):
-            return load(overrides)
-    refuse_new_keys(overrides)
-    return resolved(compose("train", list(overrides)))
-
-
-def refuse_new_keys(overrides: Sequence[str]) -> None:
-    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it."""
-    added = [text.lstrip("+").partition("=")[0] for text in overrides if text.startswith("+")]
-    if not added:
-        return
-    known = compose("train", [text for text in overrides if not text.startswith("+")])
-    groups = GlobalHydra.instance().config_loader()
-    for key in added:
-        new = OmegaConf.select(known, key, default=UNKNOWN) is UNKNOWN
-        if new and not groups.get_group_options(key.partition("@")[0]):
-            raise UsageError(f"{key}: unknown key; {SHOW}")
+            return load(overrides, config_dir)
+    more = [] if config_dir is None else [search_path(config_dir)]
+    refuse_new_keys(overrides, more)
+    composed = compose("train", [*more, *overrides])
+    refuse_unused([composed], overrides, READ)
+    return resolved(composed)
 
 
 def resolved(config: DictConfig) -> DictConfig:
@@ -110,7 +105,7 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
     _whole(config.replay, "capacity", "replay.")
-    with _usage():
+    with _usage(config):
         controllers = {mode: _instantiate(node) for mode, node in config.controllers.items()}
         env = _instantiate({**config.env, **physics(config)})
         replay = _instantiate(config.replay)
@@ -135,7 +130,7 @@ def expert(config: DictConfig) -> Controller:
     """
     if config.expert is None:
         raise UsageError(f"task={config.task}: nobody wrote an expert; give run=DIR, a trained one")
-    with _usage():
+    with _usage(config):
         return _instantiate(config.expert)
 
 
@@ -151,16 +146,34 @@ def _instantiate(node: Any) -> Any:
 
 
 @contextmanager
-def _usage() -> Iterator[None]:
+def _usage(config: DictConfig) -> Iterator[None]:
     """A part's ValueError about its fields becomes the user's."""
     try:
         yield
-    except InstantiationException as error:
-        if isinstance(error.__cause__, (ValueError, TypeError)):
-            raise UsageError(str(error.__cause__)) from error
-        raise
-    except ValueError as error:
-        raise UsageError(str(error)) from error
+    except (InstantiationException, ValueError) as error:
+        cause = error.__cause__ if isinstance(error, InstantiationException) else error
+        if not isinstance(cause, (ValueError, TypeError)):
+            raise
+        line = str(cause)
+        if "needs a world that is a formula" in line:
+            needs = f"task={config.task}: {config.algo} needs a world that is a formula"
+            line = f"{needs}; choose one of {', '.join(formulas())}"
+        field = line.partition("=")[0]  # of the world, whose keys are typed as env.KEY
+        raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error
+
+
+def _of_world(config: DictConfig, field: str) -> bool:
+    return field in config.env and field not in config
+
+
+def formulas(conf: Path = CONF) -> list[str]:
+    """Tasks whose world is a formula, as the methods with an equilibrium need it."""
+    found = []
+    for path in sorted((conf / "task").glob("*.yaml")):
+        task: Any = OmegaConf.load(path)
+        with suppress(ImportError, KeyError, AttributeError):  # one of the user's, unfinished
+            found += [path.stem] if hasattr(_class(task.env._target_), "rest") else []
+    return found
 
 
 def check(config: DictConfig) -> None:
@@ -185,6 +198,7 @@ def check(config: DictConfig) -> None:
     if config.matmul_precision not in PRECISIONS:
         known = ", ".join(PRECISIONS)
         raise UsageError(f"matmul_precision={config.matmul_precision}: choose one of {known}")
+    _check_kinds(OmegaConf.create({"env": config.env}))  # first: other parts hold copies of it
     _check_kinds(config)
 
 
@@ -192,6 +206,9 @@ def _check_kinds(node: DictConfig, where: str = "") -> None:
     """Raise UsageError for a value of a part, here or below, that its field cannot hold."""
     kinds = _kinds(node, where)
     for key, value in node.items():
+        each = value if isinstance(value, ListConfig) else [value]
+        if any(isinstance(item, float) and not math.isfinite(item) for item in each):
+            raise UsageError(f"{where}{key}={value}: must be finite")
         if isinstance(value, DictConfig):
             _check_kinds(value, f"{where}{key}.")
             continue
@@ -202,14 +219,22 @@ def _check_kinds(node: DictConfig, where: str = "") -> None:
             raise UsageError(f"{where}{key}={value}: must be {called}")
 
 
+def _class(target: str) -> Any:
+    """What a `_target_` names; Hydra would say in three lines more where there is nothing."""
+    logging.getLogger("hydra").addHandler(logging.NullHandler())
+    return get_object(target)
+
+
 def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     """Field -> types it can hold, of the part that `node` names; fields of other types left out."""
     if "_target_" not in node:
         return {}
     try:
-        part = get_object(node._target_)
+        part = _class(node._target_)
     except (ImportError, ValueError) as error:
-        raise UsageError(f"{where}_target_={node._target_}: {error}") from error
+        hint = "is its folder on PYTHONPATH?"
+        line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"
+        raise UsageError(f"{line}; {hint}") from error
     found = {}
     for field in fields(part) if is_dataclass(part) else ():
         several = get_origin(field.type) in (Union, UnionType)

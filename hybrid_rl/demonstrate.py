@@ -1,6 +1,9 @@
-"""`python -m hybrid_rl.demonstrate task=T [episodes=10] [out=FILE]`: an expert in a file.
+"""An expert's decisions, as a file to learn from.
 
-FILE is demonstrations/T.npz by default. The expert is the task's own, by hand, in the
+    python -m hybrid_rl.demonstrate task=panda_stack episodes=20
+    python -m hybrid_rl.demonstrate run=DIR mode=policy out=demonstrations/ant.npz
+
+The file is demonstrations/T.npz by default. The expert is the task's own, by hand, in the
 task as it stands or as env.KEY=VALUE, episode.KEY=VALUE, expert.KEY=VALUE change it; with run=DIR
 it is what was learned there (mode: full, policy or planner; the first seed), without exploration.
 Episode i begins by the key i of `seed`.
@@ -21,13 +24,22 @@ import numpy as np
 
 from hybrid_rl import command
 from hybrid_rl import config as configuration
+from hybrid_rl.arguments import Argument, output, read, whole
 from hybrid_rl.config import UsageError
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.evaluate import acted
 from hybrid_rl.types import Controller, Params, Transition
 
-DEFAULTS = {"task": "", "run": "", "mode": "full", "episodes": "10", "seed": "0", "out": ""}
+ARGUMENTS = (
+    Argument("task", "", "a task with an expert written by hand"),
+    Argument("run", "", "instead: folder of a trained run"),
+    Argument("mode", "full", "of run=DIR: full, policy or planner"),
+    Argument("episodes", 10, "how many", whole()),
+    Argument("seed", 0, "of the first states", whole(least=0)),
+    Argument("out", "", "the file; empty: demonstrations/TASK.npz"),
+)
+GROUPS = {name: f"with task=T: a key of its {name}" for name in ("env", "episode", "expert")}
 
 
 @dataclass(frozen=True)
@@ -68,18 +80,20 @@ def by_hand(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Pa
     """
     said = [f"{key}={value}" for key, value in changes.items()]
     config = configuration.load([f"task={task}", "algo=sac", *said])
+    command.prepare(config)
     expert = configuration.expert(config)
     return configuration.build(config).agent.episode, expert, Params()
 
 
-def _expert(given: dict[str, str]) -> tuple[str, Episode, Controller, Params]:
+def _expert(
+    given: dict[str, Any], changes: dict[str, str]
+) -> tuple[str, Episode, Controller, Params]:
     """(task, episode, controller, what it knows) that the arguments name."""
     if bool(given["task"]) == bool(given["run"]):
         raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
     if given["task"]:
-        changes = {key: value for key, value in given.items() if key not in DEFAULTS}
         return given["task"], *by_hand(given["task"], changes)
-    if len(given) > len(DEFAULTS):
+    if changes:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     from hybrid_rl.evaluate import load
 
@@ -92,13 +106,12 @@ def _expert(given: dict[str, str]) -> tuple[str, Episode, Controller, Params]:
 
 def main() -> None:
     """The command."""
-    given = DEFAULTS | command.arguments(DEFAULTS, "env", "episode", "expert")
-    episodes = command.count("episodes", given["episodes"])
-    seed = command.count("seed", given["seed"], least=0)
-    task, world, controller, params = _expert(given)
-    out = Path(given["out"] or f"demonstrations/{task}.npz")
-    if out.suffix != ".npz":
-        raise UsageError(f"out={out}: must end in .npz")
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    episodes, seed = given["episodes"], given["seed"]
+    if given["out"]:
+        output("out", given["out"], (".npz",))
+    task, world, controller, params = _expert(given, changes)
+    out = output("out", given["out"] or f"demonstrations/{task}.npz", (".npz",))
     found = record(world, controller, params, episodes, seed)
     save(out, task, world.spec.dt, found.decisions, found.episode)
     told = f"{out}: {episodes} episodes, {len(found.episode):,} decisions, seed {seed}, return "

@@ -22,15 +22,18 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl import command
-from hybrid_rl.config import Run, UsageError, build, load
+from hybrid_rl.arguments import Argument, one_of, output, read, whole
+from hybrid_rl.config import Run, build, load
 
-DEFAULTS = {
-    "view": "control",
-    "out": "ergodicity.png",
-    "task": "quadcopter_se3",  # of view=marginals
-    "seeds": "10",
-    "steps": "400",
-}
+VIEWS = ("control", "average", "marginals", "cost")
+SUFFIXES = (".png", ".pdf", ".svg")
+ARGUMENTS = (
+    Argument("view", "control", ", ".join(VIEWS), one_of(*VIEWS)),
+    Argument("out", "ergodicity.png", f"the picture: {', '.join(SUFFIXES)}; numbers beside it"),
+    Argument("task", "quadcopter_se3", "of view=marginals"),
+    Argument("seeds", 10, "paths that are compared", whole()),
+    Argument("steps", 400, "decisions of each path", whole()),
+)
 FIGURE = ("experiment=thesis/fig_6_1",)
 NAMES = {"kle3": "KL-ergodic", "fourier_ergodic": "Fourier", "kle3_jensen": "Jensen's bound"}
 GRID = 100  # cells a side
@@ -194,8 +197,8 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
             if algo == "fourier_ergodic" and 5**v > MOST:
                 break
             box = f"search.coordinates={order[:v]} search.low={[-1.0] * v} search.high={[1.0] * v}"
-            more = ["task=quadcopter_se3", f"algo={algo}", "fourier_exploration.samples=100"]
-            more.append("explorer.horizon=5")
+            more = ["task=quadcopter_se3", f"algo={algo}", "explorer.horizon=5"]
+            more += ["fourier_exploration.samples=100"] if algo == "fourier_ergodic" else []
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}
         panels[0][0].semilogy(
@@ -259,19 +262,16 @@ def save(figure: Any, numbers: dict, out: Path) -> None:
 
 def main() -> None:
     """The command."""
-    said = DEFAULTS | command.arguments(DEFAULTS)
-    seeds, steps = command.count("seeds", said["seeds"]), command.count("steps", said["steps"])
+    said, _ = read(__doc__, ARGUMENTS)
+    seeds, steps = said["seeds"], said["steps"]
+    out = output("out", said["out"], SUFFIXES, ".json")
+    command.prepare(load(FIGURE))
     views: dict[str, Callable[[], tuple[Any, dict]]] = {
         "control": lambda: control(seeds, steps),
         "average": lambda: average(seeds, steps),
         "marginals": lambda: marginals(said["task"], seeds, steps),
         "cost": cost,
     }
-    if said["view"] not in views:
-        raise UsageError(f"view={said['view']}: choose one of {', '.join(views)}")
-    out = Path(said["out"])
-    if out.suffix not in (".png", ".pdf", ".svg"):
-        raise UsageError(f"out={out}: must end in .png, .pdf, .svg")
     save(*views[said["view"]](), out)
     print(f"{out} and {out.with_suffix('.json')}")
 

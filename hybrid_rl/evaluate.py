@@ -1,10 +1,10 @@
-"""`python -m hybrid_rl.evaluate run=DIR [episodes=10] [mode=full]`: returns of a trained run.
+"""Returns of a trained run, as a table and in DIR/evaluation_<mode>.json.
 
-mode: full (planner and policy together), policy (learned policy alone), planner (learned
-model alone). No exploration, learners as they were at the newest checkpoint.
+    python -m hybrid_rl.evaluate run=runs/hopper/sac/TIME mode=policy episodes=20
 
-From Python, `load` reads a run back, `evaluate` gives its returns, and `Trained.policy` its
-actions, in any loop that has observations:
+Without exploration, with the learners as they were at the newest checkpoint. From Python, `load`
+reads a run back, `evaluate` gives its returns, and `Trained.policy` its actions, in any loop that
+has observations:
 
     policy = load("runs/hopper/sac/TIME").policy(seed=0)
     policy.reset()  # at the start of every episode
@@ -31,6 +31,7 @@ from rich.table import Table
 
 from hybrid_rl import command, run_folder
 from hybrid_rl import config as configuration
+from hybrid_rl.arguments import Argument, read, whole
 from hybrid_rl.config import UsageError
 from hybrid_rl.training import checkpoint
 from hybrid_rl.training.episode import Episode
@@ -39,7 +40,11 @@ from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.manifest import write_text
 from hybrid_rl.types import Controller, Params, Spec
 
-DEFAULTS = {"run": "", "episodes": "10", "mode": "full"}
+ARGUMENTS = (
+    Argument("run", "", "folder of the run", needed="run=DIR, a folder that training wrote"),
+    Argument("episodes", 10, "episodes of each seed", whole()),
+    Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
+)
 
 
 @dataclass(frozen=True)
@@ -197,10 +202,8 @@ def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str,
 
 def main() -> None:
     """The command."""
-    given = DEFAULTS | command.arguments(DEFAULTS)
-    if not given["run"]:
-        raise UsageError("run: not given; say run=DIR, a folder that training wrote")
-    episodes = command.count("episodes", given["episodes"])
+    given, _ = read(__doc__, ARGUMENTS)
+    episodes = given["episodes"]
     folder = Path(given["run"])
     trained = load(folder)
     run_folder.writable(folder, "run")  # before minutes of work

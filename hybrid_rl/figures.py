@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hybrid_rl import command
+from hybrid_rl.arguments import Argument, number, output, read
 from hybrid_rl.config import UsageError
 from hybrid_rl.curves import Curve, area, band, curves, improvement, iqm, steps_to
 
@@ -32,16 +33,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-DEFAULTS = {
-    "runs": "",
-    "metric": "train/return",
-    "out": "figure.png",
-    "x": "step",
-    "group": "algo",
-    "smooth": "0",
-    "threshold": "",
-}
 SUFFIXES = (".png", ".pdf", ".svg")
+OF_X, OF_Y = " of steps (or seconds), 0 or more", " in the metric's unit"
+RUNS = 'runs="GLOB", such as runs="runs/*/*/*"'
+ARGUMENTS = (
+    Argument("runs", "", "pattern of the run folders, in quotes", needed=RUNS),
+    Argument("metric", "train/return", "metrics of metrics.jsonl, with commas between them"),
+    Argument("out", "figure.png", f"the picture: {', '.join(SUFFIXES)}; numbers beside it"),
+    Argument("x", "step", "step, wall_s, or a key that a sweep went through"),
+    Argument("group", "algo", "key of the configuration with a curve for each of its values"),
+    Argument("smooth", 0.0, "width of a moving mean, in units of x", number(0, OF_X)),
+    Argument("threshold", None, "value of the metric: when is it reached?", number(what=OF_Y)),
+)
 COLOURS = (  # Okabe and Ito: told apart by colour-blind readers too
     "#0072B2",
     "#D55E00",
@@ -207,30 +210,11 @@ def told(drawn: Sequence[Curve], threshold: float | None = None) -> list[str]:
     return lines
 
 
-def _number(name: str, text: str, low: float, wanted: str) -> float:
-    """An argument as a number."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not (low <= number < math.inf and number > -math.inf):
-        raise UsageError(f"{name}={text}: must be a number{wanted}")
-    return number
-
-
 def main() -> None:
     """The command."""
-    given = command.arguments(DEFAULTS)
-    said = DEFAULTS | given
-    if "runs" not in given:
-        raise UsageError('runs: not given; say runs="GLOB", such as runs="runs/*/*/*"')
-    if Path(said["out"]).suffix not in SUFFIXES:
-        raise UsageError(f"out={said['out']}: must end in {', '.join(SUFFIXES)}")
-    x, group = said["x"], said["group"]
-    smooth = _number("smooth", said["smooth"], 0, " of steps (or seconds), 0 or more")
-    threshold = None
-    if said["threshold"]:
-        threshold = _number("threshold", said["threshold"], -math.inf, " in the metric's unit")
+    said, _ = read(__doc__, ARGUMENTS)
+    output("out", said["out"], SUFFIXES, ".json")
+    x, group, smooth, threshold = (said[name] for name in ("x", "group", "smooth", "threshold"))
     metrics = [metric.strip() for metric in said["metric"].split(",")]
     each = [curves(said["runs"], metric, x, group, smooth) for metric in metrics]
     drawn = list(itertools.chain(*each))

@@ -31,7 +31,8 @@ import numpy as np
 from jax import Array
 from omegaconf import OmegaConf
 
-from hybrid_rl import command
+from hybrid_rl import arguments, command
+from hybrid_rl.arguments import Argument, output, whole
 from hybrid_rl.config import Run, UsageError, build, load
 from hybrid_rl.curves import band, iqm
 from hybrid_rl.envs.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
@@ -40,11 +41,17 @@ from hybrid_rl.training.evaluate import acted
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params
 
-DEFAULTS = {"runs": "", "out": "flights.png", "updates": "2000", "steps": "1200"}
 TRACKING = ("experiment=thesis/fig_6_6",)
 KNOWN = ("model@known_model=exact", "model_planner.model=${known_model}")
 EXACT = "exact model"
 SUFFIXES = (".png", ".pdf", ".svg")
+RUNS = 'runs="GLOB", such as runs="runs/quadcopter_se3/*/*"'
+ARGUMENTS = (
+    Argument("runs", "", "pattern of the run folders, in quotes", needed=RUNS),
+    Argument("out", "flights.png", f"the picture: {', '.join(SUFFIXES)}; numbers beside it"),
+    Argument("updates", 2000, "batches of which each model learns; 0: none", whole(least=0)),
+    Argument("steps", 1200, "decisions of each flight to a target", whole()),
+)
 TWIST = slice(12, 18)  # v [m/s] and w [rad/s] in an observation
 MARKS = (1.0, 2.0, 4.0, 6.0)  # [s] at which distances are told
 
@@ -268,17 +275,13 @@ def _short(value: Any) -> float:
 
 def main() -> None:
     """The command."""
-    given = DEFAULTS | command.arguments(DEFAULTS)
+    given, _ = arguments.read(__doc__, ARGUMENTS)
     folders = sorted(Path(place) for place in glob.glob(given["runs"]))
     if not folders:
-        raise UsageError(f"runs={given['runs']}: no run folder there; say runs=GLOB")
-    out = Path(given["out"])
-    if out.suffix not in SUFFIXES:
-        raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
-    numbers = (
-        command.count("updates", given["updates"], least=0),
-        command.count("steps", given["steps"]),
-    )
+        raise UsageError(f"runs={given['runs']}: no run folder there; say {RUNS}")
+    out = output("out", given["out"], SUFFIXES, ".json")
+    command.prepare(load(TRACKING))
+    numbers = given["updates"], given["steps"]
     flights = sorted((read(folder) for folder in folders), key=lambda flight: flight.label)
     least = [min(flight.obs.shape[axis] for flight in flights) for axis in (0, 1)]
     flights = [first(flight.label, flight.memory, *least) for flight in flights]

@@ -1,6 +1,10 @@
-"""`python -m hybrid_rl.list`: tasks, algorithms and experiments, one line each.
+"""Tasks, methods and experiments, one line each.
 
-What each is stands in the first comment of its YAML file.
+    python -m hybrid_rl.list
+    python -m hybrid_rl.list config_dir=my_conf
+
+What each is stands in the first comment of its YAML file. With config_dir=DIR, or --config-dir DIR
+as `train` takes it, the entries in a folder of your own are there too.
 """
 
 if __name__ == "__main__":
@@ -9,12 +13,20 @@ if __name__ == "__main__":
     interrupt.install()
 
 import sys
+from functools import cache
 from pathlib import Path
+from typing import Any, cast
+
+from hydra import compose, initialize_config_dir
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import command
-from hybrid_rl.config import CONF, UsageError
+from hybrid_rl.arguments import Argument, read
+from hybrid_rl.config import CONF, UsageError, formulas
+from hybrid_rl.overrides import plain, reached
 
-GROUPS = {"task": "Tasks", "algo": "Algorithms", "experiment": "Experiments"}
+GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
+ARGUMENTS = (Argument("config_dir", "", "folder with groups of your own"),)
 
 
 def listing(conf: Path = CONF) -> dict[str, dict[str, str]]:
@@ -37,16 +49,55 @@ def about(path: Path) -> str:
     return ""
 
 
+def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
+    """Group -> name -> what restricts it: tasks that are formulas, and methods that need one."""
+    tasks = dict.fromkeys(formulas(conf), "a formula")
+    methods = {
+        path.stem: "tasks that are formulas"
+        for path in sorted((conf / "algo").glob("*.yaml"))
+        if _needs_a_formula(path)
+    }
+    return {"task": tasks, "algo": methods, "experiment": {}}
+
+
+def _needs_a_formula(path: Path) -> bool:
+    """Whether a part that the method of a YAML file uses knows the world; demonstrations may."""
+    own: Any = OmegaConf.load(path)
+    raw = plain(cast(DictConfig, OmegaConf.merge(_parts(), own)))
+    read = reached(raw, ("controllers", "learners"))
+    return any(value == "${env}" and key != "recorded.world" for key, value in read.items())
+
+
+@cache
+def _parts() -> DictConfig:
+    """All parts with their defaults, as they are composed."""
+    with initialize_config_dir(str(CONF), version_base="1.3"):
+        parts = compose("train")
+    OmegaConf.set_struct(parts, False)
+    parts.controllers, parts.learners = {}, {}  # those of the default method
+    return parts
+
+
 def main() -> None:
     """The command."""
-    if sys.argv[1:]:
-        raise UsageError(f"{sys.argv[1]}: the list takes no argument")
-    found = listing()
-    width = max(len(name) for names in found.values() for name in names)
-    for group, names in found.items():
-        print(f"{GROUPS[group]}  ({group}=NAME)" if names else f"{GROUPS[group]}: none")
-        for name, text in names.items():
-            print(f"  {name:{width}}  {text}".rstrip())
+    line = sys.argv[1:]
+    if line[:1] == ["--config-dir"] and len(line) == 2:  # as `train` takes it
+        sys.argv[1:] = [f"config_dir={line[1]}"]
+    given, _ = read(__doc__, ARGUMENTS)
+    folders = [CONF]
+    if given["config_dir"]:
+        own = Path(given["config_dir"]).expanduser()
+        if not own.is_dir():
+            raise UsageError(f"config_dir={own}: no such folder")
+        folders.append(own)
+    found = [(listing(folder), marks(folder)) for folder in folders]
+    width = max(len(name) for names, _ in found for group in GROUPS for name in names[group])
+    for group, title in GROUPS.items():
+        print(f"{title}  ({group}=NAME)")
+        for names, restricted in found:
+            for name, text in names[group].items():
+                mark = restricted[group].get(name)
+                print(f"  {name:{width}}  {text} {f'[{mark}]' if mark else ''}".rstrip())
         print()
     print("python -m hybrid_rl.train task=NAME algo=NAME [experiment=NAME] [key=value ...]")
 

@@ -22,18 +22,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hybrid_rl import command
+from hybrid_rl.arguments import Argument, output, read, whole
 from hybrid_rl.config import UsageError
 
-DEFAULTS = {
-    "run": "",
-    "task": "",
-    "out": "",
-    "mode": "full",
-    "seed": "",
-    "episode_steps": "",
-    "width": "640",
-    "height": "480",
-}
+ARGUMENTS = (
+    Argument("run", "", "folder of a trained run"),
+    Argument("task", "", "instead: a task with an expert written by hand"),
+    Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
+    Argument("mode", "", "of run=DIR: full, policy or planner; empty: full"),
+    Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
+    Argument("episode_steps", 0, "decisions at most; 0: the task's limit", whole()),
+    Argument("width", 640, "of the picture, in pixels", whole(even=True)),
+    Argument("height", 480, "of the picture, in pixels", whole(even=True)),
+)
+GROUPS = {name: f"with task=T: a key of its {name}" for name in ("env", "episode", "expert")}
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
 
 
@@ -114,30 +116,24 @@ def _check(check: Callable[..., None], *values: Any) -> None:
 
 def main() -> None:
     """The command."""
-    given = command.arguments(DEFAULTS, "env", "episode", "expert")
-    said = DEFAULTS | given
+    said, changes = read(__doc__, ARGUMENTS, GROUPS)
     if bool(said["run"]) == bool(said["task"]):
         raise UsageError(
             "run, task: give one of them; run=DIR is a folder that training wrote, "
             "task=T shows the task's expert by hand"
         )
-    changes = {key: value for key, value in said.items() if key not in DEFAULTS}
     if said["run"] and changes:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
-    if said["task"] and "mode" in given:
+    if said["task"] and said["mode"]:
         raise UsageError("mode: an expert by hand has none; give it with run=DIR")
     from hybrid_rl.drawing import SUFFIXES, draw
     from hybrid_rl.envs import offscreen
 
-    out = Path(
-        said["out"] or (Path(said["run"]) / "video.mp4" if said["run"] else f"{said['task']}.mp4")
+    default = f"{said['run']}/video.mp4" if said["run"] else f"{said['task']}.mp4"
+    out = output("out", said["out"] or default, SUFFIXES)
+    width, height, steps, seed = (
+        said[name] for name in ("width", "height", "episode_steps", "seed")
     )
-    if out.suffix not in SUFFIXES:
-        raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
-    width = command.count("width", said["width"], even=True)
-    height = command.count("height", said["height"], even=True)
-    steps = command.count("episode_steps", said["episode_steps"]) if said["episode_steps"] else 0
-    seed = command.count("seed", said["seed"], least=0) if said["seed"] else None
     offscreen.backend()  # before minutes of work: nothing is lost where nothing can draw
     _check(offscreen.check_size, width, height)
 

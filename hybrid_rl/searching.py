@@ -19,12 +19,17 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl import command
-from hybrid_rl.config import UsageError
+from hybrid_rl.arguments import Argument, output, read
 from hybrid_rl.curves import Curve, curves
 
-DEFAULTS = {"runs": "", "out": "searching.png", "group": "algo"}
 BEST, V, PLACE, VALUE = "belief/best", "planner/lyapunov", "belief/place", "belief/value"
 SUFFIXES = (".png", ".pdf", ".svg")
+RUNS = 'runs="GLOB", such as runs="runs/*/*bayesopt/*"'
+ARGUMENTS = (
+    Argument("runs", "", "pattern of the run folders, in quotes", needed=RUNS),
+    Argument("out", "searching.png", f"the picture: {', '.join(SUFFIXES)}; numbers beside it"),
+    Argument("group", "algo", "key of the configuration with a curve for each of its values"),
+)
 
 
 def _by_label(runs: str, metric: str, group: str) -> dict[str, Curve]:
@@ -98,13 +103,8 @@ def _said(each: np.ndarray) -> dict[str, Any]:
 
 def main() -> None:
     """The command."""
-    given = command.arguments(DEFAULTS)
-    said = DEFAULTS | given
-    out = Path(said["out"])
-    if "runs" not in given:
-        raise UsageError('runs: not given; say runs="GLOB", such as runs="runs/*/*bayesopt/*"')
-    if out.suffix not in SUFFIXES:
-        raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
+    said, _ = read(__doc__, ARGUMENTS)
+    out = output("out", said["out"], SUFFIXES, ".json")
     figure, numbers = plot(said["runs"], said["group"])
     out.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=130)

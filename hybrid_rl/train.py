@@ -1,4 +1,14 @@
-"""`python -m hybrid_rl.train task=T algo=A [key=value ...]`: one run, or a sweep with -m."""
+"""Train: one run, or a sweep with -m.
+
+    python -m hybrid_rl.train task=pendulum algo=sac total_steps=5000
+    python -m hybrid_rl.train -m algo=sac,nn_mppi,hybrid_stochastic num_seeds=5
+    python -m hybrid_rl.train resume=DIR total_steps=10000
+
+A run goes into runs/TASK/ALGO/TIME, or run_dir=DIR. The jobs of a sweep are checked before the
+first one begins; a job that fails does not end the others; jobs with one run_dir=DIR write into
+DIR/0, DIR/1, ... An override that the method does not use is refused; in a sweep, one that none
+of its methods uses.
+"""
 
 if __name__ == "__main__":
     from hybrid_rl import interrupt
@@ -15,7 +25,7 @@ from typing import Any
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import command, interrupt, run_folder
+from hybrid_rl import command, interrupt, overrides, run_folder
 from hybrid_rl import config as configuration
 from hybrid_rl.config import UNKNOWN, Run, UsageError
 from hybrid_rl.training import checkpoint, divergence, manifest, provenance
@@ -193,9 +203,9 @@ def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
     }
 
 
-def _job(config: DictConfig) -> None:
-    """One run of the command."""
-    given = command.asked(list(HydraConfig.get().overrides.task))
+def _job(config: DictConfig) -> dict[str, Any]:
+    """One run of the command; returns what summary.json holds."""
+    given = overrides.asked(HydraConfig.get().overrides.task)
     summary = train(configuration.resolved(config), given)
     print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
     if summary["signal"] is not None:
@@ -203,6 +213,7 @@ def _job(config: DictConfig) -> None:
     if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])
         raise DivergenceError(divergence.line(summary["diverged"], left, None))
+    return summary
 
 
 def _result(summary: Mapping[str, Any]) -> str:

@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train
 
-from hybrid_rl import command, evaluate, render
+from hybrid_rl import command, config, evaluate, render
 from hybrid_rl.envs import offscreen
 
 pytestmark = pytest.mark.xdist_group("extend")
@@ -90,6 +89,13 @@ def test_a_method_is_one_yaml(conf, tmp_path, capfd):
     assert (said["algo"], said["finished"]) == ("toy", True)
 
 
+def test_python_takes_the_same_folder(conf):
+    made = config.load(["task=pendulum", "algo=toy"], config_dir=conf)
+    assert list(made.learners) == ["model"]
+    with pytest.raises(config.UsageError, match="config_dir=nowhere: no such folder"):
+        config.load(config_dir="nowhere")
+
+
 def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path, capfd):
     folder = tmp_path / "run"
     line = [*TINY, "algo=toy", "proposal=toy", "total_steps=200", f"run_dir={folder}"]
@@ -105,9 +111,19 @@ def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path, capfd):
     [
         (["proposal=toys"], "proposal=toys: unknown; choose one of mixture, noise, policy, toy"),
         (["proposal=toy", "proposal.reach=far"], "proposal.reach=far: must be a number"),
-        (["proposal=toy", "proposal.reech=1"], "proposal.reech: unknown key"),
+        (
+            ["proposal=toy", "proposal.reech=1"],
+            "proposal.reech: unknown key; did you mean proposal.reach?",
+        ),
         (["proposal=toy", "proposal._target_=my_part.Any"], "proposal._target_=my_part.Any: "),
-        (["proposal=toy", "proposal._target_=their.Any"], "proposal._target_=their.Any: "),
+        (
+            ["proposal=toy", "proposal._target_=their.Any"],
+            "(No module named 'their'); is its folder on PYTH",
+        ),
+        (
+            ["algo=nn_mppi", "proposal=toy"],
+            "proposal: nn_mppi does not use it; it uses model_planner",
+        ),
     ],
     ids=lambda given: given[-1] if isinstance(given, list) else "",
 )

@@ -3,8 +3,9 @@
 import sys
 
 import pytest
+from tiny import demonstrate
 
-from hybrid_rl import command
+from hybrid_rl import command, config
 from hybrid_rl import list as listed
 from hybrid_rl.config import CONF
 
@@ -63,4 +64,35 @@ def test_every_one_says_what_it_is():
 
 def test_arguments_are_refused(monkeypatch, capsys):
     assert call(monkeypatch, "task=hopper") == 2
-    assert capsys.readouterr().err == "hybrid_rl: task=hopper: the list takes no argument\n"
+    said = capsys.readouterr().err
+    line = "task=hopper: unknown argument; give key=value with config_dir"
+    assert said == f"hybrid_rl: {line}\n"
+
+
+@pytest.mark.parametrize("given", [["config_dir={}"], ["--config-dir", "{}"]])
+def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
+    (conf / "task" / "kettle.yaml").write_text(
+        "# Kettle: boils.\nenv:\n  _target_: kettle.Kettle\n"
+    )
+    assert call(monkeypatch, *(text.format(conf) for text in given)) == 0
+    said = capsys.readouterr().out
+    assert "  kettle " in said
+    assert "Kettle: boils." in said
+    (ours,) = [line for line in said.splitlines() if line.startswith("  pendulum ")]
+    assert ours.endswith("[a formula]")
+    assert "  halfcheetah " in said
+
+
+@pytest.mark.parametrize("algo", ["sac", "bc", "ddpg", "kle3", "kle3_ddpg", "bayesopt", "ou_noise"])
+def test_what_needs_a_formula_is_marked(algo, tmp_path):
+    """The methods that MuJoCo's half-cheetah refuses, and no other."""
+    given = ["task=halfcheetah", f"algo={algo}", "total_steps=100"]
+    if algo == "bc":
+        given.append(demonstrate(tmp_path, config.load(given)))
+    if algo not in listed.marks()["algo"]:
+        config.build(config.load(given))
+        return
+    with pytest.raises(config.UsageError) as raised:
+        config.build(config.load(given))
+    line = f"task=halfcheetah: {algo} needs a world that is a formula; choose one of anywhere, cart"
+    assert str(raised.value).startswith(line)

@@ -101,7 +101,7 @@ def test_other_commands_have_the_arguments_of_the_page(page):
         module = import_module(f"hybrid_rl.{name}")
         if name in ("train", "list"):
             continue
-        known = set(module.DEFAULTS)
+        known = {one.name for one in module.ARGUMENTS}
         for word in words:
             key = word.partition("=")[0]
             assert key in known, f"{name}: {word}"

@@ -14,28 +14,9 @@ from hybrid_rl import command, config, train
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.types import Transition
 
-TINY = [
-    "task=pendulum",
-    "total_steps=600",
-    "log_every=50",
-    "eval_every=300",
-    "eval_episodes=1",
-    "checkpoint_every=100",
-    "random_steps=50",
-    "replay.capacity=200",
-    "policy.hidden=[16]",
-    "critic.hidden=[16]",
-    "model=gaussian",
-    "model.hidden=[16]",
-    "objective.hidden=[16]",
-    "planner.samples=4",
-    "planner.horizon=2",
-    "model_learner.batch_size=16",
-    "policy_learner.batch_size=16",
-    "policy_learner.updates=1",
-    "imagining.steps=1",
-    "compile_cache=null",  # that of conftest.py
-]
+CONF = config.search_path(Path(__file__).parent / "conf")
+TINY = [CONF, "settings=tiny"]  # YAML, since that may set what a method does not use
+SMALL = [CONF, "settings=small"]
 
 
 def run(folder: Path, *overrides: str) -> dict:

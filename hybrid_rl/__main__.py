@@ -1,0 +1,37 @@
+"""The commands of hybrid_rl, one line each."""
+
+import ast
+import sys
+from pathlib import Path
+
+MAIN = 'if __name__ == "__main__":'
+
+
+def commands() -> dict[str, str]:
+    """Name of a command -> the first line of its docstring, without an import."""
+    found = {}
+    for path in sorted(Path(__file__).parent.glob("[a-z]*.py")):
+        text = path.read_text(encoding="utf-8")
+        if MAIN in text:
+            found[path.stem] = (ast.get_docstring(ast.parse(text)) or "").splitlines()[0]
+    return found
+
+
+def main() -> int:
+    """Print the commands; exit code 2 where something else was asked for."""
+    known = commands()
+    asked = [text for text in sys.argv[1:] if text not in ("--help", "-h")]
+    if asked:
+        name = asked[0] if asked[0] in known else "COMMAND"
+        line = f"{asked[0]}: write python -m hybrid_rl.{name}; COMMAND is one of"
+        print(f"hybrid_rl: {line} {', '.join(known)}", file=sys.stderr)
+        return 2
+    width = max(map(len, known))
+    for name, about in known.items():
+        print(f"python -m hybrid_rl.{name:{width}}  {about}")
+    print("\n--help after any of them shows its arguments.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

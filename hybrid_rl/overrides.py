@@ -1,0 +1,239 @@
+"""What the user typed: keys that do not exist, keys that nothing reads, values as they were typed.
+
+A run reads the keys `config.READ`, and whatever these name by interpolation. An override of any
+other key would change nothing, so it is refused; a YAML file may set such keys, since it serves
+several methods.
+"""
+
+import difflib
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from hydra import compose
+from hydra.core.global_hydra import GlobalHydra
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
+from omegaconf import DictConfig, OmegaConf
+
+REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, by the key that it names
+MOST = 4  # keys that one line suggests
+SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
+LACKING: Any = object()  # what is found where there is nothing
+
+
+class UsageError(ValueError):
+    """What the user asked for makes no run; the message is one line that says what would."""
+
+
+def parse(texts: Iterable[str]) -> list[Override]:
+    """Overrides of the configuration, those of Hydra's own keys left out."""
+    parser = OverridesParser.create()
+    parsed = [parser.parse_override(text) for text in texts]
+    return [each for each in parsed if not each.key_or_group.startswith("hydra")]
+
+
+def asked(texts: Iterable[str]) -> dict[str, str]:
+    """Overrides as key -> value, as they were typed."""
+    pairs = (text.lstrip("+~").partition("=") for text in texts)
+    return {key: value for key, _, value in pairs}
+
+
+def key(override: Override) -> str:
+    """Where in the configuration an override acts."""
+    return override.package or override.key_or_group
+
+
+def plain(config: DictConfig) -> dict[str, Any]:
+    """`config` with its interpolations as text."""
+    raw: Any = OmegaConf.to_container(config, resolve=False)
+    return {name: value for name, value in raw.items() if name != "hydra"}
+
+
+def source(raw: dict[str, Any], path: str) -> str:
+    """The key that holds what `path` names: interpolations on the way are followed."""
+    at, node = "", raw
+    for name in path.split("."):
+        while isinstance(node, str) and (link := REFERENCE.fullmatch(node)):
+            at, node = link[1], select(raw, link[1])
+        at = f"{at}.{name}" if at else name
+        node = node.get(name, LACKING) if isinstance(node, dict) else LACKING
+    return at
+
+
+def select(raw: dict[str, Any], path: str) -> Any:
+    """The value at `path`, LACKING where there is none."""
+    node: Any = raw
+    for name in source(raw, path).split("."):
+        node = node.get(name, LACKING) if isinstance(node, dict) else LACKING
+    return node
+
+
+def reached(raw: dict[str, Any], roots: Iterable[str]) -> dict[str, Any]:
+    """Every key at or below `roots`, and below the keys that these name, with its value."""
+    found: dict[str, Any] = {}
+
+    def visit(path: str, node: Any) -> None:
+        if path in found:
+            return
+        found[path] = node
+        if isinstance(node, dict):
+            for name, value in node.items():
+                visit(f"{path}.{name}", value)
+        for target in REFERENCE.findall(str(node)) if isinstance(node, (str, list)) else ():
+            target = source(raw, target)
+            visit(target, select(raw, target))
+
+    for root in roots:
+        if root in raw:
+            visit(root, raw[root])
+    return found
+
+
+def unused(config: DictConfig, typed: Iterable[Override], roots: Iterable[str]) -> dict[str, str]:
+    """Typed keys that nothing at or below `roots` reads -> the keys that are read instead.
+
+    config: composed, with its interpolations.
+    """
+    raw = plain(config)
+    read = reached(raw, roots)
+    lost = {}
+    for path in (key(each) for each in typed if not each.is_delete()):
+        at = source(raw, path)
+        if select(raw, at) is LACKING:  # a group that spreads over the whole configuration
+            continue
+        if at not in read and not any(name.startswith(f"{at}.") for name in read):
+            lost[path] = ", ".join(_instead(read, at, select(raw, at)))
+    return lost
+
+
+def _instead(read: dict[str, Any], path: str, value: Any) -> list[str]:
+    """Keys that are read and have the last name of `path`: a part for a part, a value for a value.
+
+    The ones that hold a value of their own, or else the ones that name another key.
+    """
+    last = path.rsplit(".", 1)[-1]
+    same = {
+        name: each
+        for name, each in read.items()
+        if name.rsplit(".", 1)[-1] == last
+        and each is not None
+        and isinstance(each, dict) == isinstance(value, dict)
+    }
+    own = [name for name, each in same.items() if not REFERENCE.fullmatch(str(each))]
+    return (own or list(same))[:MOST]
+
+
+def near(config: DictConfig, path: str) -> str:
+    """Keys that whoever typed `path`, which does not exist, may have meant; "" where there is none.
+
+    config: any node of the composed configuration.
+    """
+    whole: Any = config._get_root()
+    raw = plain(whole)
+    parent, _, name = path.rpartition(".")
+    siblings = select(raw, parent) if parent else raw
+    close = difflib.get_close_matches(name, siblings if isinstance(siblings, dict) else ())
+    if close:
+        return ", ".join(f"{parent}.{each}".lstrip(".") for each in close)
+    named = [each for each in reached(raw, raw) if each.rsplit(".", 1)[-1] == name]
+    named.sort(key=lambda each: each.split(".")[-2:] != path.split(".")[-2:])
+    return ", ".join(named[:MOST])
+
+
+def meant(word: str, known: Iterable[str]) -> str:
+    """A question after the one of `known` that is close to `word`; empty where none is."""
+    close = difflib.get_close_matches(word, list(known), n=1)
+    return f"; did you mean {close[0]}?" if close else ""
+
+
+def as_typed(line: str, texts: Sequence[str]) -> str:
+    """A message that begins with a part's FIELD=VALUE, with the key and the value that were typed.
+
+    Parts know their fields alone: `reward='foo': ...` was typed as env.reward=foo; and YAML reads
+    1e4 as 10000.0.
+    """
+    head = re.match(r"([\w.]+)=(.*?): ", line)
+    if head is None:
+        return line
+    values = {str(_plain(head[2])), head[2].strip("'\"")}
+    for each in parse(texts):
+        path, text = key(each), each.get_value_element_as_str()
+        if each.is_delete() or path.rsplit(".", 1)[-1] != head[1].rsplit(".", 1)[-1]:
+            continue
+        written = (each.input_line or "").partition("=")[2] or text
+        if {text.strip("'\""), str(each.value())} & values:
+            return f"{path}={written}: {line[head.end() :]}"
+    return line
+
+
+def _plain(text: str) -> Any:
+    """A value as Hydra reads it."""
+    try:
+        return OverridesParser.create().parse_override(f"a={text}").value()
+    except Exception:
+        return text
+
+
+def new(texts: Sequence[str], known: DictConfig) -> list[str]:
+    """Keys of `+key=value` that the configuration `known`, composed without them, does not have."""
+    groups = GlobalHydra.instance().config_loader()
+    added = [text.lstrip("+").partition("=")[0] for text in texts if text.startswith("+")]
+    return [
+        each
+        for each in added
+        if OmegaConf.select(known, each, default=LACKING) is LACKING
+        and not groups.get_group_options(each.partition("@")[0])
+    ]
+
+
+def search_path(config_dir: str | Path) -> str:
+    """The override by which Hydra finds the groups in a folder of the user's.
+
+    Raises:
+        UsageError: where there is no such folder.
+    """
+    folder = Path(config_dir).expanduser().resolve()
+    if not folder.is_dir():
+        raise UsageError(f"config_dir={config_dir}: no such folder")
+    return f"hydra.searchpath=['file://{folder}']"
+
+
+def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
+    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it.
+
+    more: overrides of Hydra's own keys.
+    """
+    if not any(text.startswith("+") for text in overrides):
+        return
+    known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
+    for each in new(overrides, known):
+        raise UsageError(unknown(known, each))
+
+
+def refuse_unused(
+    composed: Sequence[DictConfig], overrides: Sequence[str], roots: Sequence[str]
+) -> None:
+    """Raise UsageError for an override that none of the configurations reads.
+
+    composed: with their interpolations, several where a sweep makes several jobs. roots: the keys
+    that a run reads. A resumed run has settings of its own, so there nothing is refused here.
+    """
+    if any(config.resume is not None for config in composed):
+        return
+    each = [unused(config, parse(overrides), roots) for config in composed]
+    for path in each[0]:
+        if all(path in lost for lost in each):
+            instead = next(filter(None, (lost[path] for lost in each)), "")
+            methods = list(dict.fromkeys(config.algo for config in composed))
+            does = "does" if len(methods) == 1 else "do"
+            use = f"it uses {instead}" if len(methods) == 1 else f"what they use is {instead}"
+            line = f"{path}: {', '.join(methods)} {does} not use it"
+            raise UsageError(f"{line}; {use}" if instead else line)
+
+
+def unknown(config: DictConfig, key: str) -> str:
+    """The line for a key that `config`, any node of what was composed, does not have."""
+    close = near(config, key)
+    return f"{key}: unknown key; " + (f"did you mean {close}?" if close else SHOW)

@@ -1,0 +1,26 @@
+"""The sweeper of hybrid_rl, where Hydra finds it: it takes plugins of this package alone.
+
+Every Hydra program on the machine imports this module, so it imports the rest when it is used.
+"""
+
+from typing import Any
+
+from hydra.plugins.sweeper import Sweeper
+
+
+class CheckedSweeper(Sweeper):
+    """`hybrid_rl.sweep.Sweeper`."""
+
+    def __init__(self, max_batch_size: int | None = None, params: Any = None) -> None:
+        self.given = (max_batch_size, params)
+
+    def setup(self, **given: Any) -> None:
+        """Hydra's: what to run, and by which launcher."""
+        from hybrid_rl import sweep
+
+        self.sweeper = sweep.Sweeper(*self.given)
+        self.sweeper.setup(**given)
+
+    def sweep(self, arguments: list[str]) -> Any:
+        """Run all jobs."""
+        return self.sweeper.sweep(arguments)

@@ -1,0 +1,110 @@
+"""What --help prints, and what the arguments of a command declare."""
+
+import subprocess
+import sys
+from importlib import import_module
+
+import pytest
+from tiny import call, call_train
+
+from hybrid_rl import __main__ as commands
+from hybrid_rl import arguments, command
+from hybrid_rl.arguments import Argument, several, whole
+from hybrid_rl.config import CONF, UsageError
+
+NAMES = sorted(set(commands.commands()) - {"train"})
+
+
+@pytest.mark.parametrize("flag", arguments.HELP)
+@pytest.mark.parametrize("name", NAMES)
+def test_every_command_explains_itself(name, flag, capsys):
+    """Purpose, an example, every argument with its default."""
+    module = import_module(f"hybrid_rl.{name}")
+    assert call(lambda: command.guarded(module.main), flag) == 0
+    said, err = capsys.readouterr()
+    assert err == ""
+    assert said.startswith(module.__doc__.splitlines()[0])
+    assert f"python -m hybrid_rl.{name}" in said
+    for argument in module.ARGUMENTS:
+        assert f"  {argument.name}=" in said
+        assert argument.about in said
+
+
+def test_train_shows_the_keys_that_every_run_has(capsys):
+    assert call_train("--help") == 0
+    said = capsys.readouterr().out
+    assert "python -m hybrid_rl.train task=pendulum" in said
+    for key in ("task=halfcheetah", "num_seeds=1 ", "total_steps=null", "resume=null", "run_dir="):
+        (line,) = [each for each in said.splitlines() if each.startswith(f"  {key}")]
+        assert len(line.split()) > 3, "a key without its meaning"
+    assert "--cfg job" in said
+    assert len(said.splitlines()) < 60
+
+
+def test_the_package_lists_its_commands():
+    whole = [sys.executable, "-m", "hybrid_rl"]
+    done = subprocess.run(whole, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    files = [
+        p.stem for p in (CONF.parent / "hybrid_rl").glob("[a-z]*.py") if "__main__" in p.read_text()
+    ]
+    for name in files:
+        assert f"python -m hybrid_rl.{name} " in done.stdout
+    done = subprocess.run([*whole, "train", "task=ant"], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "write python -m hybrid_rl.train" in done.stderr
+
+
+def read(monkeypatch, *line):
+    known = (
+        Argument("sizes", 3, "how many", whole(least=2, even=True)),
+        Argument("parts", ["a"], "which", several("a", "b")),
+        Argument("runs", "", "where", needed="runs=GLOB"),
+    )
+    monkeypatch.setattr(sys, "argv", ["hybrid_rl", *line])
+    return arguments.read("Doc.", known, {"env": "a key"})
+
+
+def test_arguments_are_parsed_as_declared(monkeypatch):
+    values, changes = read(monkeypatch, "sizes=4", "parts=b,a", "env.x=1=2", "runs=r")
+    assert values == {"sizes": 4, "parts": ["b", "a"], "runs": "r"}
+    assert changes == {"env.x": "1=2"}
+    assert read(monkeypatch, "runs=r")[0] == {"sizes": 3, "parts": ["a"], "runs": "r"}
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("", "runs: not given; say runs=GLOB"),
+        ("sizes=5", "sizes=5: must be an even number"),
+        ("parts=a,c", "parts=c: unknown; choose of a, b"),
+        ("sise=3", "give key=value with sizes, parts, runs, env.* (did you mean sizes?)"),
+        ("--runs r", "--runs: write runs=r"),
+        ("runs = r", "runs: write runs=r"),
+        ("runs =r", "runs: write runs=r"),
+        ("runs", "runs: write runs=VALUE"),
+    ],
+)
+def test_what_is_no_argument_is_one_line(monkeypatch, line, words):
+    with pytest.raises(UsageError) as raised:
+        read(monkeypatch, *line.split())
+    assert words in str(raised.value)
+
+
+def test_an_output_is_probed_without_a_trace(tmp_path):
+    out = arguments.output("out", tmp_path / "new" / "a.png", (".png",), ".json")
+    assert out == tmp_path / "new" / "a.png"
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "b.json").mkdir()
+    for bad, words in (("b.png", "b.json is a folder"), ("a.jpg", "must end in .png")):
+        with pytest.raises(UsageError, match=words):
+            arguments.output("out", tmp_path / bad, (".png",), ".json")
+    with pytest.raises(UsageError, match=r"cannot be written to \(Not a directory\)"):
+        arguments.output("out", "/dev/null/a.png", (".png",))
+
+
+def test_a_cache_that_cannot_be_written_is_one_line(capsys):
+    assert command._cache("/dev/null/cache") is None
+    said = capsys.readouterr().err
+    assert said.startswith("hybrid_rl: compile_cache=/dev/null/cache: cannot be written to (Not a")
+    assert said.count("\n") == 1
