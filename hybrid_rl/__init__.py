@@ -1,9 +1,9 @@
 """hybrid_rl: robots that learn with intent, batched on MuJoCo MJX and MuJoCo C."""
 
-from pathlib import Path
+import os
 
 __version__ = "0.1.0"
 
 # In a checkout `envs/` stands beside this package; in a wheel it is inside it.
-if not (Path(__file__).parent / "envs").is_dir():
-    __path__ = [*__path__, str(Path(__file__).parents[1])]
+if not os.path.isdir(os.path.join(os.path.dirname(__file__), "envs")):
+    __path__ = [*__path__, os.path.dirname(os.path.dirname(__file__))]

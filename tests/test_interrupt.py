@@ -27,8 +27,8 @@ def say(text):
 
 
 def start(*arguments):
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    return subprocess.Popen([sys.executable, *arguments], cwd=ROOT, **pipes)
+    pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    return subprocess.Popen([sys.executable, *arguments], cwd=ROOT, text=True, **pipes)
 
 
 def ended(process, number):
@@ -94,11 +94,11 @@ def test_a_run_is_asked_once_and_a_second_ctrl_c_ends_it():
 
 def test_after_sigterm_a_second_one_changes_nothing():
     code = (
-        "with interrupt.answered(say):\n    say('ready')\n    time.sleep(0.5)\n"
-        "    print('saved', flush=True)\n"
+        "with interrupt.answered(say):\n    say('ready')\n    sys.stdin.readline()\n"
+        "    time.sleep(0.2)\n    say('saved')\n"
     )
     process = press(code, signal.SIGTERM, signal.SIGTERM)
-    assert process.communicate()[0] == "saved\n"
+    assert process.communicate("\n")[0] == "saved\n"
     assert process.returncode == 0
 
 
@@ -120,13 +120,21 @@ command.guarded(job)
 @pytest.mark.parametrize(
     "swallow",
     [
-        "while True:\n        try:\n            time.sleep(60)\n        except BaseException: pass",
-        "class Ends:\n        def __del__(self):\n            time.sleep(60)\n    Ends()",
+        """while True:
+        try:
+            say('ready')
+            time.sleep(60)
+        except BaseException: pass""",
+        """class Ends:
+        def __del__(self):
+            say('ready')
+            time.sleep(60)
+    Ends()""",
     ],
     ids=["caught", "in a destructor"],
 )
 def test_a_swallowed_interrupt_ends_the_process_all_the_same(swallow):
-    process = press(f"with interrupt.tidily():\n    say('ready')\n    {swallow}\n", signal.SIGINT)
+    process = press(f"with interrupt.tidily():\n    {swallow}\n", signal.SIGINT)
     ended(process, signal.SIGINT)
 
 

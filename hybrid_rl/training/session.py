@@ -110,9 +110,14 @@ class Session:
         """
         if self.finished:
             return
-        plan = self.schedule
+        plan, random = self.schedule, self.loop.agent.random_steps
+        if plan.total_steps <= random:
+            decisions = f"all {plan.total_steps:,} decisions are random"
+            self.progress.note(f"{decisions}: random_steps={random}")
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle}")
         with self.progress.doing("compiling"):
+            import orbax.checkpoint  # noqa: F401  # 1 s, which a checkpoint at a signal has not
+
             self.program = self.loop.compile(self.state)
             self.loop.check_memory(self.program)
             began = perf_counter()
@@ -135,9 +140,6 @@ class Session:
             CheckpointError: where a checkpoint could not be written.
         """
         plan, worlds = self.schedule, self.loop.agent.num_envs
-        total, random = plan.total_steps, self.loop.agent.random_steps
-        if total <= random:
-            self.progress.note(f"all {total:,} decisions are random: random_steps={random}")
         while not self.finished and self.stop is None:
             if not self.unevaluated:
                 self._advance()
