@@ -193,8 +193,9 @@ def check(config: DictConfig) -> None:
     modes = config.eval_modes
     if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
         raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
-    if type(config.checkpoint_replay) is not bool:
-        raise UsageError(f"checkpoint_replay={config.checkpoint_replay}: must be true or false")
+    for key in ("checkpoint_replay", "distributed"):
+        if type(config.get(key, False)) is not bool:
+            raise UsageError(f"{key}={config[key]}: must be true or false")
     if config.matmul_precision not in PRECISIONS:
         known = ", ".join(PRECISIONS)
         raise UsageError(f"matmul_precision={config.matmul_precision}: choose one of {known}")

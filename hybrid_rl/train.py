@@ -25,7 +25,7 @@ from typing import Any
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import command, interrupt, overrides, run_folder
+from hybrid_rl import command, distributed, interrupt, overrides, run_folder
 from hybrid_rl import config as configuration
 from hybrid_rl.config import UNKNOWN, Run, UsageError
 from hybrid_rl.training import checkpoint, divergence, manifest, provenance
@@ -51,6 +51,11 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
         DivergenceError: where every learner reached NaN or infinity.
         CheckpointError: where a checkpoint could not be written or read.
     """
+    if config.get("distributed"):
+        configuration.check(config)
+        command.prepare(config)
+        config = distributed.share(config)
+        asked = {key: value for key, value in asked.items() if key != "distributed"}
     if config.resume is None:
         run = configuration.build(config)
         command.prepare(config)
