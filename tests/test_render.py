@@ -273,7 +273,7 @@ def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_dr
         (["run=x", "env.reward=thesis"], "env, episode, expert: a run has its own"),
         (["task=sawyer_push", "mode=full"], "mode: an expert by hand has none"),
         (["task=pendulum"], "task=pendulum: nobody wrote an expert"),
-        (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4 or .gif"),
+        (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4, .gif"),
         (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
         (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),
         (["run=x", "seed=five"], "seed=five: must be a whole number, 0 or more"),
