@@ -59,9 +59,13 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_the_wheel_holds_one_top_level_package(wheel):
+def test_the_wheel_holds_the_package_and_its_entry_for_hydra(wheel):
+    """Hydra takes plugins of the package hydra_plugins alone, which many distributions share."""
     names = zipfile.ZipFile(wheel).namelist()
-    assert {name.split("/")[0] for name in names} == {"hybrid_rl", f"{dist_of(wheel)}.dist-info"}
+    plugins = [name for name in names if name.startswith("hydra_plugins/")]
+    assert plugins == ["hydra_plugins/hybrid_rl_sweeper.py"]
+    rest = {name.split("/")[0] for name in set(names) - set(plugins)}
+    assert rest == {"hybrid_rl", f"{dist_of(wheel)}.dist-info"}
     wanted = ["py.typed", "types.py", "envs/physics.py", "conf/train.yaml"]
     assert not {f"hybrid_rl/{name}" for name in wanted} - set(names)
     sources = [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml"), RECORDED]
