@@ -1,4 +1,5 @@
-# make train [ARGS="task=cartpole total_steps=2000"]    make test [ARGS="-k sac"]
+# make train    half-cheetah by settings=light; make train ARGS="task=cartpole": whatever ARGS says
+# make test [ARGS="-k sac"]
 # Needs python3 >= 3.11; another one: make PYTHON=python3.12 ...
 
 PYTHON ?= python3

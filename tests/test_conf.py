@@ -34,9 +34,10 @@ def test_a_part_lists_every_field(path: Path) -> None:
     assert given == fields
 
 
-EACH = [  # every method on one task, and one method on every task
+EACH = [  # every method on one task, the default method on the default task, one on every task
     *(("pendulum", algo) for algo in options("algo")),
-    *((task, "hybrid_stochastic") for task in options("task") if task != "pendulum"),
+    ("halfcheetah", "hybrid_stochastic"),
+    *((task, "nn_mppi") for task in options("task") if task != "pendulum"),
 ]
 
 

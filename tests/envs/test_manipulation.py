@@ -4,7 +4,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from worlds import DECISIONS, IMPLEMENTATIONS, make, program
+from worlds import IMPLEMENTATIONS, make
 
 from hybrid_rl.controllers.stack import StackController
 from hybrid_rl.envs.kinematics import hold
@@ -172,41 +172,20 @@ def test_wrong_sizes_are_named(task, fields):
         task(**fields)
 
 
-def _replay(implementation, task, decisions):
-    """The last states [4] of the task's expert played natively, and of its actions here."""
-    first, actions, states = play(make(task, "native"), EXPERTS[task], decisions, 4)
-    end = jax.tree.map(lambda a: a[:, -1], states)
-    if implementation == "native":
-        return end, states
-    now, run = (
-        jax.tree.map(lambda a: a.reshape(2, 2, *a.shape[1:]), first),
-        program(make(task, "mjx")),
-    )
-    actions = actions.reshape(2, 2, decisions, -1)
-    parts = []
-    for t in range(0, decisions, DECISIONS):
-        parts.append(run(now, actions[:, :, t : t + DECISIONS]))
-        now = jax.tree.map(lambda a: a[:, :, -1], parts[-1])
-    path = jax.tree.map(
-        lambda *a: jnp.concatenate(a, 2).reshape(4, decisions, *a[0].shape[3:]), *parts
-    )
-    return jax.tree.map(lambda a: a[:, -1], path), path
-
-
-@pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids="sawyer_push-{}".format)
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
 def test_the_expert_pushes_the_block_home(implementation):
-    _, path = _replay(implementation, "sawyer_push", 100)
+    path = play(make("sawyer_push", implementation), EXPERTS["sawyer_push"], 100, 4)[2]
     assert path.metrics["success"].any(1).all()
     height = path.data.qpos[..., 9]
     assert jnp.abs(height - HEIGHT).max() < 2e-3  # the block neither tips nor jumps
     assert jnp.abs(path.data.qvel).max() < 5.0
 
 
-@pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids="panda_stack-{}".format)
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
 def test_the_expert_stacks_the_block(implementation):
-    end, path = _replay(implementation, "panda_stack", 120)
+    path = play(make("panda_stack", implementation), EXPERTS["panda_stack"], 120, 4)[2]
     assert path.metrics["success"].any(1).all()
-    np.testing.assert_array_equal(end.metrics["success"], 1.0)
+    np.testing.assert_array_equal(path.metrics["success"][:, -1], 1.0)
     assert (path.metrics["grasped"].sum(1) > 20).all()
     moved = path.data.qpos[..., 16:19] - jnp.array([0.45, 0.12, 0.025])[None, None]
     assert jnp.abs(moved).max() < 5e-3  # the base stays
