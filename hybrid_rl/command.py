@@ -54,7 +54,7 @@ def hydra_main(job: Callable[[DictConfig], Any]) -> None:
     def checked(config: DictConfig) -> None:
         typed = list(HydraConfig.get().overrides.task)
         with as_typed(typed):
-            overrides.refuse_new_keys(typed)
+            overrides.refuse_new_keys(typed, HydraConfig.get().overrides.hydra)
             overrides.refuse_unused([config], typed, configuration.READ)
             job(config)
 

@@ -40,7 +40,7 @@ SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 READ = (  # what a run reads, and with it all that these name by interpolation
     *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "head_start"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
-    "matmul_precision",
+    *("matmul_precision", "distributed"),
 )
 
 MODES = ("full", "policy", "planner")

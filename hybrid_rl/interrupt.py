@@ -4,7 +4,7 @@ A command calls `install` before it imports anything heavy. From then on a threa
 signals, also while the main thread is in an import, in XLA's compiler or in compiled code:
 
 * by default the process ends at once, with one line on stderr and exit code 130 or 143;
-* within `tidily` the main thread gets KeyboardInterrupt and PATIENCE seconds to clean up; a
+* within `tidily` the main thread gets KeyboardInterrupt and a few seconds to clean up; a
   second signal ends the process at once;
 * within `answered` the first signal asks for an end; Ctrl-C after it ends the process at once,
   and SIGTERM after it changes nothing.
@@ -32,6 +32,7 @@ class _State:
 
     installed = False
     tidily = False
+    patience = PATIENCE
     ask: Ask | None = None
     first: int | None = None  # the signal that was heard first in the present state
     raised: int | None = None  # the signal that became KeyboardInterrupt
@@ -53,9 +54,12 @@ def install() -> None:
 
 
 @contextmanager
-def tidily() -> Iterator[None]:
-    """Within, a signal raises KeyboardInterrupt in the main thread of a command."""
-    _State.tidily, _State.first = True, None
+def tidily(patience: float = PATIENCE) -> Iterator[None]:
+    """Within, a signal raises KeyboardInterrupt in the main thread of a command.
+
+    patience: [s] for its clean-up, after which the process ends.
+    """
+    _State.tidily, _State.first, _State.patience = True, None, patience
     try:
         yield
     finally:
@@ -140,7 +144,7 @@ def _act(number: int) -> None:
         elif number == signal.SIGINT:
             leave(number)
     elif _State.tidily and first is None:
-        timer = threading.Timer(PATIENCE, leave, (number,))
+        timer = threading.Timer(_State.patience, leave, (number,))
         timer.daemon = True
         timer.start()
     else:

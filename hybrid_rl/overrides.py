@@ -203,8 +203,9 @@ def search_path(config_dir: str | Path) -> str:
 def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
     """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it.
 
-    more: overrides of Hydra's own keys.
+    more: overrides of Hydra's own keys, of which the search path matters here.
     """
+    more = [text for text in more if text.startswith("hydra.searchpath=")]
     if not any(text.startswith("+") for text in overrides):
         return
     known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])

@@ -102,7 +102,7 @@ def _shown(
 
     trained = load(Path(said["run"]))
     _check(check_drawable, trained.episode.env)
-    shown = episode(trained, said["mode"], seed, steps)
+    shown = episode(trained, said["mode"] or "full", seed, steps)
     return trained.episode, f"step {trained.step:,}", shown
 
 

@@ -10,6 +10,8 @@ from typing import Any
 
 from hydra.core.utils import JobReturn, JobStatus
 
+from hybrid_rl import interrupt
+
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
 PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted
@@ -29,13 +31,14 @@ def watched(results: dict[int, Result]) -> Iterator[None]:
         jobs = dict(zip(lists[2], send(executor, function, *lists), strict=True))
         for number, job in jobs.items():
             print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)
-        try:
-            _wait(jobs, results)
-        except BaseException:
-            for job in jobs.values():
-                job.cancel(check=False)
-            _wait(jobs, results, PATIENCE)
-            raise
+        with interrupt.tidily(PATIENCE + 5):
+            try:
+                _wait(jobs, results)
+            except BaseException:
+                for job in jobs.values():
+                    job.cancel(check=False)
+                _wait(jobs, results, PATIENCE)
+                raise
         return [_Ended(results[number]) for number in jobs]
 
     submitit.AutoExecutor.map_array = map_array

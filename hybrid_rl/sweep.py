@@ -118,7 +118,7 @@ class Sweeper(BasicSweeper):
         assert self.config is not None
         assert self.hydra_context is not None
         here = _here(self.config.hydra)
-        refuse_new_keys(jobs[0])
+        refuse_new_keys(jobs[0], self.config.hydra.overrides.hydra)
         configs = []
         loader = self.hydra_context.config_loader
         for overrides in jobs:

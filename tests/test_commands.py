@@ -15,7 +15,7 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, config, evaluate, figures, render, train
+from hybrid_rl import command, config, evaluate, figures, render, run_folder
 from hybrid_rl import list as listed
 from hybrid_rl.curves import curves
 from hybrid_rl.envs import offscreen
@@ -191,7 +191,7 @@ def test_a_sweep_goes_to_a_cluster_by_one_override(tmp_path, monkeypatch):
 def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:
     place = tmp_path / "runs" / "pendulum" / "sac"
     with ThreadPoolExecutor(16) as pool:
-        made = list(pool.map(lambda _: train._writable(place, "run_dir"), range(2000)))
+        made = list(pool.map(lambda _: run_folder.writable(place, "run_dir"), range(2000)))
     assert set(made) == {place}
     assert not list(place.iterdir())
 

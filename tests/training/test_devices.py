@@ -29,7 +29,7 @@ def on_two_devices(*overrides):
     """The command's output, where the host has two devices."""
     flags = os.environ["XLA_FLAGS"] + " --xla_force_host_platform_device_count=2"
     done = subprocess.run(
-        [sys.executable, "-m", "hybrid_rl.train", *TINY, *SHORT, *overrides],
+        [sys.executable, "-m", "hybrid_rl.train", *overrides],
         env=os.environ | {"XLA_FLAGS": flags},
         capture_output=True,
         text=True,
@@ -48,7 +48,7 @@ def alone(tmp_path_factory):
 
 def test_two_devices_have_the_learners_of_one(alone, tmp_path):
     """And a run that one of them began goes on with both."""
-    said = on_two_devices(f"run_dir={tmp_path / 'two'}")
+    said = on_two_devices(*TINY, *SHORT, f"run_dir={tmp_path / 'two'}")
     assert "of its" not in said
     wanted, got = rows(alone), rows(tmp_path / "two")
     assert wanted.keys() == got.keys()
