@@ -223,7 +223,7 @@ def draw(tables: list[Table], out: Path) -> None:
     from matplotlib.figure import Figure
     from matplotlib.ticker import NullFormatter
 
-    from hybrid_rl.figures import COLOURS, STYLE
+    from hybrid_rl.plotting import COLOURS, STYLE
 
     heights = [len(table["rows"]) + 1.5 for table in tables]
     with rc_context(STYLE):

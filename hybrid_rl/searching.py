@@ -47,7 +47,7 @@ def plot(runs: str, group: str = "algo") -> tuple[Any, dict[str, Any]]:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from hybrid_rl.figures import COLOURS, STYLE
+    from hybrid_rl.plotting import COLOURS, STYLE
 
     best, strayed = _by_label(runs, BEST, group), _by_label(runs, V, group)
     place, value = _by_label(runs, PLACE, group), _by_label(runs, VALUE, group)
