@@ -104,7 +104,7 @@ def _wrapped(notes: Sequence[str], width: int) -> list[str]:
     """Lines of a width; of many notes the first, and how many more there are."""
     shown = list(dict.fromkeys(notes))[:MOST_NOTES]
     lines = [
-        line for note in shown for line in textwrap.wrap(textwrap.shorten(note, 2 * width), width)
+        line for note in shown for line in textwrap.wrap(textwrap.shorten(note, 3 * width), width)
     ]
     more = len(set(notes)) - len(shown)
     return [*lines, f"and {more} more notes, in the JSON beside this picture"] if more else lines
