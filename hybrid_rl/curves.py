@@ -132,6 +132,15 @@ def band(values: np.ndarray, resamples: int = RESAMPLES) -> tuple[np.ndarray, np
     return low, high
 
 
+def spread(values: np.ndarray) -> str:
+    """IQM of [n] and its band, in words: "8,250 [6,429, 8,979]"; a single value alone."""
+    middle = f"{iqm(values):,.4g}"
+    if len(values) == 1:
+        return middle
+    low, high = band(values)
+    return f"{middle} [{low:,.4g}, {high:,.4g}]"
+
+
 def area(curve: Curve) -> np.ndarray:
     """[S] mean of each learner's metric over the run: the area under its curve over its width.
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from hybrid_rl import command
 from hybrid_rl.config import UsageError
-from hybrid_rl.curves import Curve, area, band, curves, from_json, improvement, iqm, steps_to
+from hybrid_rl.curves import Curve, area, curves, from_json, improvement, iqm, spread, steps_to
 from hybrid_rl.plotting import STYLE, plot
 
 if TYPE_CHECKING:
@@ -74,6 +74,10 @@ def save(
     return out
 
 
+def _seeds(curve: Curve) -> str:
+    return f"{len(curve.seeds)} seed{'s' * (len(curve.seeds) != 1)}"
+
+
 def _numbers(curve: Curve) -> dict:
     """What is drawn of a curve, as JSON holds it."""
     arrays = {name: getattr(curve, name) for name in ("x", "iqm", "low", "high", "each")}
@@ -107,11 +111,12 @@ def summarise(drawn: Sequence[Curve], threshold: float | None = None) -> list[st
             lines.append(f"{curve.task}, {curve.label}: no point that all its seeds have")
             continue
         last = np.flatnonzero(curve.shared)[-1]
-        ends = f"{curve.iqm[last]:,.4g} [{curve.low[last]:,.4g}, {curve.high[last]:,.4g}]"
-        mean, (low, high) = iqm(area(curve)), band(area(curve))
+        ends = spread(curve.each[:, last])
+        if last < len(curve.x) - 1:
+            ends += f" at {curve.x[last]:,.10g}"
         line = (
-            f"{curve.task}, {curve.label}: {len(curve.seeds)} seeds, last {curve.metric} {ends}, "
-            f"mean {mean:,.4g} [{low:,.4g}, {high:,.4g}]"
+            f"{curve.task}, {curve.label}: {_seeds(curve)}, last {curve.metric} {ends}, "
+            f"mean {spread(area(curve))}"
         )
         if threshold is not None:
             steps = steps_to(curve, threshold)

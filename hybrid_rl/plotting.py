@@ -76,7 +76,7 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
     labels = sorted({curve.label for curve in drawn})
     across = _across(len(wanted), len(tasks) if len(metrics) > 1 else 0)
     down = math.ceil(len(wanted) / across)
-    notes = _wrapped([note for curve in drawn for note in curve.notes], NOTE_WIDTH * across)
+    notes = wrapped([note for curve in drawn for note in curve.notes], NOTE_WIDTH * across)
     entries = max(pairs.count(pair) for pair in wanted)
     height = PANEL[1] * down + ENTRY * (down * entries + len(notes))
     with matplotlib.rc_context(STYLE):
@@ -100,7 +100,7 @@ def _across(panels: int, columns: int) -> int:
     return panels if panels <= 3 else (full or [3])[0]
 
 
-def _wrapped(notes: Sequence[str], width: int) -> list[str]:
+def wrapped(notes: Sequence[str], width: int) -> list[str]:
     """Lines of a width; of many notes the first, and how many more there are."""
     shown = list(dict.fromkeys(notes))[:MOST_NOTES]
     lines = [
