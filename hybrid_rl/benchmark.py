@@ -13,7 +13,8 @@ loop      decisions a second of the whole training loop, by number of learners
 compile   seconds from start to the first decision, with an empty cache and a filled one
 
 Keys of the method's own parts change it. What is compared is run in turns (hybrid_rl.bench.race).
-The numbers are printed, written as JSON and drawn; by default it takes six minutes on two cores.
+The numbers are printed, written as JSON and drawn, a picture a part; by default it takes six
+minutes on two cores.
 """
 
 if __name__ == "__main__":
@@ -27,7 +28,6 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import replace
-from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -244,37 +244,11 @@ def _race(part: str, what: str, unit: str, field: list[Any], rounds: int) -> Tab
     return {"part": part, "what": what, "unit": unit, "rows": rows}
 
 
-def draw(tables: list[Table], out: Path) -> None:
-    """A bar a row, a panel a table; logarithmic."""
-    from matplotlib import rc_context
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import NullFormatter
-
-    from hybrid_rl.figures import COLOURS, STYLE
-
-    heights = [len(table["rows"]) + 1.5 for table in tables]
-    with rc_context(STYLE):
-        figure = Figure(figsize=(7, 0.3 * sum(heights)), layout="constrained")
-        panels = figure.subplots(len(tables), 1, squeeze=False, height_ratios=heights)[:, 0]
-        for axes, table in zip(panels, tables, strict=True):
-            names = [row["name"] for row in table["rows"]]
-            rates = [row["rate"] for row in table["rows"]]
-            bars = axes.barh(names, rates, color=COLOURS[0], height=0.6)
-            told = [f"{rate:,.0f}" if rate >= 100 else f"{rate:.3g}" for rate in rates]
-            axes.bar_label(bars, told, padding=3, fontsize=8)
-            axes.set_xscale("log")
-            axes.set_xlim(min(rates) / 3, max(rates) * 5)
-            axes.invert_yaxis()
-            axes.xaxis.set_minor_formatter(NullFormatter())
-            title = f"{table['part']}: {table['what']} [{table['unit']}]"
-            axes.set_title(title, loc="left", fontsize=8)
-        figure.savefig(out, dpi=150)
-
-
 def main() -> None:
     """The command."""
     import jax
 
+    from hybrid_rl.bench.picture import draw
     from hybrid_rl.training import provenance
 
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
@@ -297,8 +271,8 @@ def main() -> None:
         numbers = {"machine": machine, "versions": provenance.versions(), "asked": asked}
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps({**numbers, "tables": tables}, indent=1) + "\n")
-    draw(tables, out.with_suffix(".png"))
-    print(f"\n{out} and {out.with_suffix('.png')}")
+    pictures = draw(tables, out.with_suffix(".png"))
+    print(f"\n{out} and {', '.join(map(str, pictures))}")
 
 
 if __name__ == "__main__":

@@ -7,23 +7,26 @@ seed on its border counts in part, so that few seeds are treated as evenly as ma
 (5 seeds: 0, 3/4, 1, 3/4, 0; for n divisible by 4 it is the 25% trimmed mean). The
 band is the 95% percentile bootstrap of the IQM, resampling seeds.
 Source: Agarwal et al., Deep RL at the Edge of the Statistical Precipice, NeurIPS 2021.
+
+A seed that diverged, or whose return was not finite, counts as a failure (hybrid_rl.logged).
 """
 
-import glob
 import json
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.config import UsageError
+from hybrid_rl.logged import Learner, common, counted, learners, swept
+from hybrid_rl.run_folders import NOT_ROWS, RunFolder, differences, find, short
 
-POINTS = 100  # of a curve whose seeds have no common steps
 RESAMPLES = 2000  # of the bootstrap
 TIMES = ("step", "wall_s")  # of a row; any other x is a key of the configuration
-PLACE = ("step", "seed", "wall_s")  # of a row; every other name is a metric
+ARRAYS = ("x", "each", "iqm", "low", "high")  # of a curve
+Key = tuple[str, str]  # task and label of a curve
 
 
 @dataclass(frozen=True)
@@ -36,21 +39,16 @@ class Curve:
     seeds: tuple[int, ...]  # S learners, in the order of `each`
     runs: tuple[str, ...]  # the run folder of each learner
     x: np.ndarray  # [G] decisions of a learner, seconds, or what was swept
-    each: np.ndarray  # [S, G] the metric of each learner
-    iqm: np.ndarray  # [G] interquartile mean over the learners
+    each: np.ndarray  # [S, G] the metric of each learner, NaN where it has none
+    iqm: np.ndarray  # [G] interquartile mean over the learners that have a value
     low: np.ndarray  # [G] lower end of the 95% band
     high: np.ndarray  # [G] upper end
     notes: tuple[str, ...]  # what a reader should know, one line each
 
-
-@dataclass(frozen=True)
-class Learner:
-    """What one seed of one run logged."""
-
-    run: Path
-    seed: int
-    x: np.ndarray  # [N] rising
-    y: np.ndarray  # [N]
+    @property
+    def shared(self) -> np.ndarray:
+        """[G] whether all learners have a value there."""
+        return np.isfinite(self.each).all(0)
 
 
 def curves(
@@ -60,50 +58,63 @@ def curves(
     group: str = "algo",
     smooth: float = 0.0,
 ) -> list[Curve]:
-    """A curve for each task and each value of `group`, a key of the runs' configuration.
+    """A curve for each task, each value of `group`, and each set of settings.
 
     runs: a glob, or folders; whatever lies below them and holds metrics.jsonl is a run.
     x: "step" [decisions], "wall_s" [s], or a number in the runs' configuration that a sweep went
     through, such as num_demonstrations: there a run is one point, what it had at last.
+    group: a key of the runs' configuration. Runs that differ in more than `group` and `x` are
+    different curves, named by what differs (hybrid_rl.run_folders.differences); runs of the same
+    settings are one curve, whatever their seeds.
     smooth: width of a moving mean over each seed, in units of x. Where the seeds logged at the
     same steps, these are the points; else each seed is averaged in bins, with a straight line
     over empty ones.
-    A curve ends where its shortest seed ends.
+    A curve goes as far as its longest seed, averaged over those that have a value.
 
     Raises:
-        UsageError: where nothing fits; the line says what would.
+        UsageError: where nothing fits, and where a file is damaged; the line says what would.
     """
-    groups: dict[tuple[str, str], list[Learner]] = {}
-    names: set[str] = set()
-    for run in find(runs):
-        found, logged = _read(run, metric, x if x in TIMES else "step")
-        if x not in TIMES:
-            found = [_last(learner, _number(run, x)) for learner in found]
-        names |= logged
-        if found:
-            task, label = _name(run, "task"), _name(run, group)
-            label = label if group == "algo" else f"{group}={label}"
-            groups.setdefault((task, label), []).extend(found)
-    if not groups:
-        known = ", ".join(sorted(names)) or "no metric yet"
-        raise UsageError(f"metric={metric}: not in these runs; they have {known}")
+    folders = [RunFolder(path) for path in find(runs)]
+    with_rows = [run for run in folders if run.rows]
+    found: dict[Key, list[Learner]] = {}
+    notes: dict[Key, list[str]] = {}
+    for key, (members, differing) in _grouped(with_rows, x, group).items():
+        every = [each for run in members for each in learners(run, metric, _time(x))]
+        found[key] = [each for each in every if each.counts]
+        notes[key] = [*differing, *_left_out(metric, every), *_cut(members)]
+    if not any(len(each.x) for members in found.values() for each in members):
+        raise _nothing(folders, metric)
+    for task in {task for task, _ in found}:
+        panel = {key: members for key, members in found.items() if key[0] == task and members}
+        for key, (members, lines) in counted(metric, panel).items():
+            found[key] = members
+            notes[key] += lines
     if x not in TIMES:
-        groups = {place: _swept(learners) for place, learners in groups.items()}
-    return [
-        _curve(task, metric, label, groups[task, label], smooth) for task, label in sorted(groups)
-    ]
+        numbers = {run.path: run.number(x) for run in with_rows}
+        for key, members in found.items():
+            notes[key] += _twice([(each.seed, numbers[each.run]) for each in members])
+            found[key] = swept(members, numbers)
+    drawn = [key for key in sorted(found) if any(np.isfinite(each.y).any() for each in found[key])]
+    lines = {key: [f"{', '.join(key)}: {line}" for line in notes[key]] for key in sorted(notes)}
+    lines[drawn[0]] += [line for key in lines if key not in drawn for line in lines[key]]
+    lines[drawn[0]] += [f"{run.path}: no rows yet; left out" for run in folders if not run.rows]
+    return [_curve(key, metric, found[key], smooth, lines[key]) for key in drawn]
 
 
-def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
-    """Run folders that match a glob, or that lie in the folders given."""
-    if isinstance(runs, (str, Path)):
-        matches = [Path(match) for match in glob.glob(str(Path(runs).expanduser()), recursive=True)]
-    else:
-        matches = [Path(run) for run in runs]
-    below = {path.parent for match in matches for path in match.glob("**/metrics.jsonl")}
-    if not below:
-        raise UsageError(f"runs={runs}: no run there (a folder that holds metrics.jsonl)")
-    return sorted(below)
+def from_json(file: str | Path) -> tuple[list[Curve], dict[str, str]]:
+    """The curves that hybrid_rl.figures wrote beside a picture, and what it wrote of them.
+
+    Raises:
+        UsageError: where the file holds none.
+    """
+    try:
+        read = json.loads(Path(file).read_text(encoding="utf-8"))
+        drawn = [_from_numbers(one, read) for one in read["curves"]]
+    except OSError as error:
+        raise UsageError(f"runs={file}: cannot be read ({error.strerror})") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise UsageError(f"runs={file}: holds no curves that figures wrote") from error
+    return drawn, {key: value for key, value in read.items() if isinstance(value, str)}
 
 
 def iqm(values: np.ndarray) -> np.ndarray:
@@ -121,12 +132,25 @@ def band(values: np.ndarray, resamples: int = RESAMPLES) -> tuple[np.ndarray, np
     return low, high
 
 
+def spread(values: np.ndarray) -> str:
+    """IQM of [n] and its band, in words: "8,250 [6,429, 8,979]"; a single value alone."""
+    middle = f"{iqm(values):,.4g}"
+    if len(values) == 1:
+        return middle
+    low, high = band(values)
+    return f"{middle} [{low:,.4g}, {high:,.4g}]"
+
+
 def area(curve: Curve) -> np.ndarray:
     """[S] mean of each learner's metric over the run: the area under its curve over its width.
 
-    Before its first row a learner has what it had there.
+    Up to the last point that all learners have; NaN where there is none. Before its first row a
+    learner has what it had there.
     """
-    x, y = np.append(0.0, curve.x), np.concatenate([curve.each[:, :1], curve.each], axis=1)
+    x, each = curve.x[curve.shared], curve.each[:, curve.shared]
+    if not len(x):
+        return np.full(len(each), np.nan)
+    x, y = np.append(0.0, x), np.concatenate([each[:, :1], each], axis=1)
     return np.trapezoid(y, x, axis=1) / x[-1]
 
 
@@ -152,112 +176,93 @@ def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     return rate(x, y), float(low), float(high)
 
 
-def _read(run: Path, metric: str, x: str) -> tuple[list[Learner], set[str]]:
-    """The learners of a run that logged `metric`, and the names of all that was logged."""
-    text = (run / "metrics.jsonl").read_text(encoding="utf-8")
-    whole = text[: text.rfind("\n") + 1]  # a run at work may be in the middle of a row
-    rows = [json.loads(line) for line in whole.splitlines()]
-    names = {name for row in rows for name in row} - set(PLACE)
-    points: dict[int, list[tuple[float, float]]] = {}
-    for row in rows:
-        if row.get(metric) is not None:  # null: it was not finite
-            points.setdefault(row["seed"], []).append((row[x], row[metric]))
-    learners = []
-    for seed in sorted(points):
-        at, y = np.array(points[seed], float).T
-        order = np.argsort(at, kind="stable")
-        learners.append(Learner(run, seed, at[order], y[order]))
-    return learners, names
+def _time(x: str) -> str:
+    return x if x in TIMES else "step"
 
 
-def _name(run: Path, key: str) -> str:
-    """What a run says about itself, in summary.json or else in config.yaml."""
-    summary, config = run / "summary.json", run / "config.yaml"
-    said = json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else {}
-    if key not in said and config.exists():
-        read = OmegaConf.load(config)
-        parent, _, name = key.rpartition(".")
-        place = OmegaConf.select(read, parent) if parent else read
-        if isinstance(place, DictConfig) and name in place:
-            said = {key: OmegaConf.select(read, key)}
-    if key not in said:
-        raise UsageError(f"group={key}: {run} says nothing of it in config.yaml")
-    return "null" if said[key] is None else str(said[key])
+def _grouped(
+    runs: Sequence[RunFolder], x: str, group: str
+) -> dict[Key, tuple[list[RunFolder], list[str]]]:
+    """The runs of each curve, and their settings where the label is a letter."""
+    parts: dict[tuple[str, str, str], list[RunFolder]] = {}
+    for run in runs:
+        parts.setdefault((run.word("task"), run.word(group), run.word("algo")), []).append(run)
+    found: dict[Key, tuple[list[RunFolder], list[str]]] = {}
+    for (task, value, algo), members in parts.items():
+        label = algo if group == "algo" else f"{group}={value}"
+        if len([key for key in parts if key[:2] == (task, value)]) > 1:
+            label += f" algo={algo}"
+        differ = differences(members, [key for key in (x, group) if key not in TIMES])
+        for run, name, more in zip(members, short(differ), differ, strict=True):
+            settings = ", ".join(f"{key}={shown}" for key, shown in more.items())
+            lines = [settings] if settings and "=" not in name else []
+            found.setdefault((task, f"{label} {name}".strip()), ([], lines))[0].append(run)
+    return found
 
 
-def _number(run: Path, key: str) -> float:
-    """The number at `key` of a run's configuration."""
-    config = OmegaConf.load(run / "config.yaml") if (run / "config.yaml").exists() else None
-    value = OmegaConf.select(config, key) if config is not None else None
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise UsageError(f"x={key}: must be step, wall_s, or a number in every run's config.yaml")
-    return float(value)
+def _left_out(metric: str, every: list[Learner]) -> list[str]:
+    """Which learners have no value of the metric yet."""
+    without = [each for each in every if not each.counts]
+    if len(without) == len(every):
+        return [f"no {metric}"]
+    return [f"seed {one.seed} of {one.run} has no {metric} yet; left out" for one in without]
 
 
-def _last(learner: Learner, at: float) -> Learner:
-    """A learner as one point: what it had at last."""
-    return replace(learner, x=np.array([at]), y=learner.y[-1:])
+def _cut(members: list[RunFolder]) -> list[str]:
+    return [f"the last row of {run.path} is cut; left out" for run in members if run.cut]
 
 
-def _swept(learners: list[Learner]) -> list[Learner]:
-    """One learner for each seed, from its points in several runs."""
-    joined = []
-    for seed in sorted({learner.seed for learner in learners}):
-        same = [learner for learner in learners if learner.seed == seed]
-        x, y = (np.concatenate([getattr(learner, name) for learner in same]) for name in "xy")
-        order = np.argsort(x, kind="stable")
-        joined.append(Learner(same[0].run, seed, x[order], y[order]))
-    return joined
+def _nothing(folders: list[RunFolder], metric: str) -> UsageError:
+    """What to say where no run has the metric."""
+    names = {name for run in folders for row in run.rows for name in row} - set(NOT_ROWS)
+    if names:
+        return UsageError(
+            f"metric={metric}: not in these runs; they have {', '.join(sorted(names))}"
+        )
+    more = f" and {len(folders) - 1} more" if len(folders) > 1 else ""
+    return UsageError(
+        f"metric={metric}: not in these runs; {folders[0].path / 'metrics.jsonl'}{more}: "
+        "no metric yet"
+    )
 
 
-def _curve(task: str, metric: str, label: str, learners: list[Learner], smooth: float) -> Curve:
+def _twice(learners: list[tuple[int, float]]) -> list[str]:
+    """Which (seed, number) are there several times."""
+    seeds = sorted({seed for seed, number in learners if learners.count((seed, number)) > 1})
+    return [f"seeds {seeds} are in several run folders and count in each"] if seeds else []
+
+
+def _curve(key: Key, metric: str, members: list[Learner], smooth: float, notes: list[str]) -> Curve:
     """Learners of one kind as one line."""
-    ends = [learner.x[-1] for learner in learners]
-    notes = []
-    if min(ends) < 0.99 * max(ends):
-        short = learners[int(np.argmin(ends))]
-        end = f"{min(ends):,.0f} of {max(ends):,.0f}"
-        notes.append(f"{task}, {label}: ends at {end}, with seed {short.seed} of {short.run}")
-    seeds = tuple(learner.seed for learner in learners)
-    twice = sorted({seed for seed in seeds if seeds.count(seed) > 1})
-    if twice and "=" not in label:  # else the algorithms of a group share seeds
-        notes.append(f"{task}, {label}: seeds {twice} are in several run folders and count in each")
-    x, each = _common(learners, smooth)
-    low, high = band(each)
-    runs = tuple(str(learner.run) for learner in learners)
-    return Curve(task, metric, label, seeds, runs, x, each, iqm(each), low, high, tuple(notes))
+    (task, label), lines = key, list(notes)
+    seeds = tuple(each.seed for each in members)
+    lines += [f"{task}, {label}: {line}" for line in _twice([(seed, 0.0) for seed in seeds])]
+    x, each = common(members, smooth)
+    number = np.isfinite(each).sum(0)
+    if (number < len(each)).any():
+        few = int(np.argmin(np.where(number > 0, number, len(each))))
+        where = f"{number[few]} of {len(each)} at {x[few]:,.10g}"
+        lines.append(f"{task}, {label}: thin where not all seeds have a value, {where}")
+    runs = tuple(str(each.run) for each in members)
+    middle, low, high = _averaged(each)
+    return Curve(task, metric, label, seeds, runs, x, each, middle, low, high, tuple(lines))
 
 
-def _common(learners: list[Learner], smooth: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points that all learners share, and their values there: [G], [S, G]."""
-    last = min(learner.x[-1] for learner in learners)
-    shared = np.unique(learners[0].x[learners[0].x <= last])
-    same = all(np.array_equal(np.unique(z.x[z.x <= last]), shared) for z in learners)
-    if same and len(shared) <= 10 * POINTS:
-        edges = np.append(-np.inf, shared)
-        x = shared
-    else:
-        first = max(learner.x[0] for learner in learners)
-        count = min(POINTS, max(2, min(len(learner.x) for learner in learners)))
-        x = np.linspace(min(first, last), last, count)
-        edges = np.append(-np.inf, x)
-    return x, np.stack([_binned(learner, x, edges, smooth) for learner in learners])
+def _averaged(each: np.ndarray) -> np.ndarray:
+    """IQM and ends of the band [3, G] of [S, G], at each point over those that have a value."""
+    found = np.full((3, each.shape[1]), np.nan)
+    present = np.isfinite(each)
+    for pattern in np.unique(present, axis=1).T:
+        if pattern.any():
+            at = (present == pattern[:, None]).all(0)
+            values = each[np.ix_(pattern, at)]
+            found[:, at] = iqm(values), *band(values)
+    return found
 
 
-def _binned(learner: Learner, x: np.ndarray, edges: np.ndarray, smooth: float) -> np.ndarray:
-    """[G] means of a learner's rows in the bins (edges[i], edges[i+1]]."""
-    y = _moving_mean(learner.x, learner.y, smooth)
-    which = np.searchsorted(edges[1:], learner.x)  # the first edge at or after it
-    inside = which < len(x)
-    total = np.bincount(which[inside], y[inside], len(x))
-    number = np.bincount(which[inside], minlength=len(x))
-    full = number > 0
-    return np.interp(x, x[full], total[full] / number[full])
-
-
-def _moving_mean(x: np.ndarray, y: np.ndarray, width: float) -> np.ndarray:
-    """[N] mean of all y whose x is within width / 2."""
-    start = np.searchsorted(x, x - width / 2, side="left")
-    end = np.searchsorted(x, x + width / 2, side="right")
-    sums = np.append(0.0, np.cumsum(y))
-    return (sums[end] - sums[start]) / (end - start)
+def _from_numbers(one: dict[str, Any], read: dict[str, Any]) -> Curve:
+    """A curve from its JSON; null becomes NaN."""
+    metric = one.get("metric", read["metric"])
+    seeds, runs, notes = (tuple(one[name]) for name in ("seeds", "runs", "notes"))
+    x, each, middle, low, high = (np.array(one[name], float) for name in ARRAYS)
+    return Curve(one["task"], metric, one["label"], seeds, runs, x, each, middle, low, high, notes)

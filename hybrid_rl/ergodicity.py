@@ -230,7 +230,7 @@ def _panels(down: int, across: int) -> tuple[Any, Any]:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from hybrid_rl.figures import STYLE
+    from hybrid_rl.plotting import STYLE
 
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(3.4 * across, 3.1 * down), layout="constrained")

@@ -204,7 +204,7 @@ def signals(flights: list[Flight], dt: float) -> Any:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from hybrid_rl.figures import STYLE
+    from hybrid_rl.plotting import STYLE
 
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(2.2 * max(3, len(flights)), 4), layout="constrained")
@@ -226,7 +226,7 @@ def outcome(found: dict[str, Any], dt: float) -> Any:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from hybrid_rl.figures import COLOURS, STROKES, STYLE
+    from hybrid_rl.plotting import COLOURS, STROKES, STYLE
 
     methods = sorted({label.split()[0] for label in found if label != EXACT})
     of = {name: [la for la in found if la.split()[0] == name and la != EXACT] for name in methods}

@@ -2,16 +2,21 @@
 
 import json
 import time
+from pathlib import Path
 
 import imageio.v3 as iio
 import jax
 import pytest
+from matplotlib.figure import Figure
 from tiny import call
 
 from hybrid_rl import benchmark, command
-from hybrid_rl.bench import others, ours
+from hybrid_rl.bench import others, ours, picture
+from hybrid_rl.bench.picture import draw, redraw
 from hybrid_rl.bench.race import Contestant, race
 from hybrid_rl.envs import accelerated, mjcf
+
+ROOT = Path(__file__).resolve().parents[1]
 
 
 def run(*arguments):
@@ -47,7 +52,8 @@ def test_the_command_measures_every_part(tmp_path, capsys):
     assert [table["part"] for table in tables] == ["physics", "plan", "loop"]
     assert all(row["rate"] > 0 for table in tables for row in table["rows"])
     assert tables[0]["solver"]["iterations"] == mjcf.load("cartpole.xml").opt.iterations
-    assert iio.imread(out.with_suffix(".png")).shape[1] > 500
+    for part in ("physics", "plan", "loop"):
+        assert iio.imread(out.with_stem(f"b_{part}").with_suffix(".png")).shape[1] > 500
 
 
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
@@ -92,6 +98,29 @@ def test_gradient_steps_beside_those_of_brax(tmp_path):
     (table,) = json.loads(out.read_text())["tables"]
     assert [row["name"] for row in table["rows"]] == ["policy learner", "Brax's SAC"]
     assert all(row["rate"] > 0 for row in table["rows"])
+
+
+def test_pictures_fit_a_screen_and_bars_begin_at_zero(tmp_path):
+    """Those of the largest tables that there are; a part alone has the name that was asked for."""
+    numbers = json.loads((ROOT / "docs" / "results" / "speed_h200.json").read_text())
+    file = tmp_path / "speed.json"
+    file.write_text(json.dumps(numbers))
+    pictures = redraw(file)
+    assert [path.stem for path in pictures] == [
+        f"speed_{p}" for p in ("loop", "plan", "physics", "act")
+    ]
+    for path in pictures:
+        height, width = iio.imread(path).shape[:2]
+        assert 2 / 3 < width / height < 2.6
+        assert max(width, height) <= 1300
+    (alone,) = draw(numbers["tables"][:1], tmp_path / "one.png")
+    assert alone == tmp_path / "one.png"
+    axes = Figure().subplots()
+    picture._bars(axes, numbers["tables"][-1], room=1.0)
+    rates = [row["rate"] for row in numbers["tables"][-1]["rows"]]
+    assert [bar.get_width() for bar in axes.patches] == rates
+    assert axes.get_xlim()[0] == 0 == axes.patches[0].get_x()
+    assert [text.get_text() for text in axes.texts] == [f"{rate:,.0f}" for rate in rates]
 
 
 @pytest.mark.parametrize(

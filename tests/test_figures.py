@@ -1,15 +1,19 @@
 """The figures command: a picture, its numbers, and clear refusals."""
 
+import itertools
 import json
 import sys
+from dataclasses import replace
 
 import imageio.v3 as iio
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from hybrid_rl import command, figures
-from hybrid_rl.curves import Curve, iqm
-from hybrid_rl.figures import COLOURS, plot, save
+from hybrid_rl.curves import Curve, from_json, iqm
+from hybrid_rl.figures import save
+from hybrid_rl.plotting import COLOURS, plot
 
 
 def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50, metric="train/return"):
@@ -71,18 +75,70 @@ def test_labels_carry_units_and_thousands():
     assert panel.lines[0].get_xdata()[-1] == pytest.approx(200_000 / 3600)
 
 
-def test_several_metrics_are_rows():
-    """One column a task; a task without a metric leaves its place empty."""
-    drawn = [
-        curve("ant"),
-        curve("hopper"),
-        curve("hopper", metric="planner/mode_insertion_gradient"),
-    ]
+def test_several_metrics_are_rows_without_a_blank():
+    """One column a task; where a task lacks a metric the panels close up."""
+    metrics = ("train/return", "planner/mode_insertion_gradient")
+    drawn = [curve(task, metric=metric) for metric in metrics for task in ("ant", "hopper")]
     axes = plot(drawn).axes
-    assert len(axes) == 4
-    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "", "hopper"]
+    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "ant", "hopper"]
     assert axes[3].get_ylabel() == "Mode insertion gradient"
-    assert not axes[2].axison
+    assert [panel.get_subplotspec().rowspan.start for panel in axes] == [0, 0, 1, 1]
+    axes = plot(drawn[:3]).axes
+    assert len(axes) == axes[0].get_subplotspec().get_gridspec().ncols == 3
+    assert all(panel.lines for panel in axes)
+
+
+@pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
+def test_legends_and_notes_cover_no_axes(tasks, labels):
+    """In the boxes that the picture has when it is drawn; and none leaves the picture."""
+    names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
+    drawn = [
+        replace(
+            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}: {i} " + 30 * "word ",)
+        )
+        for task, i in names
+    ]
+    figure = plot(drawn)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    renderer = canvas.get_renderer()
+    panels = [panel.get_window_extent() for panel in figure.axes]
+    legends = [panel.get_legend().get_window_extent(renderer) for panel in figure.axes]
+    note = figure._supxlabel.get_window_extent(renderer)
+    for box in [*legends, note]:
+        assert not any(box.overlaps(panel.padded(-0.5)) for panel in panels)
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= box.y0 < box.y1 <= figure.bbox.y1
+    assert not any(note.overlaps(legend) for legend in legends)
+    labels_of_x = [panel.xaxis.label.get_window_extent(renderer) for panel in figure.axes]
+    assert not any(box.overlaps(other) for box in labels_of_x for other in legends)
+
+
+def test_notes_are_on_the_picture():
+    """Many are cut short, and say so."""
+    (text,) = [plot([replace(curve(), notes=("seed 3 diverged",))])._supxlabel.get_text()]
+    assert text == "seed 3 diverged"
+    many = replace(curve(), notes=tuple(f"note {i}" for i in range(20)))
+    lines = plot([many])._supxlabel.get_text().splitlines()
+    assert lines[-1] == "and 12 more notes, in the JSON beside this picture"
+
+
+def test_markers_at_the_right_edge_are_whole():
+    figure = plot([curve(points=5)])
+    figure.canvas.draw()
+    (panel,) = figure.axes
+    last = panel.transData.transform((200_000, 0))[0]
+    assert panel.bbox.x1 - last > panel.lines[0].get_markersize() / 2 * figure.dpi / 72
+
+
+def test_a_line_is_thin_where_seeds_are_missing():
+    """The thick line and the band end with the last point that all seeds have."""
+    one = curve(points=5)
+    one.each[2, 3:] = np.nan
+    thick, thin = plot([one]).axes[0].lines
+    np.testing.assert_array_equal(np.isfinite(thick.get_ydata()), [True] * 3 + [False] * 2)
+    np.testing.assert_array_equal(np.isfinite(thin.get_ydata()), [False] * 2 + [True] * 3)
+    assert thin.get_linewidth() < thick.get_linewidth()
 
 
 def test_more_lines_than_colours_stay_apart():
@@ -105,9 +161,38 @@ def test_the_numbers_lie_beside_the_picture(tmp_path):
     assert (said["task"], said["label"], said["seeds"]) == ("hopper", "sac", [0, 1, 2, 3, 4])
     np.testing.assert_allclose(said["iqm"], drawn[0].iqm, rtol=1e-6)
     picture = iio.imread(out)
-    assert picture.shape[:2] == (660, 880)
+    assert picture.shape[1] == 880
+    assert 600 < picture.shape[0] < 700
     blue = np.abs(picture[..., :3].astype(int) - [0x00, 0x72, 0xB2]).max(-1) < 8
     assert blue.sum() > 1000  # the line was drawn
+
+
+def test_a_picture_is_drawn_again_from_its_numbers(tmp_path, monkeypatch, capsys):
+    """The same curves; and numbers that are the source are left as they are."""
+    one = curve()
+    one.each[2, -1] = np.nan
+    drawn = [replace(one, notes=("a note",)), curve(metric="sac/alpha")]
+    save(plot(drawn), drawn, tmp_path / "a.png", metric="train/return,sac/alpha", x="step")
+    before = (tmp_path / "a.json").read_bytes()
+    again, about = from_json(tmp_path / "a.json")
+    assert about["x"] == "step"
+    assert [(c.label, c.metric, c.seeds, c.notes) for c in again] == [
+        (c.label, c.metric, c.seeds, c.notes) for c in drawn
+    ]
+    for name in ("x", "each", "iqm", "low", "high"):
+        for old, new in zip(drawn, again, strict=True):
+            np.testing.assert_allclose(getattr(new, name), getattr(old, name), rtol=1e-6)
+    source = f"runs={tmp_path / 'a.json'}"
+    assert call(monkeypatch, source, f"out={tmp_path / 'b.png'}") == 0
+    again = f"runs={tmp_path / 'b.json'}"
+    assert call(monkeypatch, again, f"out={tmp_path / 'c.png'}") == 0
+    assert (tmp_path / "b.png").read_bytes() == (tmp_path / "c.png").read_bytes()
+    assert call(monkeypatch, source, f"out={tmp_path / 'a.png'}") == 0
+    assert (tmp_path / "a.json").read_bytes() == before
+    (tmp_path / "c.json").write_text("{}")
+    capsys.readouterr()
+    assert call(monkeypatch, f"runs={tmp_path / 'c.json'}", f"out={tmp_path / 'c.png'}") == 2
+    assert "c.json: holds no curves that figures wrote" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
