@@ -35,6 +35,7 @@ LABELS = {
     "eval/planner_success": "Share of successes, planner alone",
     "planner/mode_insertion_gradient": "Mode insertion gradient",
     "planner/policy_share": "Share of the policy in the action",
+    "planner/insertion_per_variance": "Insertion gradient / policy variance",
 }
 PANEL = (4.4, 3.1)  # [in] of a panel, without its legend
 ENTRY = 0.15  # [in] of a line of a legend, or of a note
@@ -94,7 +95,7 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
 
 def _across(panels: int, columns: int) -> int:
     """Panels in a row: `columns` where that fills all rows, else a number that leaves no gap."""
-    if 0 < columns <= MOST_ACROSS and panels % columns == 0:
+    if 1 < columns <= MOST_ACROSS and panels % columns == 0:
         return columns
     full = [number for number in (3, 4, 2) if panels % number == 0]
     return panels if panels <= 3 else (full or [3])[0]
