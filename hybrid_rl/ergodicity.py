@@ -121,7 +121,9 @@ def control(seeds: int, steps: int) -> tuple[Any, dict]:
     """Paths and averages of both controllers, and their divergences over time."""
     figure, panels = subplots(2, 3)
     numbers: dict[str, Any] = {"variance": VARIANCE, "seeds": seeds}
-    over_time = panels[1][2]
+    for panel in panels[:, 2]:
+        panel.remove()
+    over_time = figure.add_subplot(panels[0, 0].get_gridspec()[:, 2])
     for i, algo in enumerate(("kle3", "fourier_ergodic", "kle3_jensen")):
         run = build(load([*FIGURE, f"algo={algo}", f"episode.steps={steps + 1}"]))
         x = paths(run, seeds, steps)
@@ -141,7 +143,6 @@ def control(seeds: int, steps: int) -> tuple[Any, dict]:
     over_time.set(xlabel="Time [s]", title=f"D(p || q) [nat], {seeds} seeds")
     plain_log(over_time.yaxis)
     legend_below(over_time)
-    panels[0][2].remove()
     colour_bar(figure, panels[:, :2])
     return figure, numbers
 

@@ -163,6 +163,8 @@ def legend_below(axes: "Axes") -> None:
         bbox_transform=axes.transAxes + lower,
         borderaxespad=0,
         borderpad=0,
+        frameon=False,
+        fontsize=8,
         ncols=max(1, min(len(texts), columns)),
     )
 
