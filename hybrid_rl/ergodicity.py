@@ -5,7 +5,8 @@
     python -m hybrid_rl.ergodicity view=marginals out=marginals.png  any dimension, also: task=
     python -m hybrid_rl.ergodicity view=cost out=cost.png            of a plan, by dimension
 
-The numbers drawn are written beside the picture, as JSON.
+The numbers drawn are written beside the picture, as JSON; what they come to is printed as it is
+found, over several seeds as interquartile mean and 95% band.
 """
 
 if __name__ == "__main__":
@@ -24,6 +25,9 @@ import numpy as np
 from hybrid_rl import command
 from hybrid_rl.arguments import Argument, one_of, output, read, whole
 from hybrid_rl.config import Run, build, load
+from hybrid_rl.curves import spread
+from hybrid_rl.density_plots import colour_bar, show, subplots
+from hybrid_rl.plotting import legend_below, plain_log
 
 VIEWS = ("control", "average", "marginals", "cost")
 SUFFIXES = (".png", ".pdf", ".svg")
@@ -37,8 +41,14 @@ ARGUMENTS = (
 FIGURE = ("experiment=thesis/fig_6_1",)
 NAMES = {"kle3": "KL-ergodic", "fourier_ergodic": "Fourier", "kle3_jensen": "Jensen's bound"}
 GRID = 100  # cells a side
-VARIANCE = 0.005  # [m^2] of the average that the divergence is told of
+VARIANCE = 0.005  # [m^2] of the average whose divergence is measured
 REACH = (2, 4, 5, 6, 9, 12)  # dimensions whose cost is measured
+NAMES_OF = {  # task -> its search coordinates
+    "quadcopter_se3": [*(f"v_{i} [m/s]" for i in "xyz"), *(f"w_{i} [rad/s]" for i in "xyz")],
+    "point_mass": ["x", "y"],
+    "cart_double_pendulum": ["position on the rail [m]"],
+    "anywhere": ["position on the rail [m]"],
+}
 MOST = 5**6  # Fourier coefficients beyond which no memory is left
 
 
@@ -117,27 +127,31 @@ def averages(x: np.ndarray) -> dict[str, np.ndarray]:
 
 def control(seeds: int, steps: int) -> tuple[Any, dict]:
     """Paths and averages of both controllers, and their divergences over time."""
-    figure, panels = _panels(2, 3)
+    figure, panels = subplots(2, 3)
     numbers: dict[str, Any] = {"variance": VARIANCE, "seeds": seeds}
+    for panel in panels[:, 2]:
+        panel.remove()
+    over_time = figure.add_subplot(panels[0, 0].get_gridspec()[:, 2])
     for i, algo in enumerate(("kle3", "fourier_ergodic", "kle3_jensen")):
         run = build(load([*FIGURE, f"algo={algo}", f"episode.steps={steps + 1}"]))
         x = paths(run, seeds, steps)
         each = np.array([divergences(run, one) for one in x])
         dt, name = run.agent.spec.dt, NAMES[algo]
+        print(f"{name}: D(p || q) {spread(each[:, -1])} nat after {steps * dt:g} s", flush=True)
         t = dt * np.arange(1, steps + 1)
         numbers[algo] = {"t": t[9::10], "divergence": each[:, 9::10]}
         low, middle, high = np.quantile(each, [0.25, 0.5, 0.75], axis=0)
-        panels[1][2].semilogy(t, middle, label=name)
-        panels[1][2].fill_between(t, low, high, alpha=0.2, lw=0)
+        over_time.semilogy(t, middle, label=name)
+        over_time.fill_between(t, low, high, alpha=0.2, lw=0)
         if i < 2:
-            _show(
-                panels[i][0], _picture(np.exp(_log_density(run, _grid()))), "target, path: " + name
-            )
+            density = _picture(np.exp(_log_density(run, _grid())))
+            show(panels[i][0], density, f"target, path: {name}")
             panels[i][0].plot(*x[0].T, color="#D55E00", lw=0.7)
-            _show(panels[i][1], averages(x[0])["sum of Gaussians (6.1)"], "its time average")
-    panels[1][2].set(xlabel="Time [s]", title=f"D(p || q) [nat], {seeds} seeds")
-    panels[1][2].legend()
-    panels[0][2].remove()
+            show(panels[i][1], averages(x[0])["sum of Gaussians (6.1)"], "its time average")
+    over_time.set(xlabel="Time [s]", title=f"D(p || q) [nat], {seeds} seeds")
+    plain_log(over_time.yaxis)
+    legend_below(over_time)
+    colour_bar(figure, panels[:, :2])
     return figure, numbers
 
 
@@ -147,16 +161,18 @@ def average(seeds: int, steps: int) -> tuple[Any, dict]:
     x = paths(run, 1, steps)[0]
     target = _picture(np.exp(_log_density(run, _grid())))
     pictures = averages(x)
-    figure, panels = _panels(2, 3)
-    places = [panel for row in panels for panel in row]
-    _show(places[0], np.full((GRID, GRID), np.nan), "path")
-    places[0].plot(*x.T, color="#D55E00", lw=0.8)
-    for panel, (title, picture) in zip(
-        places[1:], {"target": target, **pictures}.items(), strict=True
-    ):
-        _show(panel, picture, title)
+    figure, panels = subplots(2, 3)
+    path, *others = panels.flat
+    show(path, np.full((GRID, GRID), np.nan), "path")
+    path.plot(*x.T, color="#D55E00", lw=0.8)
+    for panel, (title, picture) in zip(others, {"target": target, **pictures}.items(), strict=True):
+        show(panel, picture, title)
+    colour_bar(figure, panels)
     away = {name: float(np.abs(each - target).mean() / 2) for name, each in pictures.items()}
     negative = {name: float(-each[each < 0].sum() / each.size) for name, each in pictures.items()}
+    for name in pictures:
+        line = f"{name}: total variation to the target {away[name]:.3g}"
+        print(f"{line}, negative mass {abs(negative[name]):.3g}", flush=True)
     return figure, {"total_variation_to_target": away, "negative_mass": negative, "x": x}
 
 
@@ -171,24 +187,39 @@ def marginals(task: str, seeds: int, steps: int) -> tuple[Any, dict]:
     s = np.asarray(ergodic.uniform(low, high, 100_000, jax.random.key(0)))
     p = np.asarray(jax.nn.softmax(_log_density(run, s)))
     x = paths(run, seeds, steps)
-    figure, panels = _panels(-(-len(low) // 3), min(3, len(low)))
+    print(f"{task}: {seeds} seeds of {steps} decisions", flush=True)
+    figure, panels = subplots(-(-len(low) // 3), min(3, len(low)))
+    names = [f"observation {number}" for number in run.config.search.coordinates]
+    names = NAMES_OF.get(task, names)
     shares = {"target": [], "time": []}
-    for j, panel in zip(range(len(low)), [panel for row in panels for panel in row], strict=False):
+    for j, (panel, name) in enumerate(zip(panels.flat, names, strict=False)):
         edges = np.linspace(low[j], high[j], 31)
-        for name, values, weights in (("target", s[:, j], p), ("time", x[:, :, j].ravel(), None)):
-            share = np.histogram(values, edges, weights=weights)[0]
-            share = share / (share.sum() * (edges[1] - edges[0]))
-            panel.stairs(share, edges, label=name, lw=1.4)
-            shares[name].append(share)
-        panel.set(xlabel=f"observation {run.config.search.coordinates[j]}")
-    panels[0][0].legend()
-    figure.suptitle(f"{task}: share of time and target, {seeds} seeds, {steps} decisions")
+        target = _share(s[:, j], edges, p)
+        each = np.array([_share(one[:, j], edges) for one in x])
+        time = _share(x[:, :, j].ravel(), edges)
+        for share, label in ((target, "target"), (time, "time average of the paths")):
+            panel.stairs(share, edges, label=label, lw=1.4)
+        panel.set(xlabel=name, ylabel="Density")
+        shares["target"].append(target)
+        shares["time"].append(time)
+        away = 0.5 * np.abs(each - target).sum(1) * (edges[1] - edges[0])
+        print(f"{name}: total variation of target and time average {spread(away)}", flush=True)
+    for panel in list(panels.flat)[len(low) :]:
+        panel.remove()
+    legend_below(panels[-1][0])
+    figure.suptitle(f"{task}: marginals of {seeds} seeds, {steps} decisions")
     return figure, {"task": task, "low": low, "high": high, **shares}
+
+
+def _share(values: np.ndarray, edges: np.ndarray, weights: np.ndarray | None = None) -> np.ndarray:
+    """Density [B] of values [N] in bins, of those that lie in one."""
+    share = np.histogram(values, edges, weights=weights)[0]
+    return share / max(share.sum() * (edges[1] - edges[0]), 1e-12)
 
 
 def cost(repeats: int = 9) -> tuple[Any, dict]:
     """Seconds of one plan of the quadcopter, by the dimension that is searched."""
-    figure, panels = _panels(1, 1)
+    figure, panels = subplots(1, 1)
     numbers: dict[str, Any] = {"horizon": 5, "samples": 100, "modes": 5, "repeats": repeats}
     order = [12, 13, 14, 15, 16, 17, 0, 1, 2, 4, 5, 8]  # v, w, p, three of R
     for algo in ("kle3", "fourier_ergodic"):
@@ -200,12 +231,14 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
             more = ["task=quadcopter_se3", f"algo={algo}", "explorer.horizon=5"]
             more += ["fourier_exploration.samples=100"] if algo == "fourier_ergodic" else []
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
+            line = f"{NAMES[algo]}, {v} dimensions: {1e3 * times[v]:.3g} ms a plan"
+            print(f"{line} (median of {repeats})", flush=True)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}
-        panels[0][0].semilogy(
-            list(times), 1e3 * np.array(list(times.values())), "o-", label=NAMES[algo]
-        )
+        milliseconds = 1e3 * np.array(list(times.values()))
+        panels[0][0].semilogy(list(times), milliseconds, "o-", label=NAMES[algo])
     panels[0][0].set(xlabel="Dimension of the search space", ylabel="One plan [ms]")
-    panels[0][0].legend()
+    plain_log(panels[0][0].yaxis)
+    legend_below(panels[0][0])
     return figure, numbers
 
 
@@ -224,24 +257,6 @@ def _seconds(run: Run, repeats: int) -> float:
         jax.block_until_ready(act(state, obs))
         times.append(perf_counter() - began)
     return float(np.median(times[1:]))
-
-
-def _panels(down: int, across: int) -> tuple[Any, Any]:
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    from hybrid_rl.plotting import STYLE
-
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(3.4 * across, 3.1 * down), layout="constrained")
-        return figure, figure.subplots(down, across, squeeze=False)
-
-
-def _show(panel: Any, picture: np.ndarray, title: str) -> None:
-    """A picture of the unit square, on one scale of colours."""
-    panel.imshow(picture, origin="lower", extent=(0, 1, 0, 1), cmap="viridis", vmin=0, vmax=8)
-    panel.set(title=title, xlim=(0, 1), ylim=(0, 1), xticks=[0, 1], yticks=[0, 1])
-    panel.grid(False)
 
 
 def _plain(value: Any) -> Any:

@@ -2,16 +2,17 @@
 
     python -m hybrid_rl.flights runs="runs/quadcopter_se3/*/*" out=fig_6_6.png
 
-From the decisions that each run remembers a model is learned anew, the same way for all methods,
+From the decisions that each run remembers a model is learned, the same way for all methods,
 updates=2000 batches a trial. MPPI flies to a target by it for steps=1200 decisions, each trial to
 its own, the same for all methods; and by the exact model, which shows what the planner alone can
 do. updates=0 learns nothing, and draws the flights themselves. All methods are cut to the shortest
-flight and to the fewest trials. The numbers are written beside the picture, as JSON.
+flight and to the fewest trials. The numbers are written beside the picture, as JSON, and
+printed as each method is done.
 
     power loss   mean |F - m g| [N], F the thrust of all rotors
     norm of u    mean |u|, u in [-1, 1]^4; at hover 0.82
     error        root mean square error of v and w after one decision, by their change's deviation,
-                 along the flights that the exact model made: nobody learned from those
+                 along the flights that the exact model made, from which none learned
     tracking     mean distance to the target over the flight [m]
 """
 
@@ -21,8 +22,10 @@ if __name__ == "__main__":
     interrupt.install()
 
 import glob
+import itertools
 import json
 from pathlib import Path
+from time import perf_counter
 from typing import Any, NamedTuple
 
 import jax
@@ -36,6 +39,8 @@ from hybrid_rl.arguments import Argument, output, whole
 from hybrid_rl.config import Run, UsageError, build, load
 from hybrid_rl.curves import band, iqm
 from hybrid_rl.envs.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
+from hybrid_rl.flight_plots import EXACT, outcome, signals
+from hybrid_rl.run_folders import RunFolder, differences, short
 from hybrid_rl.training import checkpoint
 from hybrid_rl.training.evaluate import acted
 from hybrid_rl.training.loop import Loop
@@ -43,7 +48,6 @@ from hybrid_rl.types import Batch, Params
 
 TRACKING = ("experiment=thesis/fig_6_6",)
 KNOWN = ("model@known_model=exact", "model_planner.model=${known_model}")
-EXACT = "exact model"
 SUFFIXES = (".png", ".pdf", ".svg")
 RUNS = 'runs="GLOB", such as runs="runs/quadcopter_se3/*/*"'
 ARGUMENTS = (
@@ -53,7 +57,7 @@ ARGUMENTS = (
     Argument("steps", 1200, "decisions of each flight to a target", whole()),
 )
 TWIST = slice(12, 18)  # v [m/s] and w [rad/s] in an observation
-MARKS = (1.0, 2.0, 4.0, 6.0)  # [s] at which distances are told
+MARKS = (1.0, 2.0, 4.0, 6.0)  # [s] at which distances are reported
 
 
 class Flight(NamedTuple):
@@ -73,6 +77,8 @@ def read(folder: Path) -> Flight:
     Raises:
         UsageError: where it is no whole flight of one world.
     """
+    if not RunFolder(folder).settings:  # read with care: a damaged file is named
+        raise UsageError(f"runs={folder}: no run folder there (no config.yaml in it)")
     config: Any = OmegaConf.load(folder / "config.yaml")
     if config.task != "quadcopter_se3" or config.num_envs != 1 or not config.checkpoint_replay:
         raise UsageError(f"runs={folder}: needs quadcopter_se3, num_envs=1, checkpoint_replay=true")
@@ -85,6 +91,25 @@ def read(folder: Path) -> Flight:
     label = f"{config.algo} {strength:g}"
     flown = int(np.asarray(memory.count).min())
     return first(label, memory, len(memory.rows), min(flown, memory.rows.shape[1]))
+
+
+def read_all(folders: list[Path]) -> list[Flight]:
+    """The flights of all runs in the order of their labels.
+
+    Those of one label are kept apart by the settings that differ, or by their folders.
+    """
+    found = sorted(((read(folder), folder) for folder in folders), key=lambda pair: pair[0].label)
+    named = []
+    for label, pairs in itertools.groupby(found, key=lambda pair: pair[0].label):
+        flights, places = zip(*pairs, strict=True)
+        more = short(differences([RunFolder(folder) for folder in places]))
+        if len(set(more)) < len(flights):
+            more = [str(folder) for folder in places]
+        named += [
+            flight._replace(label=f"{label} {words}".strip())
+            for flight, words in zip(flights, more, strict=True)
+        ]
+    return named
 
 
 def first(label: str, memory: Any, trials: int, length: int) -> Flight:
@@ -111,9 +136,10 @@ def learn(run: Run, memory: Any, updates: int, key: Array) -> Params:
     """A model of the decisions in one trial's memory. The key is consumed."""
     learner, replay = run.agent.learners["model"], run.agent.replay
     first, drawing, updating = jax.random.split(key, 3)
+    rows = learner.batches * learner.batch_size
 
     def one(state: Any, keys: tuple[Array, Array]) -> tuple[Any, None]:
-        batch = replay.sample(memory, run.agent.spec, learner.batch_size, keys[0])
+        batch = replay.sample(memory, run.agent.spec, rows, keys[0])
         return learner.update(state, Params(), batch, keys[1])[0], None
 
     state = learner.init(first, run.agent.spec)
@@ -148,10 +174,15 @@ def track(run: Run, params: Params, steps: int, key: Array) -> Tracked:
 
 
 def measure(flights: list[Flight], updates: int, steps: int) -> dict[str, dict[str, Any]]:
-    """Per method and trial all that is told of it."""
+    """Per method and trial all that is reported of it; a line is printed as each is done."""
+    began = perf_counter()
+    dt = QuadcopterSE3().spec.dt
     found = {flight.label: cost(flight) for flight in flights}
     if not updates:
+        for label, numbers in found.items():
+            print(line(label, summarise(numbers, dt)), flush=True)
         return found
+    print(f"compiling; then {len(flights)} methods, each {updates:,} updates a trial", flush=True)
     run = build(load([*TRACKING, f"episode.steps={steps + 1}"]))
     known = build(load([*TRACKING, *KNOWN, f"episode.steps={steps + 1}"]))
     trials = len(flights[0].obs)
@@ -164,19 +195,23 @@ def measure(flights: list[Flight], updates: int, steps: int) -> dict[str, dict[s
         flown = track(run, params, steps, flying)
         return error(run, params, seen), flown.distance, flown.turned_over
 
-    all_of = jax.jit(lambda *given: jax.lax.map(one, given))  # on two cores faster than `vmap`
-    for flight in flights:
-        names = ("error", "distance", "turned_over")
-        learned = map(np.asarray, all_of(flight.memory, exact.seen, keys))
-        found[flight.label] |= dict(zip(names, learned, strict=True))
     found[EXACT] = {
         "distance": np.asarray(exact.distance),
         "turned_over": np.asarray(exact.turned_over),
     }
-    return found
+    print(line(EXACT, summarise(found[EXACT], dt)), flush=True)
+    all_of = jax.jit(lambda *given: jax.lax.map(one, given))  # on two cores faster than `vmap`
+    for number, flight in enumerate(flights, 1):
+        names = ("error", "distance", "turned_over")
+        learned = map(np.asarray, all_of(flight.memory, exact.seen, keys))
+        found[flight.label] |= dict(zip(names, learned, strict=True))
+        progress = f"{number} of {len(flights)}, {perf_counter() - began:.0f} s"
+        words = line(flight.label, summarise(found[flight.label], dt))
+        print(f"{words} ({progress})", flush=True)
+    return {**{flight.label: found[flight.label] for flight in flights}, EXACT: found[EXACT]}
 
 
-def said(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
+def summarise(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     """What the JSON holds of one method.
 
     Of what a flight cost mean and deviation over trials; of what its model can do IQM and band.
@@ -199,69 +234,18 @@ def said(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     return numbers
 
 
-def signals(flights: list[Flight], dt: float) -> Any:
-    """Actions and velocities of the first trial of each method."""
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    from hybrid_rl.plotting import STYLE
-
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(2.2 * max(3, len(flights)), 4), layout="constrained")
-        panels: Any = figure.subplots(3, len(flights), squeeze=False, sharex=True, sharey="row")
-        for i, flight in enumerate(flights):
-            t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
-            panels[0][i].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
-            panels[1][i].plot(t, x[:, 12:15], lw=0.8)
-            panels[2][i].plot(t, x[:, 15:18], lw=0.8)
-            panels[0][i].set_title(flight.label, fontsize=8)
-            panels[2][i].set_xlabel("Time [s]")
-        for row, name in zip(panels, ("|u|", "v [m/s]", "w [rad/s]"), strict=True):
-            row[0].set_ylabel(name)
-    return figure
-
-
-def outcome(found: dict[str, Any], dt: float) -> Any:
-    """How models track over time; and their error and tracking over what their flights cost."""
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    from hybrid_rl.plotting import COLOURS, STROKES, STYLE
-
-    methods = sorted({label.split()[0] for label in found if label != EXACT})
-    of = {name: [la for la in found if la.split()[0] == name and la != EXACT] for name in methods}
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(13, 4.2), layout="constrained")
-        over_time, wrong, tracks = figure.subplots(1, 3)
-        lines = [(EXACT, "k", "-")] + [
-            (label, colour, STROKES[i % len(STROKES)])
-            for name, colour in zip(methods, COLOURS, strict=False)
-            for i, label in enumerate(of[name])
-        ]
-        for label, colour, stroke in lines:
-            each = found[label]["distance"][:, ::10]
-            low, high = band(each, 500)
-            t = 10 * dt * np.arange(each.shape[1])
-            over_time.plot(t, iqm(each), color=colour, linestyle=stroke, label=label)
-            over_time.fill_between(t, low, high, color=colour, alpha=0.12, lw=0)
-        for name, colour in zip(methods, COLOURS, strict=False):
-            at = sorted(of[name], key=lambda label: found[label]["power_loss"].mean())
-            power = [found[label]["power_loss"].mean() for label in at]
-            for axes, what in (
-                (wrong, [found[label]["error"] for label in at]),
-                (tracks, [found[label]["distance"].mean(1) for label in at]),
-            ):
-                middle = np.array([iqm(each) for each in what])
-                ends = np.abs(np.array([band(each) for each in what]).T - middle[None])
-                axes.errorbar(power, middle, ends, color=colour, marker="o", ms=4)
-        tracks.axhline(iqm(found[EXACT]["distance"].mean(1)), color="k", lw=0.8)
-        over_time.set(xlabel="Time [s]", title="Distance to the target [m]", yscale="log")
-        wrong.set(xlabel="Power loss of the flight [N]", title="Error of one decision")
-        tracks.set(xlabel="Power loss of the flight [N]", title="Mean distance [m]")
-        for axes in (wrong, tracks):
-            axes.set(xscale="log", yscale="log")
-        over_time.legend(fontsize=6, ncols=2)  # the colours are those of all panels
-    return figure
+def line(label: str, numbers: dict[str, Any]) -> str:
+    """One method in words: means and deviations of costs, IQM and band of what a model can do."""
+    parts = [f"{label}, {numbers['trials']} trial{'s' * (numbers['trials'] != 1)}:"]
+    if "power_loss" in numbers:
+        loss, effort = numbers["power_loss"], numbers["norm_of_u"]
+        parts.append(f"power loss {loss[0]:g} ± {loss[1]:g} N, |u| {effort[0]:g} ± {effort[1]:g},")
+        parts.append(f"kept the hover in {numbers['kept_hover']:.0%},")
+    for name, unit in (("error", ""), ("tracking", " m")):
+        if name in numbers:
+            middle, low, high = numbers[name]
+            parts.append(f"{name} {middle:g} [{low:g}, {high:g}]{unit},")
+    return " ".join(parts).rstrip(",")
 
 
 def _banded(each: np.ndarray) -> list[float]:
@@ -276,21 +260,21 @@ def _short(value: Any) -> float:
 def main() -> None:
     """The command."""
     given, _ = arguments.read(__doc__, ARGUMENTS)
-    folders = sorted(Path(place) for place in glob.glob(given["runs"]))
+    folders = sorted(Path(path) for path in glob.glob(given["runs"]))
     if not folders:
         raise UsageError(f"runs={given['runs']}: no run folder there; say {RUNS}")
     out = output("out", given["out"], SUFFIXES, ".json")
     command.prepare(load(TRACKING))
-    numbers = given["updates"], given["steps"]
-    flights = sorted((read(folder) for folder in folders), key=lambda flight: flight.label)
+    updates, steps = given["updates"], given["steps"]
+    flights = read_all(folders)
     least = [min(flight.obs.shape[axis] for flight in flights) for axis in (0, 1)]
     flights = [first(flight.label, flight.memory, *least) for flight in flights]
-    found, dt = measure(flights, *numbers), QuadcopterSE3().spec.dt
-    told = {label: said(each, dt) for label, each in found.items()}
+    found, dt = measure(flights, updates, steps), QuadcopterSE3().spec.dt
+    numbers = {label: summarise(each, dt) for label, each in found.items()}
     figure = outcome(found, dt) if EXACT in found else signals(flights, dt)
     out.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=130)
-    out.with_suffix(".json").write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+    out.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n", encoding="utf-8")
     print(f"{out} and {out.with_suffix('.json')}")
 
 

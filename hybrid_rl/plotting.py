@@ -164,8 +164,21 @@ def legend_below(axes: "Axes") -> None:
         bbox_transform=axes.transAxes + lower,
         borderaxespad=0,
         borderpad=0,
+        frameon=False,
+        fontsize=8,
         ncols=max(1, min(len(texts), columns)),
     )
+
+
+def plain_log(axis: Any) -> None:
+    """Tick labels of a logarithmic axis, after its data, as plain numbers: few, in any range."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+
+    low, high = axis.get_view_interval()
+    wide = high > 8 * low
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)) if wide else MaxNLocator(5))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(_thousands))
 
 
 def _thousands(value: float, _: int | None = None) -> str:

@@ -63,8 +63,17 @@ def plot(runs: str, group: str = "algo") -> tuple[Any, dict[str, Any], list[str]
     """The figure, what it says in numbers, and the notes of its curves."""
     import matplotlib
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
 
-    from hybrid_rl.plotting import COLOURS, ENTRY, NOTE_WIDTH, STYLE, legend_below, wrapped
+    from hybrid_rl.plotting import (
+        COLOURS,
+        ENTRY,
+        NOTE_WIDTH,
+        STYLE,
+        legend_below,
+        plain_log,
+        wrapped,
+    )
 
     best, strayed = _by_label(runs, BEST, group), _by_label(runs, V, group)
     at, value = _by_label(runs, WHERE, group), _by_label(runs, VALUE, group)
@@ -92,6 +101,9 @@ def plot(runs: str, group: str = "algo") -> tuple[Any, dict[str, Any], list[str]
             numbers[name] |= {"V_median": round(float(np.nanmedian(curve.each)), 2)}
         found.set(xlabel="Measurements", title="Best value")
         stray.set(xlabel="Time [s]", title="Lyapunov function V", yscale="log")
+        plain_log(stray.yaxis)
+        for axes in (found, *rows[:, 1]):
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         for axes in (found, stray):
             legend_below(axes)
         if lines:

@@ -8,6 +8,7 @@ import pytest
 
 from hybrid_rl import command, ergodicity
 from hybrid_rl.config import build, load
+from hybrid_rl.curves import spread
 
 
 def call(monkeypatch, *arguments) -> int:
@@ -42,7 +43,7 @@ def test_pictures_of_a_path_are_densities() -> None:
             assert picture[:50, :50].sum() > 0.8 * picture.sum()
 
 
-def test_marginals_of_any_task(monkeypatch, tmp_path) -> None:
+def test_marginals_of_any_task(monkeypatch, tmp_path, capsys) -> None:
     """A picture, and a share of time for each coordinate of the search."""
     out = tmp_path / "m.png"
     assert (
@@ -52,6 +53,27 @@ def test_marginals_of_any_task(monkeypatch, tmp_path) -> None:
     said = json.loads(out.with_suffix(".json").read_text())
     assert np.shape(said["time"]) == np.shape(said["target"]) == (2, 30)
     assert out.stat().st_size > 1000
+    printed = capsys.readouterr().out
+    assert "point_mass: 2 seeds of 20 decisions\nx: total variation of target and time" in printed
+
+
+def test_control_prints_its_numbers_and_names_its_colours(monkeypatch, tmp_path, capsys) -> None:
+    """A line a method, over seeds; what is printed is the end of what the JSON holds."""
+    pictures, rng = [], np.random.default_rng(0)
+    monkeypatch.setattr(ergodicity, "paths", lambda *_: rng.uniform(0.2, 0.8, (3, 21, 2)))
+    monkeypatch.setattr(ergodicity, "divergences", lambda run, x: x[1:, 0])
+    monkeypatch.setattr(ergodicity, "save", lambda *given: pictures.append(given))
+    assert (
+        call(monkeypatch, "view=control", "seeds=3", "steps=20", f"out={tmp_path / 'c.png'}") == 0
+    )
+    ((figure, numbers, _),) = pictures
+    lines = capsys.readouterr().out.splitlines()
+    for line, (algo, name) in zip(lines, ergodicity.NAMES.items(), strict=False):
+        ends = spread(np.array(numbers[algo]["divergence"])[:, -1])
+        assert line == f"{name}: D(p || q) {ends} nat after 2 s"
+    assert "one scale for all" in figure.axes[-1].get_ylabel()
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+    assert [text.get_text() for text in legends[0].get_texts()] == list(ergodicity.NAMES.values())
 
 
 @pytest.mark.parametrize(

@@ -194,9 +194,7 @@ CITED = [
         "seed 2 has #, the others # to #: one",
         [CHEETAH.seeds(100_000)[2], END[0], END[-1]],
     ),
-    Text(
-        "Hopper: # at 100,000 (at 50,000: #, MBPO", [HOPPER.at(x)[0] for x in (100_000, 50_000)]
-    ),
+    Text("Hopper: # at 100,000 (at 50,000: #, MBPO", [HOPPER.at(x)[0] for x in (100_000, 50_000)]),
     Text("# of 10 seeds pass 3,000 at some evaluation", [passed(HOPPER, 3_000, 100_000)]),
     Text("the IQM passes 800 between # and # decisions", passes(DM, 800)),
     Text(
