@@ -114,13 +114,13 @@ def main() -> None:
     out = output("out", given["out"] or f"demonstrations/{task}.npz", (".npz",))
     found = record(world, controller, params, episodes, seed)
     save(out, task, world.spec.dt, found.decisions, found.episode)
-    told = f"{out}: {episodes} episodes, {len(found.episode):,} decisions, seed {seed}, return "
-    told += (
+    line = f"{out}: {episodes} episodes, {len(found.episode):,} decisions, seed {seed}, return "
+    line += (
         f"{found.returns.mean():,.1f} ({found.returns.min():,.1f} to {found.returns.max():,.1f})"
     )
     if found.success is not None:
-        told += f", {int(found.success.sum())} succeeded"
-    print(told)
+        line += f", {int(found.success.sum())} succeeded"
+    print(line)
 
 
 if __name__ == "__main__":

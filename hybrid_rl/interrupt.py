@@ -44,9 +44,9 @@ def install() -> None:
     if _State.installed:
         return
     _State.installed = True
-    heard, told = os.pipe()
-    os.set_blocking(told, False)
-    signal.set_wakeup_fd(told, warn_on_full_buffer=False)
+    heard, written = os.pipe()
+    os.set_blocking(written, False)
+    signal.set_wakeup_fd(written, warn_on_full_buffer=False)
     for number in WORDS:
         signal.signal(number, _in_the_main_thread)
     sys.unraisablehook = _unraisable

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = (  # Okabe and Ito: told apart by colour-blind readers too
+COLOURS = (  # Okabe and Ito: distinct for colour-blind readers, too
     "#0072B2",
     "#D55E00",
     "#009E73",

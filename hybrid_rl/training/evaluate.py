@@ -59,7 +59,7 @@ def advance(
     return jax.lax.while_loop(going, decide, (jnp.zeros((), jnp.int32), *carry))[1:]
 
 
-def told(env: EnvState) -> dict[str, Array]:
+def scores(env: EnvState) -> dict[str, Array]:
     """Undiscounted `return` of each finished episode, and where the task has it `success`.
 
     Success is 1 where the last state counts as one, else 0.
@@ -71,9 +71,9 @@ def told(env: EnvState) -> dict[str, Array]:
 def outcomes(
     episode: Episode, controller: Controller, params: Params, keys: Array
 ) -> dict[str, Array]:
-    """What `told` says [N] of one whole episode per key [N]."""
+    """The `scores` [N] of one whole episode per key [N]."""
     carry = begin(episode, controller, keys)
-    return told(advance(episode, controller, params, carry, jnp.int32(episode.steps))[0])
+    return scores(advance(episode, controller, params, carry, jnp.int32(episode.steps))[0])
 
 
 class Evaluations:
@@ -119,7 +119,7 @@ class Evaluator:
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[], bool]
     ) -> dict[str, np.ndarray] | None:
-        """What `told` says [S, N]; None as soon as `cut` is true."""
+        """The `scores` [S, N]; None as soon as `cut` is true."""
         carry, pace = self._begin(keys), Pace()
         while not np.asarray(carry[0].done).all():
             if cut():
@@ -127,7 +127,7 @@ class Evaluator:
             rounds, began = pace.rounds(self.steps), perf_counter()
             carry = jax.block_until_ready(self._advance(params, carry, jnp.int32(rounds)))
             pace.took(rounds, perf_counter() - began)
-        return {name: np.asarray(value) for name, value in told(carry[0]).items()}
+        return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
 
 
 def rollout(
