@@ -1,4 +1,4 @@
-"""How a method spends its time beside what it was asked to spend it on.
+"""Where a method spends its time, beside the target that it explores in proportion to.
 
     python -m hybrid_rl.ergodicity view=control out=fig_6_1.png      KL against Fourier's control
     python -m hybrid_rl.ergodicity view=average out=fig_6_2.png      four ways to see one path
