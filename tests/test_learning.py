@@ -18,7 +18,6 @@ MODEL = [
     "model_learner.batch_size=64",
     "model_learner.updates=2",
     "model_learner.learning_rate=3e-3",
-    "planner.samples=32",
 ]
 SAC = [
     "policy.hidden=[64,64]",
@@ -32,7 +31,7 @@ SAC = [
     "policy_learner.discount=0.97",
 ]
 CASES = {  # method -> decisions, settings
-    "nn_mppi": (800, [*MODEL, "planner.horizon=20"]),  # -287 to -84
+    "nn_mppi": (800, [*MODEL, "planner.horizon=20", "planner.samples=32"]),  # -287 to -84
     "deterministic_mpc": (800, [*MODEL, "shooting_planner.iterations=5"]),  # -211 to -82
     "sac": (3000, SAC),  # -247 to -81
     "hybrid_stochastic": (  # -245 to -82
