@@ -71,6 +71,14 @@ def agreement(header: str, metric: str, after: str) -> Table:
     return Table(header, values, after)
 
 
+def ratio_of_means(task: str) -> list[float]:
+    """Agreement signal over the policy's variance, each its IQM, in the first row and the last."""
+    lines = [
+        curve(ADJOINT[task], DETERMINISTIC, name) for name in (SIGNAL, "planner/policy_variance")
+    ]
+    return [float(lines[0].iqm[i] / lines[1].iqm[i]) for i in (0, -1)]
+
+
 def side_by_side(header: str, files: dict[str, str | None]) -> Table:
     """Several settings of `hybrid_stochastic`, a column each; None: the defaults' files."""
 
@@ -168,6 +176,11 @@ CITED = [
         " | first row | highest | last | last over first",
         "planner/insertion_per_variance",
         after="Per unit of the policy's variance",
+    ),
+    Text(
+        "last, rises as well: # to # on the half-cheetah, # to # on the hopper, # to # on the "
+        "cartpole, # to # on the pendulum",
+        [end for task in TASKS for end in ratio_of_means(task)],
     ),
     Text(
         "seeds lie on both sides (# to #)",

@@ -153,7 +153,6 @@ CITED = [
     Table(" | real-time step | 1 robot | 1,024 robots", plan_ms, plain=("real-time step",)),
 ]
 PLAIN = [
-    "each 20 flights; a server's CPU, jax 0.11.2",
     # settings
     "jax 0.10",
     "10 starts of 40 s",
