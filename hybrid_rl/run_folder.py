@@ -85,7 +85,7 @@ def fresh(config: DictConfig) -> Iterator[Path]:
     Raises:
         UsageError: where it holds a run already, another process has it, or it cannot be written.
     """
-    folder = _made(config) if config.run_dir is None else Path(str(config.run_dir))
+    folder = made(config) if config.run_dir is None else Path(str(config.run_dir))
     with locked(writable(folder, "run_dir"), "run_dir"):
         if (folder / "config.yaml").exists() or checkpoint.steps(folder / "checkpoints"):
             raise UsageError(
@@ -94,10 +94,14 @@ def fresh(config: DictConfig) -> Iterator[Path]:
         yield folder
 
 
-def _made(config: DictConfig) -> Path:
-    """A folder that did not exist, named after the time."""
+def made(config: DictConfig, suffix: str = "") -> Path:
+    """A folder runs/TASK/ALGO/TIME[suffix] that did not exist.
+
+    Raises:
+        UsageError: where it cannot be written.
+    """
     parent = writable(Path("runs") / config.task / config.algo, "run_dir")
-    stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}"
+    stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}{suffix}"
     for number in range(10_000):
         folder = parent / (f"{stem}_{number}" if number else stem)
         try:

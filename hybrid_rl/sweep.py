@@ -10,7 +10,6 @@ import sys
 import traceback
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext, suppress
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from hybrid_rl import command
 from hybrid_rl import config as configuration
 from hybrid_rl.overrides import UsageError, refuse_new_keys, refuse_unused
+from hybrid_rl.run_folder import made
 from hybrid_rl.submitted import Result, watched
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that would set up a GPU, were a world built here
@@ -151,14 +151,14 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
         UsageError: where such a folder holds a run already.
     """
     given = [config.run_dir for config in configs]
-    stem, placed = f"{datetime.now():%Y-%m-%d_%H-%M-%S}", []
+    placed = []
     for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
         mine = [text for text in overrides if not text.startswith("run_dir=")]
         if config.resume is not None:
             placed.append(list(overrides))
             continue
         if config.run_dir is None:
-            folder = _made(Path("runs") / config.task / config.algo, f"{stem}_{number}")
+            folder = made(config, f"_{number}")
         else:
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")
@@ -166,21 +166,6 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             raise UsageError(f"run_dir={folder}: holds a run already; choose another")
         placed.append([*mine, f"run_dir='{folder}'"])
     return placed
-
-
-def _made(parent: Path, name: str) -> Path:
-    """A new folder below `parent`, with a suffix where `name` is taken."""
-    for suffix in range(10_000):
-        folder = parent / (f"{name}_{suffix}" if suffix else name)
-        try:
-            folder.mkdir(parents=True)
-        except FileExistsError:
-            continue
-        except OSError as error:
-            line = f"run_dir={folder}: cannot be written to ({error.strerror})"
-            raise UsageError(line) from error
-        return folder
-    raise UsageError(f"run_dir=null: no free name left for {parent / name}")
 
 
 def _labels(jobs: Sequence[Sequence[str]]) -> list[str]:

@@ -175,6 +175,7 @@ def test_brax_wrappers_run():
     np.testing.assert_array_equal(state.obs, first)
 
 
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # Brax imports jaxopt
 def test_brax_wrappers_name_the_keys_that_they_take():
     from brax.envs import training
 
