@@ -31,10 +31,10 @@ SAC = [
     "policy_learner.discount=0.97",
 ]
 CASES = {  # method -> decisions, settings
-    "nn_mppi": (800, [*MODEL, "planner.horizon=20", "planner.samples=32"]),  # -287 to -84
-    "deterministic_mpc": (800, [*MODEL, "shooting_planner.iterations=5"]),  # -211 to -82
+    "nn_mppi": (800, [*MODEL, "planner.horizon=20", "planner.samples=32"]),  # -286 to -85
+    "deterministic_mpc": (800, [*MODEL, "shooting_planner.iterations=5"]),  # -210 to -80
     "sac": (3000, SAC),  # -247 to -81
-    "hybrid_stochastic": (  # -245 to -82
+    "hybrid_stochastic": (  # -213 to -82
         1600,
         [*MODEL, *SAC, "imagining.share=0", "planner.horizon=10", "planner.samples=16"],
     ),

@@ -144,3 +144,19 @@ def test_bound_clips_the_costate() -> None:
     np.testing.assert_array_equal(found.costate, np.clip(free.costate, -0.5, 0.5))
     last = jax.grad(staged)(path).u[0] + jax.vjp(bent, path.x[0], path.u[0])[1](found.costate[1])[1]
     np.testing.assert_allclose(found.gradient[0], last, rtol=0, atol=1e-13)
+
+
+def test_the_agreement_signal_falls_with_the_variance_and_its_rate_does_not() -> None:
+    """Of u = mu + Sigma g the insertion gradient is g' Sigma g to first order (Corollary 1)."""
+    path = adjoint.roll(bent, feedback, X, jnp.zeros((T, 1)))
+    g = adjoint.adjoint(bent, feedback, staged, path).gradient[0]
+    found = []
+    for variance in (jnp.array([4e-4]), jnp.array([1e-4])):
+        u = feedback(X) + variance * g
+        insertion = adjoint.insertion_ahead(bent, feedback, staged, X, u, T)
+        found.append((insertion, adjoint.per_variance(insertion, variance)))
+    (wide, of_wide), (narrow, of_narrow) = found
+    assert float(wide / narrow) == pytest.approx(4, rel=1e-2)
+    rates = [float(each["planner/insertion_per_variance"]) for each in (of_wide, of_narrow)]
+    np.testing.assert_allclose(rates, float(g[0] ** 2), rtol=2e-2)
+    assert float(of_narrow["planner/policy_variance"]) == pytest.approx(1e-4)
