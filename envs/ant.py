@@ -18,10 +18,10 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs import mjcf
 from hybrid_rl.envs.locomotion import pybullet_reward
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.options import one_of
-from hybrid_rl.envs.physics import Physics, PhysicsState, check
 from hybrid_rl.types import EnvState, Spec
 
 ASSETS = {"rk4": "ant.xml", "euler": "ant_euler.xml"}  # by integrator

@@ -32,10 +32,10 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs import mjcf
-from hybrid_rl.envs.kinematics import Chain, damped, hold, within
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.kinematics import Chain, damped, hold, within
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.options import one_of
-from hybrid_rl.envs.physics import Physics, PhysicsState, check
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "panda_stack.xml"

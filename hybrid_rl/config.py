@@ -15,8 +15,9 @@ from hydra.errors import InstantiationException
 from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
-from hybrid_rl.envs.physics import resolve
-from hybrid_rl.overrides import SHOW, UsageError, refuse_new_keys, refuse_unused, search_path
+from hybrid_rl.envs.mujoco.physics import resolve
+from hybrid_rl.errors import UsageError
+from hybrid_rl.overrides import SHOW, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Controller
@@ -38,7 +39,7 @@ SEEDS = 2**32  # that JAX's generator tells apart
 
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 READ = (  # what a run reads, and with it all that these name by interpolation
-    *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "head_start"),
+    *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("matmul_precision", "distributed"),
 )
@@ -117,7 +118,7 @@ def build(config: DictConfig) -> Run:
             replace(replay, capacity=min(replay.capacity, max(longest, replay.given(1)))),
             config.num_envs,
             config.random_steps,
-            config.head_start,
+            config.pretrain,
         )
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
 
@@ -155,9 +156,9 @@ def _usage(config: DictConfig) -> Iterator[None]:
         if not isinstance(cause, (ValueError, TypeError)):
             raise
         line = str(cause)
-        if "needs a world that is a formula" in line:
-            needs = f"task={config.task}: {config.algo} needs a world that is a formula"
-            line = f"{needs}; choose one of {', '.join(formulas())}"
+        if "needs an analytic world" in line:
+            needs = f"task={config.task}: {config.algo} needs an analytic world"
+            line = f"{needs}; choose one of {', '.join(analytic_tasks())}"
         field = line.partition("=")[0]  # of the world, whose keys are typed as env.KEY
         raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error
 
@@ -166,13 +167,13 @@ def _of_world(config: DictConfig, field: str) -> bool:
     return field in config.env and field not in config
 
 
-def formulas(conf: Path = CONF) -> list[str]:
+def analytic_tasks(conf: Path = CONF) -> list[str]:
     """Tasks whose world is a formula, as the methods with an equilibrium need it."""
     found = []
     for path in sorted((conf / "task").glob("*.yaml")):
         task: Any = OmegaConf.load(path)
         with suppress(ImportError, KeyError, AttributeError):  # one of the user's, unfinished
-            found += [path.stem] if hasattr(_class(task.env._target_), "rest") else []
+            found += [path.stem] if hasattr(_class(task.env._target_), "equilibrium") else []
     return found
 
 

@@ -10,7 +10,7 @@ Episode i begins by the key i of `seed`.
 """
 
 if __name__ == "__main__":
-    from hybrid_rl import interrupt
+    from hybrid_rl.cli import interrupt
 
     interrupt.install()
 
@@ -22,13 +22,13 @@ from typing import Any
 import jax
 import numpy as np
 
-from hybrid_rl import command
 from hybrid_rl import config as configuration
-from hybrid_rl.arguments import Argument, output, read, whole
-from hybrid_rl.config import UsageError
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.data.demonstrations import save
+from hybrid_rl.errors import UsageError
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.evaluate import acted
+from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Controller, Params, Transition
 
 ARGUMENTS = (
@@ -57,7 +57,7 @@ def record(
 ) -> Recording:
     """`episodes` episodes of a controller that knows `params`."""
     keys = jax.random.split(jax.random.key(seed), episodes)
-    one = partial(acted, episode, controller, params, steps=episode.steps)
+    one = partial(rollout_with_actions, episode, controller, params, steps=episode.steps)
     actions, states = jax.tree.map(np.asarray, jax.jit(jax.vmap(one))(keys))
     before, after = (jax.tree.map(lambda a, s=s: a[:, s], states) for s in np.s_[:-1, 1:])
     flags = after.reward, after.terminated, after.truncated

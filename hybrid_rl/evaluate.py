@@ -12,7 +12,7 @@ has observations:
 """
 
 if __name__ == "__main__":
-    from hybrid_rl import interrupt
+    from hybrid_rl.cli import interrupt
 
     interrupt.install()
 
@@ -29,15 +29,16 @@ from jax import Array
 from rich.console import Console
 from rich.table import Table
 
-from hybrid_rl import command, run_folder
 from hybrid_rl import config as configuration
-from hybrid_rl.arguments import Argument, read, whole
-from hybrid_rl.config import UsageError
-from hybrid_rl.training import checkpoint
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, read, whole
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import checkpoint
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.integrity import write_text
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.evaluate import evaluation_keys, outcomes
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.manifest import write_text
+from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Controller, Params, Spec
 
 ARGUMENTS = (
@@ -161,7 +162,7 @@ def load(folder: Path | str) -> Trained:
 def _without_demonstrations(config: Any) -> Any:
     """The same run for those who learn no further: it needs no file of demonstrations."""
     config = config.copy()
-    config.head_start = 0
+    config.pretrain = 0
     for part in (config.replay, *config.learners.values()):
         if "demonstrations" in part:
             part.demonstrations = None
@@ -179,7 +180,7 @@ def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[s
     if mode not in trained.controllers:
         raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
-    one = partial(outcomes, trained.episode, trained.controllers[mode])
+    one = partial(evaluate_episodes, trained.episode, trained.controllers[mode])
     got = jax.jit(jax.vmap(one))(trained.params, keys)
     return {name: np.asarray(value) for name, value in got.items()}
 

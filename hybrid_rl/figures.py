@@ -4,7 +4,7 @@
 
 A panel for each task; a line for each algorithm and, where runs of it differ in their settings,
 for each of these: the interquartile mean over seeds with its 95% bootstrap band (see
-hybrid_rl.curves). Several metrics, such as metric=train/return,planner/mode_insertion_gradient, are
+hybrid_rl.studies.curves). Several metrics, such as metric=train/return,planner/mode_insertion_gradient, are
 one row of panels each. x=wall_s draws over time, x=KEY over a number that a sweep went through,
 such as num_demonstrations. The numbers drawn are written beside the picture, as JSON;
 runs=FILE.json draws them again. What they come to is printed: last value, mean over the run (the
@@ -13,7 +13,7 @@ which seeds failed, is written under the picture and in its JSON.
 """
 
 if __name__ == "__main__":
-    from hybrid_rl import interrupt
+    from hybrid_rl.cli import interrupt
 
     interrupt.install()
 
@@ -25,11 +25,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hybrid_rl import command
-from hybrid_rl.arguments import Argument, number, output, read
-from hybrid_rl.config import UsageError
-from hybrid_rl.curves import Curve, area, curves, from_json, improvement, iqm, spread, steps_to
-from hybrid_rl.plotting import STYLE, plot
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, number, output, read
+from hybrid_rl.errors import UsageError
+from hybrid_rl.studies.curves import (
+    Curve,
+    area,
+    curves,
+    from_json,
+    improvement,
+    iqm,
+    spread,
+    steps_to,
+)
+from hybrid_rl.studies.style import STYLE, plot
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

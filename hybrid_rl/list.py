@@ -8,7 +8,7 @@ as `train` takes it, the entries in a folder of your own are there too.
 """
 
 if __name__ == "__main__":
-    from hybrid_rl import interrupt
+    from hybrid_rl.cli import interrupt
 
     interrupt.install()
 
@@ -20,9 +20,10 @@ from typing import Any, cast
 from hydra import compose, initialize_config_dir
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import command
-from hybrid_rl.arguments import Argument, read
-from hybrid_rl.config import CONF, UsageError, formulas
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, read
+from hybrid_rl.config import CONF, analytic_tasks
+from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import plain, reached
 
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
@@ -50,17 +51,17 @@ def about(path: Path) -> str:
 
 
 def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
-    """Group -> name -> what restricts it: tasks that are formulas, and methods that need one."""
-    tasks = dict.fromkeys(formulas(conf), "a formula")
+    """Group -> name -> what restricts it: analytic tasks, and methods that need one."""
+    tasks = dict.fromkeys(analytic_tasks(conf), "analytic")
     methods = {
-        path.stem: "tasks that are formulas"
+        path.stem: "analytic tasks"
         for path in sorted((conf / "algo").glob("*.yaml"))
-        if _needs_a_formula(path)
+        if _needs_an_analytic_world(path)
     }
     return {"task": tasks, "algo": methods, "experiment": {}}
 
 
-def _needs_a_formula(path: Path) -> bool:
+def _needs_an_analytic_world(path: Path) -> bool:
     """Whether a part that the method of a YAML file uses knows the world; demonstrations may."""
     own: Any = OmegaConf.load(path)
     raw = plain(cast(DictConfig, OmegaConf.merge(_parts(), own)))

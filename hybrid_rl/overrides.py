@@ -17,14 +17,12 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from omegaconf import DictConfig, OmegaConf
 
+from hybrid_rl.errors import UsageError
+
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, by the key that it names
 MOST = 4  # keys that one line suggests
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
 LACKING: Any = object()  # what is found where there is nothing
-
-
-class UsageError(ValueError):
-    """What the user asked for makes no run; the message is one line that says what would."""
 
 
 def parse(texts: Iterable[str]) -> list[Override]:

@@ -10,7 +10,7 @@ played by the task's expert, which is written by hand.
 """
 
 if __name__ == "__main__":
-    from hybrid_rl import interrupt
+    from hybrid_rl.cli import interrupt
 
     interrupt.install()
 
@@ -21,9 +21,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hybrid_rl import command
-from hybrid_rl.arguments import Argument, output, read, whole
-from hybrid_rl.config import UsageError
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, output, read, whole
+from hybrid_rl.errors import UsageError
 
 ARGUMENTS = (
     Argument("run", "", "folder of a trained run"),
@@ -55,7 +55,7 @@ def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: in
     """
     import jax
 
-    from hybrid_rl.training.evaluate import evaluation_keys
+    from hybrid_rl.training.rollout import evaluation_keys
 
     seed = int(trained.seeds[0]) if seed is None else seed
     if seed not in trained.seeds:
@@ -71,7 +71,7 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
     """What a controller that knows `params` does in one episode of `world`."""
     import jax
 
-    from hybrid_rl.training.evaluate import rollout
+    from hybrid_rl.training.rollout import rollout
 
     def go(params: Any, key: Any) -> tuple:
         states = rollout(world, controller, params, key, world.steps)
@@ -88,11 +88,11 @@ def _shown(
     said: dict[str, str], changes: dict[str, str], seed: int | None, steps: int
 ) -> tuple[Any, str, Film]:
     """(world with its clock, whose actions, episode) that the arguments name."""
-    from hybrid_rl.envs.offscreen import check_drawable
+    from hybrid_rl.envs.mujoco.offscreen import check_drawable
 
     if said["task"]:
         from hybrid_rl.demonstrate import by_hand
-        from hybrid_rl.training.evaluate import evaluation_keys
+        from hybrid_rl.training.rollout import evaluation_keys
 
         whole, controller, params = by_hand(said["task"], changes)
         _check(check_drawable, whole.env)
@@ -126,8 +126,8 @@ def main() -> None:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     if said["task"] and said["mode"]:
         raise UsageError("mode: an expert by hand has none; give it with run=DIR")
-    from hybrid_rl.drawing import SUFFIXES, draw
-    from hybrid_rl.envs import offscreen
+    from hybrid_rl.envs.mujoco import offscreen
+    from hybrid_rl.run.drawing import SUFFIXES, draw
 
     default = f"{said['run']}/video.mp4" if said["run"] else f"{said['task']}.mp4"
     out = output("out", said["out"] or default, SUFFIXES)

@@ -11,7 +11,7 @@ of its methods uses.
 """
 
 if __name__ == "__main__":
-    from hybrid_rl import interrupt
+    from hybrid_rl.cli import interrupt
 
     interrupt.install()
 
@@ -25,17 +25,19 @@ from typing import Any
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import command, distributed, interrupt, overrides, run_folder
 from hybrid_rl import config as configuration
-from hybrid_rl.config import UNKNOWN, Run, UsageError
-from hybrid_rl.training import checkpoint, divergence, manifest, provenance
-from hybrid_rl.training.log import RunLog
+from hybrid_rl import overrides
+from hybrid_rl.cli import command, interrupt
+from hybrid_rl.config import UNKNOWN, Run
+from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.run import checkpoint, distributed, divergence, integrity, memory, provenance
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.integrity import write_text
+from hybrid_rl.run.log import RunLog
+from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.schedule import Schedule
+from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.training.manifest import write_text
-from hybrid_rl.training.progress import Progress
-from hybrid_rl.training.rows import DivergenceError
-from hybrid_rl.training.schedule import Schedule
-from hybrid_rl.training.session import Session
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
 
@@ -59,9 +61,9 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
     if config.resume is None:
         run = configuration.build(config)
         command.prepare(config)
-        memory = _memory(run)
+        size = memory.replay(run)
         with run_folder.fresh(config) as folder:
-            return _train(config, run, folder, memory)
+            return _train(config, run, folder, size)
     folder = Path(str(config.resume))
     if done := _done(_settings(config, asked), folder):
         print(f"{folder}: finished already at {done['total_steps']:,}; raise total_steps to go on")
@@ -71,18 +73,18 @@ def train(config: DictConfig, asked: Mapping[str, str] = NOTHING) -> dict[str, A
         with run_folder.blamed(folder):
             run = configuration.build(config)
             command.prepare(config)
-        return _train(config, run, folder, _memory(run))
+        return _train(config, run, folder, memory.replay(run))
 
 
-def _train(config: DictConfig, run: Run, folder: Path, memory: str) -> dict[str, Any]:
-    """What summary.json holds, after a session in `folder`; memory: a line about the replay."""
+def _train(config: DictConfig, run: Run, folder: Path, size: str) -> dict[str, Any]:
+    """What summary.json holds, after a session in `folder`; size: a line about the replay memory."""
     label = f"{config.task} {config.algo}"
     with (
-        manifest.naming(folder),
+        integrity.naming(folder),
         RunLog(folder, run.seeds) as log,
         _progress(config, run, label) as progress,
     ):
-        progress.note(f"{label}: run folder {folder}\n{memory}")
+        progress.note(f"{label}: run folder {folder}\n{size}")
         loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
         session = Session(loop, run.controllers, _schedule(config), log, progress)
         if config.resume is None:
@@ -151,30 +153,7 @@ def _done(config: DictConfig, folder: Path) -> dict[str, Any] | None:
         newest = folder / "checkpoints" / str(summary["total_steps"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return summary if done and manifest.flaw(newest) is None else None
-
-
-def _memory(run: Run) -> str:
-    """What the replay memories take, in one line.
-
-    Raises:
-        UsageError: where it is more than the machine has.
-    """
-    replay, learners = run.agent.replay, len(run.seeds)
-    each = replay.nbytes(run.agent.spec)
-    have = provenance.memory()
-    if each * learners > have:
-        fits = int(0.5 * have / learners / (each / replay.capacity))
-        raise UsageError(
-            f"replay.capacity={replay.capacity}: {learners} learners would take "
-            f"{each * learners / 1e9:,.1f} GB and there are {have / 1e9:,.1f} GB; {fits} would fit"
-            + (f", or num_seeds={int(have // each)}" if have > each else "")
-        )
-    kept = "in checkpoints too" if run.config.checkpoint_replay else "not in checkpoints"
-    return (
-        f"replay memory: {replay.capacity:,} decisions, {each / 1e6:,.1f} MB a learner, "
-        f"{each * learners / 1e6:,.1f} MB in all, {kept}"
-    )
+    return summary if done and integrity.verify(newest) is None else None
 
 
 def _schedule(config: DictConfig) -> Schedule:

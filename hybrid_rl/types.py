@@ -105,22 +105,22 @@ class Env(Protocol):
         """Qpos [nq] of `scene` that shows `state`."""
 
 
-class Formula(Env, Protocol):
+class AnalyticEnv(Env, Protocol):
     """A world whose motion is known in full: its observation is its whole state.
 
     Around its equilibrium it has coordinates e [d], zero there, in which it can be linearised.
     """
 
-    def flow(self, x: Array, u: Array) -> Array:
+    def dynamics(self, x: Array, u: Array) -> Array:
         """The observation [o] that follows x [o] under u [m]."""
 
-    def rest(self) -> tuple[Array, Array]:
+    def equilibrium(self) -> tuple[Array, Array]:
         """The equilibrium: x [o] and u [m] with flow(x, u) = x."""
 
-    def deviation(self, x: Array) -> Array:
+    def to_local(self, x: Array) -> Array:
         """e [d] of x [o]."""
 
-    def place(self, e: Array) -> Array:
+    def from_local(self, e: Array) -> Array:
         """x [o] of e [d]; the inverse of `deviation`."""
 
 

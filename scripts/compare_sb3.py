@@ -54,7 +54,7 @@ def make(world: str, task: str) -> Any:
         import gymnasium
 
         return gymnasium.make(GYMNASIUM[task])
-    from hybrid_rl.envs.as_gymnasium import World
+    from hybrid_rl.envs.adapters.as_gymnasium import World
     from hybrid_rl.envs.halfcheetah import HalfCheetah
     from hybrid_rl.envs.hopper import Hopper
 

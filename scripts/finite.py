@@ -13,7 +13,8 @@ from time import perf_counter
 import jax
 import jax.numpy as jnp
 
-from hybrid_rl import command, config
+from hybrid_rl import config
+from hybrid_rl.cli import command
 from hybrid_rl.types import EnvState
 
 
@@ -33,7 +34,7 @@ def tumble(task: str, physics: str, worlds: int, decisions: int) -> tuple[int, f
         finite = [jnp.isfinite(x.reshape(worlds, -1)).all(1) for x in leaves]
         lost |= ~jnp.stack(finite).all(0)
         most = jnp.maximum(most, jnp.abs(state.obs).max())
-        return jax.vmap(episode.renew)(state, jax.random.split(renewing, worlds)), lost, most
+        return jax.vmap(episode.auto_reset)(state, jax.random.split(renewing, worlds)), lost, most
 
     @jax.jit
     def run(state: EnvState) -> tuple:

@@ -26,7 +26,7 @@ import numpy as np
 from omegaconf import OmegaConf
 
 from hybrid_rl import config as configuration
-from hybrid_rl.training import checkpoint
+from hybrid_rl.run import checkpoint
 from hybrid_rl.training.loop import Loop
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)

@@ -18,7 +18,7 @@ from jax import Array
 
 from hybrid_rl.core import sampling
 from hybrid_rl.evaluate import Trained, load
-from hybrid_rl.training.evaluate import evaluation_keys
+from hybrid_rl.training.rollout import evaluation_keys
 from hybrid_rl.types import EnvState
 
 

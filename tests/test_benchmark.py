@@ -10,11 +10,12 @@ import pytest
 from matplotlib.figure import Figure
 from tiny import call
 
-from hybrid_rl import benchmark, command
-from hybrid_rl.bench import others, ours, picture
-from hybrid_rl.bench.picture import draw, redraw
-from hybrid_rl.bench.race import Contestant, race
-from hybrid_rl.envs import accelerated, mjcf
+from hybrid_rl.benchmark import __main__ as benchmark
+from hybrid_rl.benchmark import others, ours, picture
+from hybrid_rl.benchmark.picture import draw, redraw
+from hybrid_rl.benchmark.race import Contestant, race
+from hybrid_rl.cli import command
+from hybrid_rl.envs.mujoco import mjcf, mjx_warp
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -59,7 +60,7 @@ def test_the_command_measures_every_part(tmp_path, capsys):
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
 def test_a_bare_loop_steps_the_model_of_our_world(implementation, monkeypatch):
     """The same compiled model: solver, iterations, integrator and time step are equal."""
-    stepped, load, template = [], mjcf.load, accelerated.template
+    stepped, load, template = [], mjcf.load, mjx_warp.template
 
     def loaded(asset):
         stepped.append(id(load(asset)))
@@ -79,7 +80,7 @@ def test_a_bare_loop_steps_the_model_of_our_world(implementation, monkeypatch):
     if implementation == "native":
         monkeypatch.setattr(mjcf, "load", loaded)
     else:
-        monkeypatch.setattr(accelerated, "template", made)
+        monkeypatch.setattr(mjx_warp, "template", made)
     own = ours.worlds("cartpole", implementation, 2, 1)
     ours_stepped = set(stepped)
     stepped.clear()

@@ -15,13 +15,15 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, config, evaluate, figures, render, run_folder
+from hybrid_rl import config, evaluate, figures, render
 from hybrid_rl import list as listed
-from hybrid_rl.curves import curves
-from hybrid_rl.envs import offscreen
-from hybrid_rl.envs.native import cores
-from hybrid_rl.training import checkpoint
-from hybrid_rl.training.evaluate import evaluation_keys
+from hybrid_rl.cli import command
+from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.envs.mujoco.native import cores
+from hybrid_rl.run import checkpoint
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.studies.curves import curves
+from hybrid_rl.training.rollout import evaluation_keys
 
 pytestmark = pytest.mark.xdist_group("commands")
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}

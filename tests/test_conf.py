@@ -12,7 +12,7 @@ from omegaconf import OmegaConf
 from tiny import SMALL, demonstrate
 
 from hybrid_rl import config
-from hybrid_rl.command import CONF, options
+from hybrid_rl.cli.command import CONF, options
 from hybrid_rl.training.loop import Loop
 
 PARTS = [
@@ -50,8 +50,8 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
     whole = config.load(given)
     if "model" in whole.learners:
         given.append(f"{'model.model' if 'model' in whole.model else 'model'}.hidden=[8]")
-    if whole.head_start:
-        given += ["head_start=2", demonstrate(tmp_path, whole)]
+    if whole.pretrain:
+        given += ["pretrain=2", demonstrate(tmp_path, whole)]
     run = config.build(config.load(given))
     loop = Loop(run.agent, run.seeds, stride=8)
     state = loop.init()
@@ -83,7 +83,7 @@ def test_every_experiment_builds(experiment: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("algo", ["kle3", "kle3_bayesopt"])
 def test_a_method_that_needs_a_formula_says_so(algo: str) -> None:
     """Where the world is MuJoCo's."""
-    with pytest.raises(config.UsageError, match="needs a world that is a formula"):
+    with pytest.raises(config.UsageError, match="needs an analytic world"):
         config.build(config.load(["task=halfcheetah", f"algo={algo}"]))
 
 

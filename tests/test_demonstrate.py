@@ -8,9 +8,10 @@ import pytest
 from tiny import TINY, call, call_train, run
 from tiny import demonstrate as recorded
 
-from hybrid_rl import command, config, demonstrate, evaluate
-from hybrid_rl.controllers.push import PushController
+from hybrid_rl import config, demonstrate, evaluate
+from hybrid_rl.cli import command
 from hybrid_rl.data.demonstrations import load
+from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
@@ -52,7 +53,7 @@ def test_a_run_is_recorded_the_same_twice_and_learned_from(trained, tmp_path, mo
     one, two = load("demonstrations/pendulum.npz"), load("again.npz")
     assert all(np.array_equal(one[name], two[name]) for name in one)
     assert (one["truncated"].nonzero()[0] == [39, 79, 119]).all()
-    line = [*TINY, "algo=hybrid_bc", "total_steps=100", "head_start=2", "num_demonstrations=2"]
+    line = [*TINY, "algo=hybrid_bc", "total_steps=100", "pretrain=2", "num_demonstrations=2"]
     assert call_train(*line, "cloning_learner.batch_size=16", "run_dir=learned") == 0
     rows = [json.loads(row) for row in Path("learned/metrics.jsonl").read_text().splitlines()]
     assert {"bc/policy_loss", "model/loss"} <= {name for row in rows for name in row}
@@ -79,7 +80,7 @@ def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
     """To evaluate needs the learned policy alone; to go on learning needs the file."""
     demonstrations = recorded(tmp_path, config.load(["task=pendulum"]))
     folder, file = tmp_path / "run", Path(demonstrations.partition("=")[2])
-    few = ["total_steps=20", "checkpoint_every=20", "episode.steps=5", "head_start=2"]
+    few = ["total_steps=20", "checkpoint_every=20", "episode.steps=5", "pretrain=2"]
     run(folder, "algo=bc", demonstrations, *few, "random_steps=0")
     before = evaluate.evaluate(evaluate.load(folder), "policy", 2)["return"]
     file.unlink()

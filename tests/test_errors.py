@@ -12,12 +12,13 @@ import jax.numpy as jnp
 import pytest
 from tiny import TINY, call, call_train, contents, run
 
-from hybrid_rl import command, demonstrate, evaluate, figures, render
+from hybrid_rl import demonstrate, evaluate, figures, render
 from hybrid_rl import list as listed
-from hybrid_rl.envs import offscreen
-from hybrid_rl.envs.pendulum import Pendulum
-from hybrid_rl.training import checkpoint, manifest, provenance, rows, session
-from hybrid_rl.training.evaluate import Evaluations
+from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.run import checkpoint, integrity, rows, session
+from hybrid_rl.run.evaluations import Evaluations
 
 pytestmark = pytest.mark.xdist_group("errors")
 MAINS = {
@@ -35,9 +36,9 @@ KEYS = (
     *("policy_learner.batch_size", "model_learner.batch_size"),
 )
 USAGE = [  # overrides of train, words of the line
-    ("task=cartpool", "task=cartpool: unknown; choose one of ant, anywhere"),
+    ("task=cartpool", "task=cartpool: unknown; choose one of ant, cart_double_pendulum"),
     ("algo=sacc", "algo=sacc: unknown; choose one of bayesopt, bc, "),
-    ("task=null", "task=null: choose one of ant, anywhere"),
+    ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
     ("env=null", "env=null: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),
     ("objective=foo", "objective=foo: unknown; choose one of climb, fourier_ergodic"),
@@ -65,7 +66,7 @@ USAGE = [  # overrides of train, words of the line
     ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),
     (
         "task=halfcheetah algo=kle3",
-        "task=halfcheetah: kle3 needs a world that is a formula; choose",
+        "task=halfcheetah: kle3 needs an analytic world; choose",
     ),
     ("policy_learner.tau=nan", "policy_learner.tau=nan: must be finite"),
     ("policy_learner.policy_learning_rate=inf", "policy_learning_rate=inf: must be finite"),
@@ -98,8 +99,8 @@ USAGE = [  # overrides of train, words of the line
     ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
     ("algo=bc demonstrations=null", "demonstrations.file=None: must be a word"),
     ("algo=bc num_demonstrations=0", "num_demonstrations=0: must be 1 or more"),
-    ("head_start=3", "head_start=3: there is nothing to learn from before the first decision"),
-    ("head_start=-1", "head_start=-1: must be a whole number, 0 or more"),
+    ("pretrain=3", "pretrain=3: there is nothing to learn from before the first decision"),
+    ("pretrain=-1", "pretrain=-1: must be a whole number, 0 or more"),
     ("resume=nowhere", "resume=nowhere: no run folder there"),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
@@ -265,7 +266,7 @@ def test_a_damaged_checkpoint_is_passed_over(copied, capfd, damage):
     assert "checkpoint 600 is passed over" in said.out
     assert "going on from step 500" in said.out
     assert said.err == ""
-    assert manifest.flaw(copied / "checkpoints" / "600") is None
+    assert integrity.verify(copied / "checkpoints" / "600") is None
 
 
 def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
@@ -362,7 +363,7 @@ def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
 
 def test_learners_that_do_not_fit_are_counted(tmp_path, monkeypatch, capfd):
     """Before the first decision, from what the compiled program needs."""
-    monkeypatch.setattr(provenance, "memory", lambda: 2e5)  # 16 replay memories, but no more
+    monkeypatch.setattr(memory, "available", lambda: 2e5)  # 16 replay memories, but no more
     line = [*TINY, "algo=sac", "num_seeds=16", f"run_dir={tmp_path / 'many'}"]
     assert call_train(*line) == 1
     said = capfd.readouterr().err

@@ -10,8 +10,9 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train
 
-from hybrid_rl import command, config, evaluate, render
-from hybrid_rl.envs import offscreen
+from hybrid_rl import config, evaluate, render
+from hybrid_rl.cli import command
+from hybrid_rl.envs.mujoco import offscreen
 
 pytestmark = pytest.mark.xdist_group("extend")
 ROOT = Path(__file__).resolve().parents[1]
@@ -38,7 +39,7 @@ from jax.scipy.stats import norm
 
 
 @dataclass(frozen=True)
-class Anywhere:
+class NoDynamics:
     """v ~ U(-reach, reach)."""
 
     reach: float = 1.0
@@ -51,8 +52,8 @@ class Anywhere:
         return v, -jnp.log(2 * self.reach) * plan.size, carry
 '''
 PART_YAML = """\
-# Anywhere.
-_target_: my_part.Anywhere
+# NoDynamics.
+_target_: my_part.NoDynamics
 reach: 0.5
 """
 
@@ -102,7 +103,7 @@ def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path, capfd):
     assert call_train("--config-dir", conf, *line) == 0
     assert capfd.readouterr().err == ""
     kept = OmegaConf.load(folder / "config.yaml")
-    assert kept.controllers.full.proposal == {"_target_": "my_part.Anywhere", "reach": 0.5}
+    assert kept.controllers.full.proposal == {"_target_": "my_part.NoDynamics", "reach": 0.5}
     assert call(lambda: command.guarded(evaluate.main), f"run={folder}", "episodes=1") == 0
 
 

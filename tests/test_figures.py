@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from hybrid_rl import command, figures
-from hybrid_rl.curves import Curve, from_json, iqm
+from hybrid_rl import figures
+from hybrid_rl.cli import command
 from hybrid_rl.figures import save
-from hybrid_rl.plotting import COLOURS, plot
+from hybrid_rl.studies.curves import Curve, from_json, iqm
+from hybrid_rl.studies.style import COLOURS, plot
 
 
 def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50, metric="train/return"):

@@ -3,14 +3,16 @@
 import subprocess
 import sys
 from importlib import import_module
+from importlib.util import find_spec
 
 import pytest
 from tiny import call, call_train
 
 from hybrid_rl import __main__ as commands
-from hybrid_rl import arguments, command
-from hybrid_rl.arguments import Argument, several, whole
-from hybrid_rl.config import CONF, UsageError
+from hybrid_rl.cli import arguments, command
+from hybrid_rl.cli.arguments import Argument, several, whole
+from hybrid_rl.config import CONF
+from hybrid_rl.errors import UsageError
 
 NAMES = sorted(set(commands.commands()) - {"train"})
 
@@ -19,7 +21,8 @@ NAMES = sorted(set(commands.commands()) - {"train"})
 @pytest.mark.parametrize("name", NAMES)
 def test_every_command_explains_itself(name, flag, capsys):
     """Purpose, an example, every argument with its default."""
-    module = import_module(f"hybrid_rl.{name}")
+    package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
+    module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
     assert call(lambda: command.guarded(module.main), flag) == 0
     said, err = capsys.readouterr()
     assert err == ""

@@ -5,8 +5,9 @@ import sys
 import pytest
 from tiny import demonstrate
 
-from hybrid_rl import command, config
+from hybrid_rl import config
 from hybrid_rl import list as listed
+from hybrid_rl.cli import command
 from hybrid_rl.config import CONF
 
 
@@ -79,7 +80,7 @@ def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
     assert "  kettle " in said
     assert "Kettle: boils." in said
     (ours,) = [line for line in said.splitlines() if line.startswith("  pendulum ")]
-    assert ours.endswith("[a formula]")
+    assert ours.endswith("[analytic]")
     assert "  halfcheetah " in said
 
 
@@ -94,5 +95,5 @@ def test_what_needs_a_formula_is_marked(algo, tmp_path):
         return
     with pytest.raises(config.UsageError) as raised:
         config.build(config.load(given))
-    line = f"task=halfcheetah: {algo} needs a world that is a formula; choose one of anywhere, cart"
+    line = f"task=halfcheetah: {algo} needs an analytic world; choose one of cart"
     assert str(raised.value).startswith(line)

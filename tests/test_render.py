@@ -12,8 +12,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl import command, drawing, render
-from hybrid_rl.envs import offscreen
+from hybrid_rl import render
+from hybrid_rl.cli import command
+from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.run import drawing
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Spec
 
@@ -186,7 +188,7 @@ def test_a_canvas_that_is_not_closed_ends_without_noise(can_draw):
     code = (
         "import numpy as np, weakref\n"
         "weakref.finalize(np, print, end='')  # from here on, finalizers run after EGL's end\n"
-        "from hybrid_rl.envs.offscreen import Canvas\n"
+        "from hybrid_rl.envs.mujoco.offscreen import Canvas\n"
         f"one, two = Canvas({FIXED!r}, 64, 48), Canvas({FIXED!r}, 32, 24)\n"
         "first, small = one.draw(np.zeros(1)), two.draw(np.zeros(1))\n"
         "assert (first == one.draw(np.zeros(1))).all() and small.shape == (24, 32, 3)\n"

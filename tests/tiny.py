@@ -10,7 +10,8 @@ import pytest
 from hydra.utils import instantiate
 from omegaconf import DictConfig
 
-from hybrid_rl import command, config, train
+from hybrid_rl import config, train
+from hybrid_rl.cli import command
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.types import Transition
 

@@ -30,7 +30,7 @@ WINDOWS = 8  # values of tau, and of lambda, that a search compares
 class Held(NamedTuple):
     """What goes from one decision to the next."""
 
-    v: Array  # [T, m] the corrections that acted last, from then on
+    v: Array  # [T, m] the corrections that rollout_with_actions last, from then on
     count: Array  # [] decisions of the episode so far
     memory: Any  # the objective's
 
@@ -178,7 +178,7 @@ class _Plan:
     def leaves(self, u: Array, level: float) -> Array:
         """[] bool: whether u [m] leads out of the level set."""
         inside: Any = self.of.lyapunov
-        return lyapunov.leaves(inside.lyapunov, self.step, self.x, u, level)
+        return lyapunov.exits_level_set(inside.lyapunov, self.step, self.x, u, level)
 
     def metrics(self, v: Array) -> dict[str, Array]:
         """What is logged of corrections v [T, m]."""

@@ -32,7 +32,7 @@ class Adjoint(NamedTuple):
 LONGEST = 32  # decisions
 
 
-def unrolled(length: int) -> int:
+def scan_unroll(length: int) -> int:
     """Steps of a loop that are compiled as one: all of a short one; XLA takes minutes over 120."""
     return length if length <= LONGEST else 4
 
@@ -45,7 +45,7 @@ def roll(step: Step, policy: Callable[[Array], Array], x: Array, correction: Arr
         after = step(x, u)
         return after, (after, u)
 
-    xs, us = jax.lax.scan(forward, x, correction, unroll=unrolled(len(correction)))[1]
+    xs, us = jax.lax.scan(forward, x, correction, unroll=scan_unroll(len(correction)))[1]
     return Path(jnp.concatenate([x[None], xs]), us)
 
 
@@ -61,25 +61,25 @@ def adjoint(
     `bound` clips every entry of rho to [-bound, bound] once it is complete, as the thesis'
     author did; g is then no gradient.
     """
-    of_path = jax.grad(objective)(path)
+    dJ = jax.grad(objective)(path)
 
-    def pulled(after: Array, at: tuple[Array, ...]) -> tuple[Array, Array]:
+    def costate_step(after: Array, at: tuple[Array, ...]) -> tuple[Array, Array]:
         x, u, j_x, j_u = at
         f_x, f_u = jax.vjp(step, x, u)[1](after)
         g = j_u + f_u
         return j_x + jax.vjp(policy, x)[1](g)[0] + f_x, g
 
     def back(after: Array, at: tuple[Array, ...]) -> tuple[Array, tuple[Array, Array]]:
-        rho, g = pulled(after, at)
+        rho, g = costate_step(after, at)
         return rho, (rho, g)
 
-    along = (path.x[:-1], path.u, of_path.x[:-1], of_path.u)
-    rows = unrolled(len(path.u))
-    costate, gradient = jax.lax.scan(back, of_path.x[-1], along, reverse=True, unroll=rows)[1]
-    costate = jnp.concatenate([costate, of_path.x[-1:]])
+    along = (path.x[:-1], path.u, dJ.x[:-1], dJ.u)
+    rows = scan_unroll(len(path.u))
+    costate, gradient = jax.lax.scan(back, dJ.x[-1], along, reverse=True, unroll=rows)[1]
+    costate = jnp.concatenate([costate, dJ.x[-1:]])
     if bound is not None:
         costate = jnp.clip(costate, -bound, bound)
-        gradient = jax.vmap(pulled)(costate[1:], along)[1]
+        gradient = jax.vmap(costate_step)(costate[1:], along)[1]
     return Adjoint(path, costate, gradient)
 
 

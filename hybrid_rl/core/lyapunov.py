@@ -41,6 +41,6 @@ def record(V: Scalar, step: Step, policy: Policy, path: Path) -> Record:
     return Record(now, V(step(x, policy(x))) - now, bound)
 
 
-def leaves(V: Scalar, step: Step, x: Array, u: Array, level: float) -> Array:
+def exits_level_set(V: Scalar, step: Step, x: Array, u: Array, level: float) -> Array:
     """[] bool: whether action u [m] at x [n] leads out of V <= level."""
     return V(step(x, u)) > level

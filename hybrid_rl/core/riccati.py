@@ -15,7 +15,7 @@ import numpy as np
 from jax import Array
 from scipy.linalg import solve_discrete_are
 
-from hybrid_rl.types import Formula
+from hybrid_rl.types import AnalyticEnv
 
 
 class Regulator(NamedTuple):
@@ -31,12 +31,12 @@ def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tupl
 
 
 @cache
-def around_rest(world: Formula) -> tuple[np.ndarray, np.ndarray]:
+def around_rest(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
     """A [d, d] and B [d, m] of `world` at its equilibrium, in its own coordinates, in float64."""
     with jax.enable_x64(True), jax.ensure_compile_time_eval():
-        x, u = world.rest()
-        e = world.deviation(x)
-        a, b = linearise(lambda e, u: world.deviation(world.flow(world.place(e), u)), e, u)
+        x, u = world.equilibrium()
+        e = world.to_local(x)
+        a, b = linearise(lambda e, u: world.to_local(world.dynamics(world.from_local(e), u)), e, u)
         return np.asarray(a), np.asarray(b)
 
 
@@ -50,13 +50,13 @@ def regulator(A: np.ndarray, B: np.ndarray, Q: np.ndarray, R: np.ndarray) -> Reg
     return Regulator(np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A), P)
 
 
-def check(name: str, world: Formula) -> None:
+def check(name: str, world: AnalyticEnv) -> None:
     """Raise ValueError where `world` is no formula with an equilibrium."""
     try:
-        world.rest()
+        world.equilibrium()
     except AttributeError as error:
         kind = type(world).__name__
-        raise ValueError(f"{name}.world={kind}: needs a world that is a formula") from error
+        raise ValueError(f"{name}.world={kind}: needs an analytic world") from error
 
 
 def as_weights(name: str, given: tuple[float, ...], size: int) -> np.ndarray:

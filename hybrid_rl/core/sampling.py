@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.adjoint import unrolled
+from hybrid_rl.core.adjoint import scan_unroll
 from hybrid_rl.types import Path
 
 
@@ -54,7 +54,7 @@ def imagine(
         return (x, carry), (x, v, log_prob)
 
     _, (xs, vs, log_probs) = jax.lax.scan(
-        forward, (start, carries), (plan, noise.swapaxes(0, 1)), unroll=unrolled(len(plan))
+        forward, (start, carries), (plan, noise.swapaxes(0, 1)), unroll=scan_unroll(len(plan))
     )
     xs = jnp.concatenate([start[None], xs]).swapaxes(0, 1)
     return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)

@@ -1,4 +1,4 @@
-"""Running mean and standard deviation of a stream of batches, and whitening by them.
+"""Running mean and standard deviation of a stream of batches, and normalisation by them.
 
 m <- m + a (mean(batch) - m),   s^2 <- (1 - a) s^2 + a var(batch) + a (1 - a) (mean(batch) - m)^2
 
@@ -24,7 +24,7 @@ class Running:
 
     @property
     def scale(self) -> Array:
-        """[d] what `whiten` divides by: std, at least `least`, and 1 where both are zero."""
+        """[d] what `normalise` divides by: std, at least `least`, and 1 where both are zero."""
         std = jnp.maximum(self.std, self.least)
         return jnp.where(std > 0, std, 1)
 
@@ -55,12 +55,12 @@ def update(
     return now.replace(least=FLOOR * (now.magnitude if magnitude is None else magnitude))
 
 
-def whiten(stats: Running, x: Array) -> Array:
+def normalise(stats: Running, x: Array) -> Array:
     """(x - mean) / scale for x [..., d]."""
     mean, scale = (jnp.broadcast_to(part, x.shape) for part in (stats.mean, stats.scale))
     return (x - mean) / scale
 
 
-def colour(stats: Running, x: Array) -> Array:
-    """Mean + scale x, the inverse of `whiten`."""
+def denormalise(stats: Running, x: Array) -> Array:
+    """Mean + scale x, the inverse of `normalise`."""
     return stats.mean + stats.scale * x

@@ -6,7 +6,7 @@ from typing import Any
 from jax import Array
 
 from hybrid_rl.core import riccati
-from hybrid_rl.types import Formula, Spec
+from hybrid_rl.types import AnalyticEnv, Spec
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Exact:
         ValueError: for a world that is no formula.
     """
 
-    world: Formula
+    world: AnalyticEnv
 
     def __post_init__(self) -> None:
         """Check the world."""
@@ -33,4 +33,4 @@ class Exact:
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """The next observation [o]."""
-        return self.world.flow(x, u)
+        return self.world.dynamics(x, u)

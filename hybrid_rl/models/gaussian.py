@@ -70,27 +70,27 @@ class Gaussian:
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Predicted change [n] of x [n] under u [m], in running deviations."""
         net = MLP(self.hidden, x.shape[-1], self.activation)
-        inputs = jnp.concatenate([self._seen(statistics.whiten(params["state"], x)), u])
+        inputs = jnp.concatenate([self._seen(statistics.normalise(params["state"], x)), u])
         return net.apply(params["weights"]["net"], inputs)
 
-    def deviation(self, params: dict[str, Any], x: Array) -> Array:
+    def std(self, params: dict[str, Any], x: Array) -> Array:
         """s [n] of the change at x [n], in running deviations."""
         log_std: Any = params["weights"]["log_std"]
         if self.state_noise:
             net = MLP(self.hidden, x.shape[-1], self.activation)
-            log_std = net.apply(log_std, self._seen(statistics.whiten(params["state"], x)))
+            log_std = net.apply(log_std, self._seen(statistics.normalise(params["state"], x)))
         return jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
-        return x + statistics.colour(params["change"], self.change(params, x, u))
+        return x + statistics.denormalise(params["change"], self.change(params, x, u))
 
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Next planning states [B, n] for noise [B, n] ~ N(0, I); `key` has nothing to choose."""
 
         def one(x: Array, u: Array, noise: Array) -> Array:
-            change = self.change(params, x, u) + self.deviation(params, x) * noise
-            return x + statistics.colour(params["change"], change)
+            change = self.change(params, x, u) + self.std(params, x) * noise
+            return x + statistics.denormalise(params["change"], change)
 
         return jax.vmap(one)(x, u, noise)
 
@@ -101,8 +101,8 @@ class Gaussian:
         """Negative log-likelihood [] of next_x [B, n], mean over its entries."""
 
         def one(x: Array, u: Array, next_x: Array) -> Array:
-            std = self.deviation(params, x)
-            target = statistics.whiten(params["change"], next_x - x)
+            std = self.std(params, x)
+            target = statistics.normalise(params["change"], next_x - x)
             error = (target - self.change(params, x, u)) / std
             return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
 

@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import riccati
-from hybrid_rl.types import Formula, Spec
+from hybrid_rl.types import AnalyticEnv, Spec
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class LocalLinear:
         ValueError: for a world that is no formula.
     """
 
-    world: Formula
+    world: AnalyticEnv
 
     def __post_init__(self) -> None:
         """Check the world."""
@@ -39,6 +39,8 @@ class LocalLinear:
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """The next observation [o]."""
         a, b = riccati.around_rest(self.world)
-        e = self.world.deviation(x)
-        e = jnp.asarray(a, e.dtype) @ e + jnp.asarray(b, e.dtype) @ (u - self.world.rest()[1])
-        return self.world.place(e)
+        e = self.world.to_local(x)
+        e = jnp.asarray(a, e.dtype) @ e + jnp.asarray(b, e.dtype) @ (
+            u - self.world.equilibrium()[1]
+        )
+        return self.world.from_local(e)

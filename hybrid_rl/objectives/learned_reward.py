@@ -65,7 +65,7 @@ class LearnedReward:
 
     def outcome(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array]:
         """Of u [m] at x [n]: the reward [], and the logit [] of the chance that it ends there."""
-        inputs = jnp.concatenate([statistics.whiten(params["state"], x), u])
+        inputs = jnp.concatenate([statistics.normalise(params["state"], x), u])
         out: Any = self._net().apply(params["weights"], inputs)
         return out[0], out[1] if self.ends else -jnp.inf
 

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import riccati
-from hybrid_rl.types import Formula, Params, Path, Spec
+from hybrid_rl.types import AnalyticEnv, Params, Path, Spec
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Quadratic:
         ValueError: for a world that is no formula, or weights below 0.
     """
 
-    world: Formula
+    world: AnalyticEnv
     state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
     action_weights: tuple[float, ...] = (0.0,)  # diagonal of R: one for all, or [m]
     discount: float = 1.0  # per decision
@@ -49,7 +49,7 @@ class Quadratic:
 
     def rewards(self, params: Params, path: Path) -> Array:
         """r [T] along path, x [T+1, o] and u [T, m]."""
-        e, v = jax.vmap(self.world.deviation)(path.x[1:]), path.u - self.world.rest()[1][None]
+        e, v = jax.vmap(self.world.to_local)(path.x[1:]), path.u - self.world.equilibrium()[1][None]
         q, r = jnp.array(self.state_weights), jnp.array(self.action_weights)
         return -jnp.sum(q[None] * e**2, -1) - jnp.sum(r[None] * v**2, -1)
 

@@ -16,7 +16,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core import riccati
-from hybrid_rl.types import Formula, Spec
+from hybrid_rl.types import AnalyticEnv, Spec
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Regulator:
         ValueError: for a world that is no formula, or weights that fit none of its sizes.
     """
 
-    world: Formula
+    world: AnalyticEnv
     state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
     action_weights: tuple[float, ...] = (1.0,)  # diagonal of R, of actions in [-1, 1]
     free: tuple[int, ...] = ()  # f, of the coordinates [d], which V does not count
@@ -55,12 +55,14 @@ class Regulator:
 
     def towards(self, x: Array, goal: Array) -> Array:
         """The action [m] at x [o] that leads to `goal` [o] instead of the equilibrium."""
-        e = self.world.deviation(x) - self.world.deviation(goal)
-        return jnp.clip(self.world.rest()[1] - jnp.asarray(self.solve()[0], e.dtype) @ e, -1, 1)
+        e = self.world.to_local(x) - self.world.to_local(goal)
+        return jnp.clip(
+            self.world.equilibrium()[1] - jnp.asarray(self.solve()[0], e.dtype) @ e, -1, 1
+        )
 
     def mean(self, params: Any, x: Array) -> Array:
         """The action [m] at x [o]."""
-        return self.towards(x, self.world.rest()[0])
+        return self.towards(x, self.world.equilibrium()[0])
 
     def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
         """The same action, whatever the noise; log-density of a deterministic action: 0."""
@@ -72,6 +74,6 @@ class Regulator:
 
     def lyapunov(self, x: Array) -> Array:
         """V [] at x [o]."""
-        e, P, f = self.world.deviation(x), self.solve()[1], list(self.free)
+        e, P, f = self.world.to_local(x), self.solve()[1], list(self.free)
         P = P - P[:, f] @ np.linalg.solve(P[np.ix_(f, f)], P[f])
         return e @ jnp.asarray(P, e.dtype) @ e

@@ -68,7 +68,7 @@ class TanhGaussian:
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """Mu and sigma [..., m] before the squashing, at x [..., n]."""
         if self.normalise:
-            x = statistics.whiten(jax.lax.stop_gradient(params["state"]), x)
+            x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
         if self.log_std_activation is None:
             both: Any = self._net(outputs(params["trunk"])).apply(params["trunk"], x)
             mu, log_std = jnp.split(both, 2, axis=-1)

@@ -18,7 +18,7 @@ class Before(NamedTuple):
     """What the noise of a path was."""
 
     e: Array  # [m]
-    colour: Array  # [] its correlation with the next: 0 before the first
+    correlation: Array  # [] its correlation with the next: 0 before the first
 
 
 @dataclass(frozen=True)
@@ -26,18 +26,18 @@ class NoiseProposal:
     """Candidates around the warm-started plan.
 
     Raises:
-        ValueError: for a deviation that is not positive or a colour outside [0, 1).
+        ValueError: for a deviation that is not positive or a correlation outside [0, 1).
     """
 
     std: float = 0.3  # of full actuation
-    colour: float = 0.0  # correlation of neighbours in time
+    correlation: float = 0.0  # correlation of neighbours in time
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if self.std <= 0:
             raise ValueError(f"proposal.std={self.std}: must be positive")
-        if not 0 <= self.colour < 1:
-            raise ValueError(f"proposal.colour={self.colour}: must lie in [0, 1)")
+        if not 0 <= self.correlation < 1:
+            raise ValueError(f"proposal.correlation={self.correlation}: must lie in [0, 1)")
 
     def init(self, spec: Spec, place: Array) -> Before:
         """Nothing before the first action."""
@@ -47,9 +47,9 @@ class NoiseProposal:
         self, params: Params, carry: Before, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, Before]:
         """V [m] around plan [m], and log p(e_t | e_{t-1}) [] of its noise before the clipping."""
-        share = 1 - carry.colour**2  # of the variance that is new
+        share = 1 - carry.correlation**2  # of the variance that is new
         new = jnp.sqrt(share) * self.std * noise
         log_prob = -0.5 * (new / self.std) ** 2 / share - jnp.log(self.std * 2.5066283)
         log_prob = jnp.sum(log_prob - 0.5 * jnp.log(share))
-        e = carry.colour * carry.e + new
-        return jnp.clip(plan + e, -1, 1), log_prob, Before(e, jnp.full((), self.colour))
+        e = carry.correlation * carry.e + new
+        return jnp.clip(plan + e, -1, 1), log_prob, Before(e, jnp.full((), self.correlation))

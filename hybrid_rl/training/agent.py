@@ -30,7 +30,7 @@ class Agent:
     """A method at work in `num_envs` worlds.
 
     Each learner makes `updates` gradient steps a decision once the memory holds a batch, and,
-    unless it is `early`, `random_steps` decisions were drawn uniformly; and `head_start` of them
+    unless it is `early`, `random_steps` decisions were drawn uniformly; and `pretrain` of them
     before the first decision, on what the memory was given.
 
     Raises:
@@ -43,24 +43,24 @@ class Agent:
     replay: Replay
     num_envs: int = 1
     random_steps: int = 0
-    head_start: int = 0  # gradient steps of each learner before the first decision
+    pretrain: int = 0  # gradient steps of each learner before the first decision
     first_update: int = 0  # decisions before any learning, where the memory starts empty later on
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if not isinstance(self.num_envs, int) or self.num_envs < 1:
             raise ValueError(f"num_envs={self.num_envs}: must be a whole number, 1 or more")
-        for name in ("random_steps", "head_start"):
+        for name in ("random_steps", "pretrain"):
             value = getattr(self, name)
             if not isinstance(value, int) or value < 0:
                 raise ValueError(f"{name}={value}: must be a whole number, 0 or more")
-        if self.head_start and not self.replay.given(self.num_envs):
+        if self.pretrain and not self.replay.given(self.num_envs):
             raise ValueError(
-                f"head_start={self.head_start}: there is nothing to learn from before the first "
+                f"pretrain={self.pretrain}: there is nothing to learn from before the first "
                 "decision; give replay.demonstrations, or 0"
             )
         for name, learner in self.learners.items():
-            _rhythm(name, learner, self.num_envs)
+            update_schedule(name, learner, self.num_envs)
 
     @property
     def spec(self) -> Spec:
@@ -91,9 +91,9 @@ class Agent:
             name: learner.init(k, self.spec)
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
-        if self.head_start:
-            learners = self._ahead(learners, memory, ahead)
-        return AgentState(env, self._at_rest(), memory, learners, run)
+        if self.pretrain:
+            learners = self._pretrain(learners, memory, ahead)
+        return AgentState(env, self.initial_control(), memory, learners, run)
 
     def params(self, state: AgentState) -> Params:
         """What all learners know."""
@@ -106,7 +106,7 @@ class Agent:
             known |= learner.params(states[name])
         return Params(**known)
 
-    def _ahead(self, states: dict[str, Any], memory: Memory, key: Array) -> dict[str, Any]:
+    def _pretrain(self, states: dict[str, Any], memory: Memory, key: Array) -> dict[str, Any]:
         """The learners after their head start. The key is consumed."""
 
         def one(states: dict[str, Any], key: Array) -> tuple[dict[str, Any], None]:
@@ -119,7 +119,7 @@ class Agent:
                 learned[name] = learner.update(states[name], params, batch, updating)[0]
             return learned, None
 
-        return jax.lax.scan(one, states, jax.random.split(key, self.head_start))[0]
+        return jax.lax.scan(one, states, jax.random.split(key, self.pretrain))[0]
 
     def _recall(self, memory: Memory, learner: Learner, key: Array) -> Batch:
         """What one update of `learner` takes. The key is consumed."""
@@ -139,25 +139,25 @@ class Agent:
         now = jax.vmap(self.episode.step)(state.env, u)
         new = Transition(state.env.obs, u, now.reward, now.terminated, now.truncated, now.obs)
         memory = self.replay.add(state.memory, new)
-        env = jax.vmap(self.episode.renew)(now, renewing)
+        env = jax.vmap(self.episode.auto_reset)(now, renewing)
         control = jax.tree.map(
             lambda rest, held: jnp.where(_like(now.done, held), rest, held),
-            self._at_rest(),
+            self.initial_control(),
             control,
         )
         learners, learned = self._learn(state.learners, params, memory, step, recalling)
         world = {"reward": now.reward, "obs": now.obs, "action": u, **now.metrics}
         metrics = {
-            **_told(metrics, step >= self.random_steps),
+            **masked_mean(metrics, step >= self.random_steps),
             **learned,
-            **_told({f"world/{name}": value for name, value in world.items()}, True),
+            **masked_mean({f"world/{name}": value for name, value in world.items()}, True),
             "episode/done": now.done,
             "episode/return": now.info["return"],
             "episode/length": now.info["decision"],
         }
         return AgentState(env, control, memory, learners, key), metrics
 
-    def _at_rest(self) -> Any:
+    def initial_control(self) -> Any:
         """The controller's first state in every world [E, ...]."""
         rest = self.controller.init(self.spec)
         return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *x.shape)), rest)
@@ -173,7 +173,7 @@ class Agent:
 
         if not self.random_steps:
             return plan()
-        plan = once(plan)
+        plan = trace_once(plan)
         shapes = jax.eval_shape(plan)
         draw = jax.random.uniform(at_random, shapes[0].shape, minval=-1, maxval=1)
         nothing = _zeros(shapes[2])
@@ -192,14 +192,14 @@ class Agent:
         keys = jax.random.split(key, len(states)) if states else []
         starts = self.starts()
         for k, (name, learner) in zip(keys, self.learners.items(), strict=True):
-            count, every = _rhythm(name, learner, self.num_envs)
+            count, every = update_schedule(name, learner, self.num_envs)
 
             def one(state: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
                 drawing, updating = keys
                 batch = self._recall(memory, learner, drawing)
                 return learner.update(state, params, batch, updating)
 
-            @once
+            @trace_once
             def update(state: Any, k: Array, count: int = count, one: Any = one) -> Any:
                 rows = jax.random.split(k, (count, 2))
                 state, each = jax.lax.scan(one, state, rows, unroll=count if count <= 4 else 1)
@@ -210,11 +210,11 @@ class Agent:
             learned[name], of_this = jax.lax.cond(
                 due, update, lambda state, k, nothing=nothing: (state, nothing), states[name], k
             )
-            metrics |= _told(of_this, due)
+            metrics |= masked_mean(of_this, due)
         return learned, metrics
 
 
-def _rhythm(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:
+def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:
     """(gradient steps at a time, rounds of decisions between them) for `learner.updates`."""
     if not isinstance(learner.batch_size, int) or learner.batch_size < 1:
         raise ValueError(
@@ -231,7 +231,7 @@ def _rhythm(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:
     )
 
 
-def once(f: Any) -> Any:
+def trace_once(f: Any) -> Any:
     """`f`, which is traced once however often its shapes are asked for and it is called."""
     return jax.jit(f, inline=True)
 
@@ -241,7 +241,7 @@ def _zeros(shapes: Any) -> Any:
     return jax.tree.map(lambda m: jnp.zeros(m.shape, m.dtype), shapes)
 
 
-def _told(metrics: dict[str, Array], when: Array | bool) -> dict[str, Array]:
+def masked_mean(metrics: dict[str, Array], when: Array | bool) -> dict[str, Array]:
     """Means []: NaN unless `when`, infinite where some number is not finite."""
     return {
         name: jnp.where(when, jnp.where(jnp.isfinite(value).all(), value.mean(), jnp.inf), jnp.nan)

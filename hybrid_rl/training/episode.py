@@ -75,7 +75,7 @@ class Episode:
         with EXACT():
             return self.env.step(state, action)
 
-    def renew(self, state: EnvState, key: Array) -> EnvState:
+    def auto_reset(self, state: EnvState, key: Array) -> EnvState:
         """`state`, or a fresh episode where it is done. The key is consumed.
 
         Under `vmap` the reset is computed only when some world needs one.

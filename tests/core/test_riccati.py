@@ -8,9 +8,9 @@ import pytest
 from scipy.linalg import expm, logm
 
 from hybrid_rl.core import riccati
-from hybrid_rl.envs.cart_double_pendulum import FORCE, CartDoublePendulum
+from hybrid_rl.envs.analytic.cart_double_pendulum import FORCE, CartDoublePendulum
+from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.cartpole import Cartpole
-from hybrid_rl.envs.point_mass import PointMass
 from hybrid_rl.policies.regulator import Regulator
 
 WEIGHTS = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)

@@ -21,9 +21,9 @@ def test_colour_undoes_whiten() -> None:
     batch = jnp.float32([[1.0, 7.0], [3.0, 7.0]])
     stats = statistics.update(statistics.init(2), batch)
     for x in batch:
-        white = statistics.whiten(stats, x)
+        white = statistics.normalise(stats, x)
         assert jnp.isfinite(white).all()
-        np.testing.assert_allclose(statistics.colour(stats, white), x, rtol=1e-5)
+        np.testing.assert_allclose(statistics.denormalise(stats, white), x, rtol=1e-5)
 
 
 def test_small_entries_are_whitened_in_their_own_units():
@@ -31,7 +31,7 @@ def test_small_entries_are_whitened_in_their_own_units():
     rng = np.random.default_rng(0)
     rows = rng.normal([0.0, 0.0, 1000.0], [1e-4, 1e-7, 1e-5], size=(512, 3))
     stats = statistics.update(statistics.init(3), jnp.float32(rows))
-    white = statistics.whiten(stats, jnp.float32(rows)).std(0)
+    white = statistics.normalise(stats, jnp.float32(rows)).std(0)
     np.testing.assert_allclose(white[:2], 1, rtol=1e-3)
     assert white[2] < 0.2  # float32 holds 1000 to 6e-5: nothing to see there
 
@@ -42,4 +42,4 @@ def test_changes_have_the_floor_of_the_states_they_come_from():
     errors = jnp.asarray((x + np.float32(1e-6)) - x)
     state = statistics.update(statistics.init(1), jnp.asarray(x))
     change = statistics.update(statistics.init(1), errors, state.magnitude)
-    assert float(statistics.whiten(change, errors).std()) < 0.2
+    assert float(statistics.normalise(change, errors).std()) < 0.2

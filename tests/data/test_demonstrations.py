@@ -9,7 +9,7 @@ import pytest
 
 from hybrid_rl.data.demonstrations import Demonstrations, load, save
 from hybrid_rl.data.replay import Replay
-from hybrid_rl.envs.pendulum import Pendulum
+from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.types import Transition
 
 LENGTHS = (4, 5, 3)  # of the episodes

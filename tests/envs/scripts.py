@@ -4,8 +4,8 @@ from functools import cache
 
 import jax
 
-from hybrid_rl.controllers.push import PushController
-from hybrid_rl.controllers.stack import StackController
+from hybrid_rl.envs.experts.push import PushController
+from hybrid_rl.envs.experts.stack import StackController
 from hybrid_rl.types import Params
 
 EXPERTS = {"sawyer_push": PushController(), "panda_stack": StackController(grip="action")}

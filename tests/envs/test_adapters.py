@@ -14,11 +14,11 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from hybrid_rl.envs import offscreen
-from hybrid_rl.envs.as_gymnasium import World, Worlds
+from hybrid_rl.envs.adapters.as_gymnasium import World, Worlds
+from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
-from hybrid_rl.envs.pendulum import Pendulum
+from hybrid_rl.envs.mujoco import offscreen
 
 
 def can_draw():
@@ -154,7 +154,7 @@ def test_gymnasium_counts_episodes():
 def test_brax_wrappers_run():
     from brax.envs import training
 
-    from hybrid_rl.envs.as_brax import World as BraxWorld
+    from hybrid_rl.envs.adapters.as_brax import World as BraxWorld
 
     env = training.wrap(BraxWorld(Hopper("native")), episode_length=6, action_repeat=2)
     state = jax.jit(env.reset)(jax.random.split(jax.random.PRNGKey(0), 3))
@@ -179,7 +179,7 @@ def test_brax_wrappers_run():
 def test_brax_wrappers_name_the_keys_that_they_take():
     from brax.envs import training
 
-    from hybrid_rl.envs.as_brax import World as BraxWorld
+    from hybrid_rl.envs.adapters.as_brax import World as BraxWorld
 
     env = training.wrap(BraxWorld(Pendulum()), episode_length=6)
     with pytest.raises(TypeError, match=r"keys of jax\.random\.PRNGKey, not of jax\.random\.key"):
@@ -192,7 +192,7 @@ def test_brax_trainers_run_with_the_lines_that_as_brax_gives(monkeypatch):
     from brax.training.agents.ppo import networks, train
     from brax.training.pmap import bcast_local_devices
 
-    from hybrid_rl.envs import as_brax
+    from hybrid_rl.envs.adapters import as_brax
 
     with pytest.raises(AttributeError, match="device_put_replicated"):
         bcast_local_devices(0.0)

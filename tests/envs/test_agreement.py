@@ -18,7 +18,7 @@ from worlds import (
     start,
 )
 
-from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.mujoco import mjcf
 
 # Greatest difference of an observation over 20 decisions in contact. Measured: cheetah 5e-6
 # native, 4e-4 mjx; hopper 4e-6, 5e-6; cart and pole 2e-6, 2e-6 (it has no contact); ant 2e-5,

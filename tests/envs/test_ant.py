@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from hybrid_rl.envs import mjcf
 from hybrid_rl.envs.ant import Ant
+from hybrid_rl.envs.mujoco import mjcf
 
 
 def test_ant_touches_where_theirs_does():

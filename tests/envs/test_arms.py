@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from hybrid_rl.envs import mjcf
-from hybrid_rl.envs.kinematics import Chain, damped, hold, inverse, times, turn, within
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.kinematics import Chain, damped, hold, inverse, times, turn, within
 from hybrid_rl.envs.panda_stack import READY
 from hybrid_rl.envs.sawyer_push import HOME
 

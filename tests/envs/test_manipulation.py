@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from worlds import IMPLEMENTATIONS, make
 
-from hybrid_rl.controllers.stack import StackController
-from hybrid_rl.envs.kinematics import hold
+from hybrid_rl.envs.experts.stack import StackController
+from hybrid_rl.envs.mujoco.kinematics import hold
 from hybrid_rl.envs.panda_stack import TOOL, PandaStack
 from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
 from scripts import EXPERTS, play
@@ -60,8 +60,8 @@ def test_push_reward_by_hand():
     state = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.zeros(2))
     np.testing.assert_allclose(state.reward, -5 * 0.1 - 10 * 0.5, atol=2e-3)
     np.testing.assert_allclose(state.obs, [3.0, 4.0, 0.0, -1.0], atol=2e-3)
-    acted = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]), speed=0.0)
-    np.testing.assert_allclose(acted.reward - state.reward, -0.01, atol=1e-4)
+    rollout_with_actions = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]), speed=0.0)
+    np.testing.assert_allclose(rollout_with_actions.reward - state.reward, -0.01, atol=1e-4)
     assert not state.terminated
     assert _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2)).terminated
     going_on = _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2), terminate=False)

@@ -8,8 +8,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from hybrid_rl.envs import foreign, mjcf
-from hybrid_rl.envs.physics import Physics, PhysicsState, resolve
+from hybrid_rl.envs.mujoco import mjcf, xla_callback
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, resolve
 
 CHEETAH = Physics("halfcheetah.xml", "native")
 SENSING = """
@@ -182,9 +182,9 @@ def test_auto_is_native_on_a_cpu():
 def test_auto_takes_what_is_fastest_for_so_many_worlds(monkeypatch):
     """Beside a GPU: MuJoCo C for a few worlds, Warp or else MJX for many or an unknown number."""
     installed = [True]
-    monkeypatch.setattr("hybrid_rl.envs.physics.find_spec", lambda _: installed[0] or None)
+    monkeypatch.setattr("hybrid_rl.envs.mujoco.physics.find_spec", lambda _: installed[0] or None)
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
-    monkeypatch.setattr("hybrid_rl.envs.native.cores", lambda: 16)
+    monkeypatch.setattr("hybrid_rl.envs.mujoco.native.cores", lambda: 16)
     found = [resolve("auto", worlds) for worlds in (1, 640, 641, None)]
     assert found == ["native", "native", "warp", "warp"]
     installed[0] = False
@@ -213,7 +213,7 @@ def test_an_error_inside_a_foreign_call_comes_out():
     def fail(x, y):
         raise ArithmeticError("no luck today")
 
-    foreign.register("hybrid_rl.test.fails", fail)
+    xla_callback.register("hybrid_rl.test.fails", fail)
     out = jax.ShapeDtypeStruct((3,), np.float32)
     call = jax.ffi.ffi_call("hybrid_rl.test.fails", out)
     with pytest.raises(Exception, match="no luck today"):

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.quadcopter import Quadcopter
 
 MASS, INERTIA, ARM, THRUST, MOMENT, GRAVITY = (

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from worlds import TASKS
 
-from hybrid_rl.envs import mjcf
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import LEGS, HalfCheetah, _kneels
 from hybrid_rl.envs.locomotion import pybullet_reward
-from hybrid_rl.envs.physics import Physics
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.physics import Physics
 
 FILES = {"halfcheetah": "half_cheetah.xml", "hopper": "hopper.xml", "ant": "ant.xml"}
 NAMES = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
 
-from hybrid_rl.envs import accelerated
+from hybrid_rl.envs.mujoco import mjx_warp
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +34,10 @@ def test_nan_stays_in_its_world(env):
 @pytest.fixture
 def cramped(monkeypatch):
     """Room for two constraint rows."""
-    monkeypatch.setattr(accelerated, "capacities", lambda asset: (11, 2))
-    accelerated.template.cache_clear()
+    monkeypatch.setattr(mjx_warp, "capacities", lambda asset: (11, 2))
+    mjx_warp.template.cache_clear()
     yield
-    accelerated.template.cache_clear()
+    mjx_warp.template.cache_clear()
 
 
 def test_too_little_room_is_nan(env, cramped):
@@ -49,7 +49,7 @@ def test_too_little_room_is_nan(env, cramped):
         "qacc_warmstart": state.data.warmstart,
         "ctrl": state.data.ctrl,
     }
-    assert jnp.isnan(accelerated.step("hopper.xml", "warp", 1, fields)["qpos"]).all()
+    assert jnp.isnan(mjx_warp.step("hopper.xml", "warp", 1, fields)["qpos"]).all()
 
 
 @pytest.mark.parametrize(
@@ -61,4 +61,4 @@ def test_too_little_room_is_nan(env, cramped):
     ],
 )
 def test_capacities(asset, contacts, rows):
-    assert accelerated.capacities(asset) == (contacts, rows)
+    assert mjx_warp.capacities(asset) == (contacts, rows)

@@ -8,17 +8,17 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 
-from hybrid_rl.envs import mjcf
+from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.analytic.point_mass import PointMass
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.ant import Ant
-from hybrid_rl.envs.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
+from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.panda_stack import PandaStack
-from hybrid_rl.envs.pendulum import Pendulum
-from hybrid_rl.envs.point_mass import PointMass
 from hybrid_rl.envs.quadcopter import Quadcopter
-from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 
 DECISIONS = 20

@@ -47,7 +47,7 @@ def test_mean_and_deviation_are_learned() -> None:
     ahead = jax.vmap(model.step, (None, 0, 0))(known, test.obs, test.action)
     wanted = test.obs + jnp.concatenate([0.5 * test.obs[:, 1:], test.action], 1)
     assert float(jnp.sqrt(jnp.mean((ahead - wanted) ** 2))) < 0.03
-    std = jax.vmap(lambda x: model.deviation(known, x) * known["change"].std)(test.obs)
+    std = jax.vmap(lambda x: model.std(known, x) * known["change"].std)(test.obs)
     assert float(jnp.mean(jnp.abs(std / noise(test.obs) - 1))) < 0.15
 
 

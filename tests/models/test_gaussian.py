@@ -15,7 +15,7 @@ def test_the_networks_see_their_inputs_alone() -> None:
     """Change and deviation depend on x_1 and x_2, and not on x_0."""
     model = Gaussian(hidden=(8,), state_noise=True, inputs=(1, 2))
     params = model.init(jax.random.key(0), SPEC)
-    for f in (lambda x: model.change(params, x, U), lambda x: model.deviation(params, x)):
+    for f in (lambda x: model.change(params, x, U), lambda x: model.std(params, x)):
         slopes = np.asarray(jax.jacfwd(f)(X))
         assert (slopes[:, 0] == 0).all()
         assert (np.abs(slopes[:, 1:]).max(0) > 1e-3).all()
@@ -27,9 +27,9 @@ def test_draws_have_the_deviation_of_their_state() -> None:
         model = Gaussian(hidden=(8,), state_noise=state_noise)
         params = model.init(jax.random.key(0), SPEC)
         params = model.observe(params, jnp.stack([X, -X]), jnp.stack([3 * X, 2 * X]))
-        noise, here = jnp.array([1.0, -2.0, 0.5]), model.deviation(params, X)
+        noise, here = jnp.array([1.0, -2.0, 0.5]), model.std(params, X)
         drawn = model.draw(params, X[None], U[None], noise[None], jax.random.key(1))[0]
         apart = drawn - model.step(params, X, U)
         np.testing.assert_allclose(apart, params["change"].std * here * noise, rtol=1e-3)
-        there = model.deviation(params, 2 * X)
+        there = model.std(params, 2 * X)
         assert bool(jnp.any(here != there)) == state_noise

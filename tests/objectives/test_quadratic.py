@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.objectives.quadratic import Quadratic
 from hybrid_rl.types import Params, Path
 
@@ -18,8 +18,8 @@ def test_return_is_the_plain_sum() -> None:
     objective = Quadratic(WORLD, q, (0.3,), discount=0.9)
     rng = np.random.default_rng(0)
     e, u = rng.uniform(-0.4, 0.4, (5, 12)), rng.uniform(-1, 1, (4, 4))
-    x = jax.vmap(WORLD.place)(jnp.asarray(e, jnp.float32))
-    hover = np.asarray(WORLD.rest()[1])
+    x = jax.vmap(WORLD.from_local)(jnp.asarray(e, jnp.float32))
+    hover = np.asarray(WORLD.equilibrium()[1])
     rewards = [
         -sum(w * a**2 for w, a in zip(q, e[t + 1], strict=True)) - 0.3 * sum((u[t] - hover) ** 2)
         for t in range(4)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import mannwhitneyu
 
-from hybrid_rl.curves import RESAMPLES, improvement, iqm
+from hybrid_rl.studies.curves import RESAMPLES, improvement, iqm
 from pages.cited import NUMBER, ROOT, Table
 
 RESULTS = ROOT / "docs" / "results"
@@ -69,7 +69,7 @@ def curve(name: str, label: str, metric: str = "", task: str = "") -> Curve:
 
 
 def band(each: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What `hybrid_rl.curves.band` gives, all resamples in one array."""
+    """What `hybrid_rl.studies.curves.band` gives, all resamples in one array."""
     draws = np.random.default_rng(0).integers(len(each), size=(RESAMPLES, len(each)))
     low, high = np.percentile(iqm(each[draws.T]), [2.5, 97.5], axis=0)
     return low, high

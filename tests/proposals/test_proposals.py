@@ -48,24 +48,24 @@ def test_a_mixture_is_part_one_and_part_the_other(share, count) -> None:
         np.testing.assert_array_equal(got[count:], second[count:])
 
 
-@pytest.mark.parametrize("colour", [0.0, 0.8])
-def test_noise_has_its_deviation_and_its_colour_from_the_first_decision(colour) -> None:
-    """Its law is stationary: deviation std at each decision, neighbours correlate by `colour`."""
+@pytest.mark.parametrize("correlation", [0.0, 0.8])
+def test_noise_has_its_deviation_and_its_colour_from_the_first_decision(correlation) -> None:
+    """Its law is stationary: deviation std at each decision, and the same correlation of neighbours."""
     samples = 20_000
-    found = imagined(NoiseProposal(std=0.2, colour=colour), samples)
+    found = imagined(NoiseProposal(std=0.2, correlation=correlation), samples)
     e = np.asarray(found.path.u)[:, :, 0] - 0.1
     np.testing.assert_allclose(e.std(0), 0.2, rtol=0.03)
     correlation = np.corrcoef(e.T)
-    wanted = colour ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
+    wanted = correlation ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
     np.testing.assert_allclose(correlation, wanted, atol=0.03)
 
 
-@pytest.mark.parametrize("colour", [0.0, 0.8])
-def test_log_density_is_that_of_the_process(colour) -> None:
+@pytest.mark.parametrize("correlation", [0.0, 0.8])
+def test_log_density_is_that_of_the_process(correlation) -> None:
     """Over a whole path it sums to the density of a Gaussian whose covariance is Toeplitz."""
-    found = imagined(NoiseProposal(std=0.2, colour=colour))
+    found = imagined(NoiseProposal(std=0.2, correlation=correlation))
     e = np.asarray(found.path.u, float)[:, :, 0] - 0.1
-    covariance = 0.2**2 * colour ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
+    covariance = 0.2**2 * correlation ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
     wanted = multivariate_normal(cov=covariance).logpdf(e)
     np.testing.assert_allclose(found.log_prob.sum(1), wanted, rtol=1e-3, atol=1e-3)
 
@@ -76,5 +76,5 @@ def test_bad_fields() -> None:
         MixtureProposal(BY_POLICY, NOISE, 1.5)
     with pytest.raises(ValueError, match=r"proposal.std=0"):
         NoiseProposal(std=0)
-    with pytest.raises(ValueError, match=r"proposal.colour=1.0"):
-        NoiseProposal(colour=1.0)
+    with pytest.raises(ValueError, match=r"proposal.correlation=1.0"):
+        NoiseProposal(correlation=1.0)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from hybrid_rl.envs.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.targets.mixture import Mixture
-from hybrid_rl.targets.model_spread import ModelSpread
-from hybrid_rl.targets.upper_bound import UpperBound
+from hybrid_rl.targets.model_uncertainty import ModelUncertainty
+from hybrid_rl.targets.upper_confidence_bound import UpperConfidenceBound
 from hybrid_rl.types import Params
 
 
@@ -39,7 +39,7 @@ class Flat:
 
 def test_upper_bound_by_hand() -> None:
     """c (mean + kappa std)."""
-    target = UpperBound(Flat(), kappa=3.0, sharpness=4.0)
+    target = UpperConfidenceBound(Flat(), kappa=3.0, sharpness=4.0)
     assert float(target.log_density(Params(), jnp.zeros(1))) == pytest.approx(4 * 3.5)
 
 
@@ -54,7 +54,7 @@ class Tilted:
 
 def test_model_spread_by_hand() -> None:
     """c mean sigma at s, all else at hover: an upright rotation has three ones."""
-    target = ModelSpread(Tilted(), QuadcopterSE3(), (12, 17), sharpness=4.0)
+    target = ModelUncertainty(Tilted(), QuadcopterSE3(), (12, 17), sharpness=4.0)
     got = target.log_density(Params(), jnp.array([-0.5, 2.0]))
     assert float(got) == pytest.approx(4 * (0.5 + 2.0 + 3) / 18)
 

@@ -69,7 +69,7 @@ def test_renew_under_two_vmaps() -> None:
         state = jax.vmap(jax.vmap(episode.step))(state, jnp.zeros((2, 4, 1)))
     done = jnp.array([[True, False, True, False], [False, False, False, True]])
     state = state.replace(truncated=done)
-    renewed = jax.jit(jax.vmap(jax.vmap(episode.renew)))(state, keys)
+    renewed = jax.jit(jax.vmap(jax.vmap(episode.auto_reset)))(state, keys)
     fresh = jax.vmap(jax.vmap(episode.reset))(keys)
     want = jnp.where(done[..., None], fresh.obs, state.obs)
     np.testing.assert_array_equal(renewed.obs, want)
@@ -81,7 +81,7 @@ def test_nothing_is_reset_while_nobody_is_done() -> None:
     episode = Episode(Counter(), steps=3)
     keys = jax.random.split(jax.random.key(1), (2, 4))
     state = jax.vmap(jax.vmap(episode.reset))(keys)
-    text = str(jax.make_jaxpr(jax.vmap(jax.vmap(episode.renew)))(state, keys))
+    text = str(jax.make_jaxpr(jax.vmap(jax.vmap(episode.auto_reset)))(state, keys))
     assert "cond[" in text
 
 

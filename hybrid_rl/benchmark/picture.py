@@ -1,0 +1,88 @@
+"""Tables of the benchmark as pictures of at most one screen, one for each part.
+
+python -c "from hybrid_rl.benchmark.picture import redraw; redraw('benchmark.json')"
+"""
+
+import json
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from hybrid_rl.studies.style import COLOURS, STYLE
+
+Table = dict[str, Any]  # part, what, unit, rows of name and rate
+WIDTH, BAR, HEAD = 4.2, 0.27, 0.5  # [in] of a panel; heights of a bar, and of a panel's title
+TITLE = 44  # [characters] of a line of a title
+ASPECT = 1.6  # width over height of a screen
+OTHERS = "#999999"  # colour of what ours is compared with
+
+
+def draw(tables: Sequence[Table], out: Path) -> list[Path]:
+    """Writes the picture `out`, or one for each part, such as benchmark_loop.png."""
+    parts = list(dict.fromkeys(table["part"] for table in tables))
+    found = []
+    for part in parts:
+        path = out if len(parts) == 1 else out.with_stem(f"{out.stem}_{part}")
+        _picture([table for table in tables if table["part"] == part], path)
+        found.append(path)
+    return found
+
+
+def redraw(file: str | Path) -> list[Path]:
+    """The pictures of a benchmark's JSON, beside it."""
+    tables = json.loads(Path(file).read_text(encoding="utf-8"))["tables"]
+    return draw(tables, Path(file).with_suffix(".png"))
+
+
+def _picture(tables: Sequence[Table], out: Path) -> None:
+    """A panel a table: bars from zero, each with its value."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    across = min(
+        range(1, len(tables) + 1), key=lambda n: abs(math.log(_aspect(tables, n) / ASPECT))
+    )
+    heights = _heights(tables, across)
+    with rc_context(STYLE):
+        size = (WIDTH * across, sum(heights) + HEAD)
+        figure = Figure(figsize=size, layout="constrained")
+        grid = figure.subplots(len(heights), across, squeeze=False, height_ratios=heights)
+        for i, (axes, table) in enumerate(zip(grid.flat, tables, strict=False)):
+            _bars(axes, table, room=heights[i // across])
+        for axes in list(grid.flat)[len(tables) :]:
+            axes.remove()
+        units = ", ".join(dict.fromkeys(table["unit"] for table in tables))
+        figure.suptitle(f"{tables[0]['part']} [{units}]", fontsize=10)
+        figure.savefig(out, dpi=150)
+
+
+def _heights(tables: Sequence[Table], across: int) -> list[float]:
+    """[in] of the rows of panels."""
+    bars = [len(table["rows"]) for table in tables]
+    return [BAR * max(bars[i : i + across]) + HEAD for i in range(0, len(bars), across)]
+
+
+def _aspect(tables: Sequence[Table], across: int) -> float:
+    return WIDTH * across / (sum(_heights(tables, across)) + HEAD)
+
+
+def _bars(axes: Any, table: Table, room: float) -> None:
+    """One table; room: height of the panel [in], so that all bars of a picture are as thick."""
+    names = [row["name"] for row in table["rows"]]
+    rates = [row["rate"] for row in table["rows"]]
+    compared = any(name.startswith("ours") for name in names)
+    ours = [not compared or name.startswith("ours") for name in names]
+    bars = axes.barh(
+        names, rates, color=[COLOURS[0] if own else OTHERS for own in ours], height=0.65
+    )
+    values = [f"{rate:,.0f}" if rate >= 100 else f"{rate:.3g}" for rate in rates]
+    axes.bar_label(bars, values, padding=3, fontsize=8)
+    axes.set_xlim(0, 1.35 * max(rates))  # room for the value at the longest bar
+    axes.set_ylim((room - HEAD) / BAR - 0.4, -0.6)
+    axes.grid(False)
+    axes.set_xticks([])
+    axes.spines["bottom"].set_visible(False)
+    axes.tick_params(axis="y", length=0, labelsize=8)
+    axes.set_title(textwrap.fill(table["what"], TITLE), loc="left", fontsize=8)

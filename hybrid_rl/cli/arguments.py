@@ -1,0 +1,193 @@
+"""key=value arguments of a command, declared once: parsing, checks and --help follow from it."""
+
+import difflib
+import inspect
+import math
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import Any
+
+from hybrid_rl.errors import UsageError
+
+Kind = Callable[[str, str], Any]  # (name, text) -> value
+HELP = ("--help", "-h")
+
+
+def text(name: str, given: str) -> str:
+    """Any text."""
+    return given
+
+
+def whole(least: int = 1, even: bool = False) -> Kind:
+    """A whole number."""
+
+    def kind(name: str, given: str) -> int:
+        if given.isdecimal() and int(given) >= least and not (even and int(given) % 2):
+            return int(given)
+        called = "an even number" if even else "a whole number"
+        raise UsageError(f"{name}={given}: must be {called}, {least + even} or more")
+
+    return kind
+
+
+def number(least: float = -math.inf, what: str = "") -> Kind:
+    """A finite number; `what` says of what."""
+
+    def kind(name: str, given: str) -> float:
+        try:
+            value = float(given)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and value >= least):
+            raise UsageError(f"{name}={given}: must be a number{what}")
+        return value
+
+    return kind
+
+
+def one_of(*known: str) -> Kind:
+    """One of the names."""
+
+    def kind(name: str, given: str) -> str:
+        if given not in known:
+            raise UsageError(f"{name}={given}: choose one of {', '.join(known)}")
+        return given
+
+    return kind
+
+
+def several(*known: str) -> Kind:
+    """Some of the names, with commas between them."""
+
+    def kind(name: str, given: str) -> list[str]:
+        names = given.split(",")
+        unknown = sorted(set(names) - set(known))
+        if unknown:
+            line = f"{name}={','.join(unknown)}: unknown; choose of {', '.join(known)}"
+            raise UsageError(line)
+        return names
+
+    return kind
+
+
+@dataclass(frozen=True)
+class Argument:
+    """One argument of a command."""
+
+    name: str
+    default: Any  # as `kind` returns it
+    about: str  # what --help says
+    kind: Kind = text
+    needed: str = ""  # what to give; where this is set the argument cannot be left out
+
+
+def read(
+    doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """The values of all `known` arguments, and the `group.key=value` that were given.
+
+    With --help among the arguments the process prints the help and ends.
+
+    Args:
+        doc: what the command does, with examples; the docstring of its module.
+        known: its arguments.
+        groups: groups of the configuration whose keys it takes too -> what --help says.
+
+    Raises:
+        UsageError: for an argument of another form, an unknown one, or a value out of range.
+    """
+    groups = groups or {}
+    line = sys.argv[1:]
+    if set(HELP) & set(line):
+        print(shown(doc, known, groups))
+        sys.exit(0)
+    named = {argument.name: argument for argument in known}
+    values, changes = {argument.name: argument.default for argument in known}, {}
+    for at, given in enumerate(line):
+        name, equals, value = given.partition("=")
+        if equals and name in named:
+            values[name] = named[name].kind(name, value)
+        elif equals and name.partition(".")[0] in groups:
+            changes[name] = value
+        else:
+            raise UsageError(_refusal(line, at, named, groups))
+    for argument in known:
+        if argument.needed and not values[argument.name]:
+            raise UsageError(f"{argument.name}: not given; say {argument.needed}")
+    return values, changes
+
+
+def _refusal(
+    line: Sequence[str], at: int, named: Mapping[str, Argument], groups: Mapping[str, str]
+) -> str:
+    """The line for an argument that is none."""
+    given = line[at]
+    name = given.partition("=")[0].lstrip("-")
+    if name in named:
+        return f"{given}: write {as_pair(line, at)}"
+    if "runs" in named and Path(given).exists():
+        return f'{given}: unknown argument; quote the pattern: runs="GLOB"'
+    keys = ", ".join([*named, *(f"{group}.*" for group in groups)])
+    close = difflib.get_close_matches(name, named, n=1)
+    hint = f" (did you mean {close[0]}?)" if close else ""
+    if not keys:
+        return f"{given}: unknown argument; this command takes none"
+    return f"{given}: unknown argument; give key=value with {keys}{hint}"
+
+
+def as_pair(line: Sequence[str], at: int) -> str:
+    """How to write the argument line[at], which is no key=value."""
+    name, equals, value = line[at].lstrip("-").partition("=")
+    rest = [each for each in line[at + 1 : at + 3] if each != "="]
+    if not equals and rest and "=" not in rest[0].removeprefix("="):
+        value = rest[0].removeprefix("=")
+    return f"{name.replace('-', '_')}={value or 'VALUE'}"
+
+
+def shown(
+    doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
+) -> str:
+    """What --help prints."""
+    rows = [
+        (f"{each.name}={'' if each.default is None else _written(each.default)}", each)
+        for each in known
+    ]
+    lines = [(head, ("needed; " if each.needed else "") + each.about) for head, each in rows]
+    lines += [(f"{group}.KEY=VALUE", about) for group, about in (groups or {}).items()]
+    lines.append(("--help", "this text"))
+    width = min(max(len(head) for head, _ in lines), 34)
+    table = "\n".join(f"  {head:{width}}  {about}" for head, about in lines)
+    return f"{inspect.cleandoc(doc or '')}\n\nArguments, with their defaults:\n{table}"
+
+
+def _written(value: Any) -> str:
+    return ",".join(value) if isinstance(value, list) else f"{value}"
+
+
+def output(key: str, out: str | Path, suffixes: Sequence[str], *beside: str) -> Path:
+    """`out` as a path, after a check that it can be written, before any work.
+
+    key: of the argument. beside: suffixes of files that are written next to it.
+
+    Raises:
+        UsageError: where its suffix is none of `suffixes`, or it cannot be written to.
+    """
+    out = Path(out)
+    if out.suffix not in suffixes:
+        raise UsageError(f"{key}={out}: must end in {', '.join(suffixes)}")
+    for path in (out, *(out.with_suffix(suffix) for suffix in beside)):
+        if path.is_dir():
+            raise UsageError(f"{key}={out}: {path} is a folder")
+        try:
+            if path.exists():
+                with path.open("ab"):
+                    pass
+            folder = next(above for above in path.absolute().parents if above.exists())
+            with TemporaryFile(dir=folder):
+                pass
+        except OSError as error:
+            raise UsageError(f"{key}={out}: cannot be written to ({error.strerror})") from error
+    return out

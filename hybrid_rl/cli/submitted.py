@@ -1,0 +1,89 @@
+"""Jobs that Submitit runs in other processes, on this machine or by Slurm, shown as they go."""
+
+import math
+import os
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from hydra.core.utils import JobReturn, JobStatus
+
+from hybrid_rl.cli import interrupt
+
+Result = dict[str, Any]  # of a job: code, line
+POLL = 0.5  # [s] between two checks of the jobs
+PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted
+
+
+@contextmanager
+def watched(results: dict[int, Result]) -> Iterator[None]:
+    """Jobs that Submitit sends are named on the console as they are sent, begin and end.
+
+    One that is lost, as where its process was killed, is a failed one.
+    """
+    import submitit
+
+    send = submitit.AutoExecutor.map_array
+
+    def map_array(executor: Any, function: Any, *lists: Sequence[Any]) -> list[_Ended]:
+        jobs = dict(zip(lists[2], send(executor, function, *lists), strict=True))
+        for number, job in jobs.items():
+            print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)
+        with interrupt.tidily(PATIENCE + 5):
+            try:
+                _wait(jobs, results)
+            except BaseException:
+                for job in jobs.values():
+                    job.cancel(check=False)
+                _wait(jobs, results, PATIENCE)
+                raise
+        return [_Ended(results[number]) for number in jobs]
+
+    submitit.AutoExecutor.map_array = map_array
+    try:
+        yield
+    finally:
+        submitit.AutoExecutor.map_array = send
+
+
+class _Ended:
+    """A job of Submitit's that has ended."""
+
+    def __init__(self, result: Result) -> None:
+        self.result = result
+
+    def results(self) -> list[JobReturn]:
+        """What Hydra's launcher asks for."""
+        return [JobReturn(_return_value=self.result, status=JobStatus.COMPLETED)]
+
+
+def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.inf) -> None:
+    """Wait for the end of all jobs, `most` seconds at most, and say when each begins and ends."""
+    began, running = time.monotonic(), set()
+    while len(results.keys() & jobs.keys()) < len(jobs) and time.monotonic() - began < most:
+        for number, job in jobs.items():
+            if number in results:
+                continue
+            if number not in running and job.paths.stdout.exists():
+                running.add(number)
+                print(f"job {number} begins: log {_relative(job.paths.stdout)}", flush=True)
+            if job.done():
+                results[number] = _result(job)
+                print(f"job {number} ends: {results[number]['line']}", flush=True)
+        time.sleep(POLL)
+
+
+def _result(job: Any) -> Result:
+    """Of a job of Submitit's that has ended."""
+    try:
+        return job.results()[0].return_value
+    except Exception as error:
+        line = str(error).strip().splitlines()[0]
+        return {"code": 1, "line": f"lost: {line}; see {_relative(job.paths.stderr)}"}
+
+
+def _relative(path: Path) -> str:
+    """A path from the working directory on."""
+    return os.path.relpath(path)

@@ -1,0 +1,209 @@
+"""A sweep: all its jobs are checked before the first one runs, all run, a table ends it.
+
+Hydra's basic sweeper ends a sweep at the first job that fails, and prints nothing of jobs that run
+in other processes. Here a failed job is a result like any other; the exit code of the command is
+the highest one of its jobs. `jobs.json` in the sweep's folder holds what the table shows.
+"""
+
+import json
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext, suppress
+from pathlib import Path
+from typing import Any
+
+from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
+from hydra.core.hydra_config import HydraConfig
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from omegaconf import DictConfig, OmegaConf, open_dict
+
+from hybrid_rl import config as configuration
+from hybrid_rl.cli import command
+from hybrid_rl.cli.submitted import Result, watched
+from hybrid_rl.errors import UsageError
+from hybrid_rl.overrides import refuse_new_keys, refuse_unused
+from hybrid_rl.run.folder import made
+
+ACCELERATED = ("auto", "mjx", "warp")  # physics that would set up a GPU, were a world built here
+
+
+class Task:
+    """A job of a sweep as Hydra calls it: what goes wrong in it becomes its result."""
+
+    def __init__(self, job: Callable[[DictConfig], Any]) -> None:
+        self.job = job
+        self.results: dict[int, Result] = {}  # number of a job -> its result
+        self.labels: list[str] = []  # what sets each job apart from the others
+
+    def __call__(self, config: DictConfig) -> Result:
+        """Run one job."""
+        hydra = HydraConfig.get()
+        number, typed = int(hydra.job.num), list(hydra.overrides.task)
+        print(f"job {number}: {self.labels[number]}", flush=True)
+        result: Result = {"code": 0, "line": "done"}
+        self.results[number] = result
+        try:
+            with command.as_typed(typed):
+                result |= _outcome(self.job(config))
+        except (SystemExit, KeyboardInterrupt) as end:
+            code = end.code if isinstance(end, SystemExit) else 130
+            result |= {"code": code, "line": "stopped"}
+            if _here(hydra):  # all of the sweep is stopped
+                raise
+        except Exception as error:
+            code, line = command.diagnosis(error) or (1, traceback.format_exc().strip())
+            print(f"hybrid_rl: job {number}: {line}", file=sys.stderr, flush=True)
+            result |= {"code": code, "line": line.splitlines()[-1]}
+        return result
+
+
+def _here(hydra: Any) -> bool:
+    """Whether jobs run in this process."""
+    return str(hydra.launcher._target_).endswith("BasicLauncher")
+
+
+def _outcome(summary: Any) -> Result:
+    """What the table shows of a run that came to its end."""
+    if not isinstance(summary, dict):
+        return {}
+    for name, called in (("final_eval", "evaluation"), ("final_return", "training return")):
+        known = [value for value in summary.get(name) or () if value is not None]
+        if known:
+            return {"line": f"{called} {sum(known) / len(known):,.1f}"}
+    return {}
+
+
+class Sweeper(BasicSweeper):
+    """Every combination of the values that were given, checked, run and reported."""
+
+    def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
+        """Hydra's: what to run, and by which launcher."""
+        self.task = Task(task_function)
+        super().setup(hydra_context=hydra_context, task_function=self.task, config=config)
+
+    def sweep(self, arguments: list[str]) -> Any:
+        """Run all jobs; ends the process where one of them failed.
+
+        Raises:
+            UsageError: where one of them cannot run; then none of them does.
+        """
+        assert self.config is not None
+        assert self.launcher is not None
+        assert self.hydra_context is not None
+        parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
+        swept = parser.parse_overrides([*self._parse_config(), *arguments])
+        (jobs,) = self.split_arguments(swept, None)
+        self.task.labels = _labels(jobs)
+        jobs = _folders(jobs, self._checked(jobs, arguments))
+        folder = Path(str(self.config.hydra.sweep.dir))
+        folder.mkdir(parents=True, exist_ok=True)
+        OmegaConf.save(self.config, folder / "multirun.yaml")
+        print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
+        results, size = self.task.results, self.max_batch_size or len(jobs)
+        try:
+            with nullcontext() if _here(self.config.hydra) else watched(results):
+                for first in range(0, len(jobs), size):
+                    self.launcher.launch(jobs[first : first + size], first)
+        finally:
+            _report(folder, self.task.labels, jobs, results)
+        worst = max(result["code"] for result in results.values())
+        if worst:
+            sys.exit(worst)
+
+    def _checked(self, jobs: Sequence[Sequence[str]], typed: Sequence[str]) -> list[DictConfig]:
+        """The configuration of each job, after all checks that need no compilation.
+
+        Jobs that run elsewhere are built with the physics that needs no GPU here.
+        """
+        assert self.config is not None
+        assert self.hydra_context is not None
+        here = _here(self.config.hydra)
+        refuse_new_keys(jobs[0], self.config.hydra.overrides.hydra)
+        configs = []
+        loader = self.hydra_context.config_loader
+        for overrides in jobs:
+            config = loader.load_sweep_config(self.config, list(overrides))
+            with open_dict(config):
+                del config["hydra"]
+            configs.append(config)
+        refuse_unused(configs, typed, configuration.READ)
+        for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
+            whole = configuration.resolved(config)
+            if not here and whole.physics in ACCELERATED:
+                whole.physics = "native"
+            try:
+                with command.as_typed(overrides):
+                    if whole.resume is None:
+                        configuration.build(whole)
+            except UsageError as error:
+                label = f"job {number}: {self.task.labels[number]}".removesuffix(": ")
+                raise UsageError(f"{error} ({label})") from error
+        return configs
+
+
+def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> list[list[str]]:
+    """The overrides of each job, with a run folder of its own.
+
+    Jobs with the same run_dir=X write into X/0, X/1, ...; jobs without one into
+    runs/TASK/ALGO/TIME_0, ..., which are made here, so that no other sweep takes them.
+
+    Raises:
+        UsageError: where such a folder holds a run already.
+    """
+    given = [config.run_dir for config in configs]
+    placed = []
+    for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
+        mine = [text for text in overrides if not text.startswith("run_dir=")]
+        if config.resume is not None:
+            placed.append(list(overrides))
+            continue
+        if config.run_dir is None:
+            folder = made(config, f"_{number}")
+        else:
+            same = given.count(config.run_dir) > 1
+            folder = Path(str(config.run_dir), str(number) if same else "")
+        if (folder / "config.yaml").exists():
+            raise UsageError(f"run_dir={folder}: holds a run already; choose another")
+        placed.append([*mine, f"run_dir='{folder}'"])
+    return placed
+
+
+def _labels(jobs: Sequence[Sequence[str]]) -> list[str]:
+    """The overrides of each job that not all jobs share."""
+    common = set.intersection(*map(set, jobs))
+    return [" ".join(text for text in overrides if text not in common) for overrides in jobs]
+
+
+def _report(
+    folder: Path,
+    labels: Sequence[str],
+    jobs: Sequence[Sequence[str]],
+    results: dict[int, Result],
+) -> None:
+    """Print the table of a sweep, and write what it says to jobs.json."""
+    rows = []
+    for number, (label, overrides) in enumerate(zip(labels, jobs, strict=True)):
+        given = [text for text in overrides if text.startswith(("run_dir=", "resume="))]
+        run_dir = "".join(given[:1]).partition("=")[2].strip("'")
+        kept = results.get(number, {"code": None, "line": "not run"})
+        if kept["code"] is None and run_dir:
+            with suppress(OSError):  # it holds something, or is not there
+                Path(run_dir).rmdir()
+        rows.append({"job": number, "overrides": label, "run_dir": run_dir, **kept})
+    (folder / "jobs.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    cells = [("job", "overrides", "run folder", "result")]
+    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _said(r)) for r in rows]
+    widths = [max(len(row[i]) for row in cells) for i in range(3)]
+    print()
+    for row in cells:
+        columns = [f"{text:{width}}" for text, width in zip(row, [*widths, 0], strict=True)]
+        print("  ".join(columns).rstrip())
+    failed = [str(row["job"]) for row in rows if row["code"] != 0]
+    which = f"; not {', '.join(failed)}" if failed else ""
+    print(f"{len(rows) - len(failed)} of {len(rows)} jobs done{which}", flush=True)
+
+
+def _said(row: dict[str, Any]) -> str:
+    """The result of a job in the table."""
+    return row["line"] if not row["code"] else f"failed ({row['code']}): {row['line']}"

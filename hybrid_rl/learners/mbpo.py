@@ -1,0 +1,126 @@
+"""Any learner, fed with what the model imagines beside what was seen.
+
+A share of each batch is replaced: from the states of its first rows the policy acts in the model,
+
+    u ~ pi(x),   x' ~ f(x, u),   r, end = reward(x, u),
+
+for 1 to `steps` decisions, of which the last is kept; of an ensemble, each row's f is one member,
+drawn again at each step. These are the branched rollouts of Janner et al. 2019 (MBPO), drawn for
+each update instead of stored.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Batch, Learner, Params, Policy, Spec
+
+
+@dataclass(frozen=True)
+class MBPO:
+    """`learner` with `share` of its data from `model` and `reward`, by `policy`; 0: untouched.
+
+    The model's planning state must be the observation itself.
+
+    Raises:
+        ValueError: for a share or a number of steps out of range.
+    """
+
+    learner: Learner
+    model: Any
+    reward: Any
+    policy: Policy
+    share: float = 0.9
+    steps: int = 1  # longest branch [decisions]
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 <= self.share <= 1:
+            raise ValueError(f"imagining.share={self.share}: must lie in [0, 1]")
+        if not isinstance(self.steps, int) or self.steps < 1:
+            raise ValueError(f"imagining.steps={self.steps}: must be a whole number, 1 or more")
+
+    @property
+    def batch_size(self) -> int:
+        """The learner's."""
+        return self.learner.batch_size
+
+    @property
+    def batches(self) -> int:
+        """The learner's."""
+        return self.learner.batches
+
+    @property
+    def early(self) -> bool:
+        """The learner's."""
+        return self.learner.early
+
+    @property
+    def updates(self) -> float:
+        """The learner's, per decision."""
+        return self.learner.updates
+
+    def init(self, key: Array, spec: Spec) -> Any:
+        """The learner's first state. The key is consumed."""
+        return self.learner.init(key, spec)
+
+    def params(self, state: Any) -> dict[str, Any]:
+        """What the learner owns."""
+        return self.learner.params(state)
+
+    def update(
+        self, state: Any, params: Params, batch: Batch, key: Array
+    ) -> tuple[Any, dict[str, Array]]:
+        """One step of the learner on the mixed batch. The key is consumed."""
+        count = round(self.share * self.batch_size)
+        if not count:
+            return self.learner.update(state, params, batch, key)
+        imagining, updating = jax.random.split(key)
+        dream = self._dream(params, batch.obs[:count], imagining)
+        batch = jax.tree.map(lambda new, old: jnp.concatenate([new, old[count:]]), dream, batch)
+        return self.learner.update(state, params, batch, updating)
+
+    def _dream(self, params: Params, x: Array, key: Array) -> Batch:
+        """One imagined transition for each of the states x [b, o]."""
+        acting, moving, choosing, stopping = jax.random.split(key, 4)
+        m = jax.eval_shape(self.policy.mean, params.policy, x[0]).shape[-1]
+        length, (b, o) = self.steps, x.shape
+        along = (
+            jax.random.normal(acting, (length, b, m)),
+            jax.random.normal(moving, (length, b, o)),
+            jax.random.split(choosing, length),
+            jnp.arange(length),
+        )
+        last = jax.random.randint(stopping, (b,), 0, length)
+
+        def forward(carry: tuple[Array, Batch], at: tuple[Array, ...]) -> tuple:
+            x, kept = carry
+            *random, t = at
+            new = self._transitions(params, x, *random)
+            kept = jax.tree.map(lambda a, b: _where(t == last, a, b), new, kept)
+            ended = new.terminated > 0.5  # a branch that ended starts again where it began
+            return (_where(ended, start, new.next_obs), kept), None
+
+        start = x
+        empty = jax.tree.map(
+            lambda s: jnp.zeros(s.shape, s.dtype),
+            jax.eval_shape(self._transitions, params, x, *(each[0] for each in along[:3])),
+        )
+        return jax.lax.scan(forward, (x, empty), along, unroll=min(length, 4))[0][1]
+
+    def _transitions(
+        self, params: Params, x: Array, for_policy: Array, for_model: Array, key: Array
+    ) -> Batch:
+        """One from each x [b, o]; `terminated` is a probability, which (1 - end) averages."""
+        u = jax.vmap(self.policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
+        after = self.model.draw(params.model, x, u, for_model, key)
+        reward, end = jax.vmap(self.reward.outcome, (None, 0, 0))(params.reward, x, u)
+        return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(len(x)), after, u)
+
+
+def _where(flags: Array, a: Array, b: Array) -> Array:
+    """A [b, ...] where flags [b], else b."""
+    return jnp.where(flags.reshape(flags.shape + (1,) * (a.ndim - 1)), a, b)

@@ -1,0 +1,206 @@
+"""Checkpoints that are whole or absent, and come back bit for bit.
+
+    FOLDER/STEP/state/         the leaves of the state, written by Orbax
+               /leaves.json    name -> shape, dtype, and PRNG kind where it is a key
+               /meta.json      what the caller wants back beside the state
+               /manifest.json  every file above with its size and SHA-256
+
+A checkpoint is written as FOLDER/.STEP.tmp, forced to the disk, then renamed:
+whatever has a number for a name was finished. An older one of that step is
+FOLDER/.STEP.replaced.tmp for the moment between the two renames, and counts as
+STEP until there is a new one. A checkpoint is renamed before it is deleted, so
+that another process reads all of it or finds it gone, and takes a newer one.
+Leaves are stored flat, by their path in the state, so that containers of any
+type are welcome and a part of the state (say, parameters without replay memory)
+can be restored alone.
+"""
+
+import contextlib
+import json
+import re
+import shutil
+from collections.abc import Collection
+from pathlib import Path
+
+import jax
+
+from hybrid_rl.errors import CheckpointError
+from hybrid_rl.run import integrity, leaves
+from hybrid_rl.types import PyTree
+
+KEEP = 2  # complete checkpoints that stay
+ATTEMPTS = 100  # at reading a folder whose checkpoints are replaced meanwhile
+NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.tmp")  # of a finished checkpoint
+
+
+def nbytes(state: PyTree) -> int:
+    """[bytes] that a checkpoint of `state` takes on the disk, but for a few kB."""
+    return sum(leaf.size * leaf.dtype.itemsize for leaf in jax.tree.leaves(state))
+
+
+def steps(folder: Path) -> list[int]:
+    """Steps of the finished checkpoints in `folder`, oldest first."""
+    return sorted(_finished(folder))
+
+
+def _finished(folder: Path) -> dict[int, Path]:
+    """The finished checkpoints in `folder` by step."""
+    found: dict[int, Path] = {}
+    for path in folder.iterdir() if folder.is_dir() else ():
+        if match := NAME.fullmatch(path.name):
+            step = int(match[1] or match[2])
+            if match[1] or step not in found:  # the replaced one counts where there is no other
+                found[step] = path
+    return found
+
+
+def shapes(folder: Path) -> dict[str, tuple[int, ...]]:
+    """Shape of each leaf of the newest checkpoint that can be read; empty where none can."""
+    for path in (path for _, path in sorted(_finished(folder).items(), reverse=True)):
+        with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
+            return leaves.shapes(path)
+    return {}
+
+
+def save(
+    folder: Path,
+    step: int,
+    state: PyTree,
+    meta: dict,
+    keep: int = KEEP,
+    known: Collection[int] | None = None,
+) -> Path:
+    """Writes FOLDER/STEP, then deletes all but the newest `keep`.
+
+    Checkpoints beyond `step` are deleted too: they belong to a future that was left when
+    the run went on from here. Of checkpoints other than `known` none is deleted: another
+    process wrote them; None: all are known. `meta` is anything that JSON holds.
+
+    Raises:
+        CheckpointError: where it cannot be written; what was there stays.
+    """
+    arrays, kinds = leaves.flatten(state)
+    texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
+    draft = folder / f".{step}.tmp"
+    try:
+        _recover(folder)
+        draft.mkdir(parents=True)
+        _fits(folder, sum(array.nbytes for array in arrays.values()))
+        for name, text in texts.items():
+            (draft / name).write_text(text + "\n", encoding="utf-8")
+        leaves.write(draft.resolve() / "state", arrays)
+        integrity.write_manifest(draft)
+        path = _rename(draft, folder / str(step))
+    except Exception as problem:
+        line = _refusal(folder, step, problem)
+        shutil.rmtree(draft, ignore_errors=True)
+        raise CheckpointError(line) from problem
+    except BaseException:  # Ctrl-C and the like
+        shutil.rmtree(draft, ignore_errors=True)
+        raise
+    _prune(folder, step, keep, known)
+    return path
+
+
+def restore(
+    folder: Path, like: PyTree, step: int | None = None, part: bool = False
+) -> tuple[int, PyTree, dict, list[str]]:
+    """The newest sound checkpoint, or the one at `step`: (step, state, meta, notes).
+
+    `like` gives the structure, shapes and dtypes (arrays, or what `jax.eval_shape`
+    returns); leaves come back as arrays on the default device. part: `like` may lack leaves
+    that the checkpoint has. `notes` says in one line each what was passed over. Another
+    process may write checkpoints to `folder` and delete older ones meanwhile.
+
+    Raises:
+        CheckpointError: where there is none that is sound.
+        MisfitError: where the checkpoint has other leaves than `like`.
+    """
+    for _ in range(ATTEMPTS):
+        found = _finished(folder)
+        if step is not None and step not in found:
+            has = sorted(found) or "none"
+            raise CheckpointError(f"{folder} has no checkpoint {step}; it has {has}")
+        notes = []
+        for candidate in sorted(found, reverse=True) if step is None else [step]:
+            path = found[candidate]
+            before = _identity(path)
+            read, flaw = _attempt(path, like, part)
+            if before is None or _identity(path) != before:
+                break  # deleted or replaced while it was read
+            if read is not None:
+                return candidate, *read, notes
+            notes.append(f"checkpoint {candidate} is passed over: {flaw}")
+        else:
+            if not notes:
+                raise CheckpointError(f"{folder} holds no checkpoint")
+            raise CheckpointError(f"{folder} holds no sound checkpoint: " + "; ".join(notes))
+    raise CheckpointError(f"{folder}: checkpoints are replaced faster than they can be read")
+
+
+def _identity(path: Path) -> tuple[int, int, int] | None:
+    """What a folder keeps when it is renamed and no other has; None where there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino, found.st_mtime_ns
+
+
+def _attempt(path: Path, like: PyTree, part: bool) -> tuple[tuple[PyTree, dict] | None, str]:
+    """State and meta of the checkpoint at `path`, or None and why it has none."""
+    flaw = integrity.verify(path)
+    if flaw is not None:
+        return None, flaw
+    try:
+        return leaves.read(path, like, part), ""
+    except CheckpointError:
+        raise
+    except (OSError, ValueError) as problem:  # TensorStore raises ValueError
+        return None, " ".join(str(problem).split())
+
+
+def _fits(folder: Path, needed: int) -> None:
+    """Raises before the disk is filled. needed: [bytes]."""
+    free = shutil.disk_usage(folder).free
+    if needed > free:
+        raise OSError(f"it needs {needed / 1e6:.0f} MB and the disk has {free / 1e6:.0f} MB left")
+
+
+def _recover(folder: Path) -> None:
+    """Gives a replaced checkpoint its name back where a kill left no other; drops old drafts."""
+    for step, path in _finished(folder).items():
+        if path.name != str(step):
+            path.rename(folder / str(step))
+    for stale in folder.glob(".*.tmp"):
+        shutil.rmtree(stale)
+
+
+def _rename(draft: Path, path: Path) -> Path:
+    """Gives a finished draft its name, and takes the name from an older one."""
+    if path.exists():
+        path.rename(path.with_name(f".{path.name}.replaced.tmp"))
+    draft.rename(path)
+    integrity.sync(path.parent)
+    return path
+
+
+def _prune(folder: Path, newest: int, keep: int, known: Collection[int] | None) -> None:
+    """Deletes those of the `known` checkpoints that a new one makes superfluous."""
+    ours = [s for s in steps(folder) if known is None or s in known or s == newest]
+    sound = [s for s in ours if s <= newest and not integrity.verify(folder / str(s), False)]
+    for step in set(ours) - set(sound[-keep:]):
+        with contextlib.suppress(OSError):
+            (folder / str(step)).rename(folder / f".{step}.pruned.tmp")
+    for path in folder.glob(".*.tmp"):
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def _refusal(folder: Path, step: int, problem: Exception) -> str:
+    """One line for a checkpoint that could not be written."""
+    reason = " ".join(str(problem).split()) or type(problem).__name__
+    if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's tale
+        reason = system[1].strip()
+    before = [s for s in steps(folder) if not integrity.verify(folder / str(s), False)]
+    kept = f"checkpoint {before[-1]} is whole" if before else "there is no earlier one"
+    return f"checkpoint {step} in {folder} was not written: {reason}; {kept}"

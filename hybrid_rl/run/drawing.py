@@ -1,0 +1,86 @@
+"""Positions of a MuJoCo scene, drawn without a display: an array, a video, a GIF, a still."""
+
+import contextlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from hybrid_rl.envs.mujoco.offscreen import Canvas
+from hybrid_rl.run.progress import Progress
+
+SUFFIXES = (".mp4", ".gif", ".png")
+GIF_FPS = 20.0  # [1/s] at most
+
+
+def draw(
+    scene: str,
+    qpos: np.ndarray,
+    out: str | Path,
+    fps: float,
+    width: int = 640,
+    height: int = 480,
+) -> Path:
+    """Writes a video, H.264 for .mp4, endless for .gif; for .png the picture halfway.
+
+    scene: MJCF text. qpos: [frames, nq]. fps: [1/s]. width, height: [pixels], even.
+    """
+    out = Path(out)
+    if out.suffix not in SUFFIXES:
+        raise ValueError(f"{out}: must end in {', '.join(SUFFIXES)}")
+    if out.suffix == ".gif" and fps > GIF_FPS:
+        stride = int(np.ceil(fps / GIF_FPS))
+        qpos, fps = qpos[::stride], fps / stride
+    if out.suffix == ".png":
+        qpos = qpos[len(qpos) // 2][None]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    part = out.with_stem(f".{out.stem}.part")
+    pictures = _counted(frames(scene, qpos, width, height), len(qpos))
+    write = {".mp4": _write_mp4, ".gif": _write_gif, ".png": _write_png}[out.suffix]
+    try:
+        write(part, pictures, fps)
+        part.replace(out)
+    finally:
+        part.unlink(missing_ok=True)
+    return out
+
+
+def frames(
+    scene: str, qpos: np.ndarray, width: int = 640, height: int = 480
+) -> Iterator[np.ndarray]:
+    """One picture [height, width, 3] (uint8) for each row of qpos [frames, nq]."""
+    with contextlib.closing(Canvas(scene, width, height)) as canvas:
+        yield from map(canvas.draw, qpos)
+
+
+def _counted(pictures: Iterable[np.ndarray], total: int) -> Iterator[np.ndarray]:
+    """The same pictures, with progress on the terminal."""
+    with Progress(total, label="drawing", unit="pictures") as progress:
+        for number, picture in enumerate(pictures, 1):
+            yield picture
+            progress.update(number, {})
+
+
+def _write_mp4(out: Path, pictures: Iterable[np.ndarray], fps: float) -> None:
+    import imageio.v3 as iio
+
+    with iio.imopen(out, "w", plugin="pyav") as video:
+        video.init_video_stream("libx264", fps=fps, pixel_format="yuv420p")
+        for picture in pictures:
+            video.write_frame(picture)
+
+
+def _write_gif(out: Path, pictures: Iterable[np.ndarray], fps: float) -> None:
+    from PIL import Image
+
+    first, *rest = (
+        Image.fromarray(picture).quantize(128, dither=Image.Dither.NONE) for picture in pictures
+    )
+    first.save(out, save_all=True, append_images=rest, duration=1000 / fps, loop=0)
+
+
+def _write_png(out: Path, pictures: Iterable[np.ndarray], fps: float) -> None:
+    import imageio.v3 as iio
+
+    for picture in pictures:
+        iio.imwrite(out, picture)

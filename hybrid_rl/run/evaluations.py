@@ -1,0 +1,75 @@
+"""Evaluations of a run: all learners, in every mode, in calls that a signal can cut."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from time import perf_counter
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.run.pace import Pace
+from hybrid_rl.training.loop import SAME, SEEDS, Loop
+from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
+from hybrid_rl.types import Controller, Params
+
+EVALUATED = {  # mode -> what its outcomes' names begin with
+    "full": "eval/",
+    "policy": "eval/policy_",
+    "planner": "eval/planner_",
+}
+
+
+class Evaluations:
+    """Evaluations of all learners of `loop` in every mode; `controllers` are by mode."""
+
+    def __init__(
+        self, loop: Loop, controllers: Mapping[str, Controller], episodes: int, params: Params
+    ) -> None:
+        """Compile all of them; params: [S, ...]."""
+        self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
+        self._evaluators = {
+            mode: Evaluator(loop, controller, params, self.keys)
+            for mode, controller in controllers.items()
+        }
+
+    def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
+        """For each learner the mean of every outcome; None as soon as `cut` is true."""
+        found: dict[str, np.ndarray] = {}  # [S]
+        for mode, evaluator in self._evaluators.items():
+            got = evaluator(params, self.keys, cut)
+            if got is None:
+                return None
+            found |= {EVALUATED[mode] + name: each.mean(-1) for name, each in got.items()}
+        return [{name: float(m[s]) for name, m in found.items()} for s in range(len(self.keys))]
+
+
+class Evaluator:
+    """Episodes of every learner of `loop` under `controller`, in calls of a few seconds at most.
+
+    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode.
+    """
+
+    def __init__(self, loop: Loop, controller: Controller, params: Params, keys: Array) -> None:
+        self.steps = loop.agent.episode.steps
+        first = partial(begin, loop.agent.episode, controller)
+        more = partial(advance, loop.agent.episode, controller)
+        program = loop.shard(jax.vmap(first), SEEDS, SEEDS)
+        self._begin = program.lower(keys).compile()
+        takes = SEEDS, SEEDS, SAME
+        program = loop.shard(jax.vmap(more, (0, 0, None)), takes, SEEDS, donate_argnums=1)
+        self._advance = program.lower(params, self._begin(keys), jnp.int32(0)).compile()
+
+    def __call__(
+        self, params: Params, keys: Array, cut: Callable[[], bool]
+    ) -> dict[str, np.ndarray] | None:
+        """The `scores` [S, N]; None as soon as `cut` is true."""
+        carry, pace = self._begin(keys), Pace()
+        while not np.asarray(carry[0].done).all():
+            if cut():
+                return None
+            rounds, began = pace.rounds(self.steps), perf_counter()
+            carry = jax.block_until_ready(self._advance(params, carry, jnp.int32(rounds)))
+            pace.took(rounds, perf_counter() - began)
+        return {name: np.asarray(value) for name, value in scores(carry[0]).items()}

@@ -1,0 +1,93 @@
+"""What makes a folder of files whole: a manifest, fsync, and rename.
+
+`write_manifest` lists every file below a folder with its size and SHA-256 in MANIFEST and
+forces all of it to the disk. `verify` reads that list back and names the first
+thing that is missing, short, or changed. A folder without a manifest is one
+whose writer never finished.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+MANIFEST = "manifest.json"
+
+
+def write_manifest(folder: Path) -> None:
+    """Lists all files below `folder`, then forces files and folders to the disk."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    listed = {
+        path.relative_to(folder).as_posix(): {"bytes": path.stat().st_size, "sha256": digest(path)}
+        for path in files
+    }
+    manifest = folder / MANIFEST
+    manifest.write_text(json.dumps({"files": listed}, indent=1) + "\n", encoding="ascii")
+    below = [path for path in folder.rglob("*") if path.is_dir()]
+    for path in [*files, manifest, *below, folder]:
+        sync(path)
+
+
+def verify(folder: Path, contents: bool = True) -> str | None:
+    """Why `folder` is not what `write_manifest` left, or None.
+
+    contents: read every byte, not only sizes.
+    """
+    try:
+        listed = json.loads((folder / MANIFEST).read_text(encoding="ascii"))["files"]
+        files = [(name, entry["bytes"], entry["sha256"]) for name, entry in listed.items()]
+    except FileNotFoundError:
+        return f"it has no {MANIFEST}, so its writing was cut off"
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as problem:
+        return f"its {MANIFEST} cannot be read ({type(problem).__name__})"
+    for name, size, sha256 in files:
+        try:
+            if (found := (folder / name).stat().st_size) != size:
+                return f"{name} has {found} bytes instead of {size}"
+            if contents and digest(folder / name) != sha256:
+                return f"{name} has changed since it was written (SHA-256 differs)"
+        except OSError as problem:
+            return f"{name} cannot be read ({problem.strerror})"
+    return None
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file, in hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def sync(path: Path) -> None:
+    """Forces a file, or the entries of a folder, to the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Replaces the text of a file so that a reader sees the old or the new, never a part."""
+    draft = path.with_name(f".{path.name}.tmp")
+    with naming(path):
+        try:
+            draft.write_text(text, encoding="utf-8")
+            sync(draft)
+            draft.replace(path)
+        except OSError:
+            draft.unlink(missing_ok=True)
+            raise
+        sync(path.parent)
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Adds `path` to an OSError that names no file: writing to a full disk raises such ones."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None and error.errno is not None:
+            error.filename = str(path)
+        raise

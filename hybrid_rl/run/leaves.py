@@ -1,0 +1,123 @@
+"""The leaves of a state, in files and back, by Orbax.
+
+Each leaf has a name, its path in the state: "learners.policy.params". Keys are stored as the
+numbers they are made of, arrays without elements by their shape alone.
+"""
+
+import contextlib
+import io
+import json
+import logging
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import quote
+
+import jax
+import numpy as np
+
+from hybrid_rl.errors import MisfitError
+from hybrid_rl.types import PyTree
+
+AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write
+
+
+def flatten(state: PyTree) -> tuple[dict[str, np.ndarray], dict[str, dict]]:
+    """Arrays on the host by name, and what each was."""
+    leaves, kinds = {}, {}
+    for name, leaf in _named(state):
+        key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+        kinds[name] = {
+            "shape": list(leaf.shape),
+            "dtype": str(leaf.dtype),
+            "key": str(jax.random.key_impl(leaf)) if key else None,
+        }
+        leaves[name] = np.asarray(jax.device_get(jax.random.key_data(leaf) if key else leaf))
+    return leaves, kinds
+
+
+def _named(tree: PyTree) -> list[tuple[str, jax.Array]]:
+    """Leaves beside their names, in the order of the tree: "learners.sac.params"."""
+    pairs = jax.tree_util.tree_flatten_with_path(tree)[0]
+    names = [quote(jax.tree_util.keystr(path, simple=True, separator=".")) for path, _ in pairs]
+    if len(set(names)) < len(names):
+        twice = sorted(name for name in set(names) if names.count(name) > 1)
+        raise ValueError(f"leaves of one state share a name: {twice}")
+    return [(name or "state", leaf) for name, (_, leaf) in zip(names, pairs, strict=True)]
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keeps Orbax's and TensorStore's running commentary off the terminal."""
+    logger = logging.getLogger("absl")
+    level, hook = logger.level, sys.unraisablehook
+    logger.setLevel(logging.CRITICAL + 1)
+    sys.unraisablehook = lambda _: None
+    try:
+        with contextlib.redirect_stderr(io.StringIO()):
+            yield
+    finally:
+        logger.setLevel(level)
+        sys.unraisablehook = hook
+
+
+def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
+    """Orbax, uncompressed: three times as fast as compressed, and random bits do not shrink."""
+    import orbax.checkpoint as ocp  # 1 s
+
+    filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
+    handler = ocp.PyTreeCheckpointHandler(use_compression=False)
+    with _quiet(), ocp.Checkpointer(handler) as writer:
+        try:
+            writer.save(path, ocp.args.PyTreeSave(filled))
+        except Exception:
+            time.sleep(AFTERMATH)
+            raise
+
+
+def shapes(path: Path) -> dict[str, tuple[int, ...]]:
+    """Shape of each leaf of a checkpoint, by name."""
+    kinds = json.loads((path / "leaves.json").read_text(encoding="utf-8"))
+    return {name: tuple(kind["shape"]) for name, kind in kinds.items()}
+
+
+def read(path: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
+    """State and meta of a sound checkpoint."""
+    import orbax.checkpoint as ocp  # 1 s
+
+    meta = json.loads((path / "meta.json").read_text(encoding="utf-8"))
+    kinds = json.loads((path / "leaves.json").read_text(encoding="utf-8"))
+    wanted = dict(_named(like))
+    _match(path, kinds, wanted, part)
+    filled = {name: 0 for name in wanted if 0 not in kinds[name]["shape"]}
+    host = dict.fromkeys(filled, ocp.RestoreArgs(restore_type=np.ndarray))
+    args = ocp.args.PyTreeRestore(item=filled, restore_args=host, partial_restore=True)
+    with _quiet(), ocp.Checkpointer(ocp.PyTreeCheckpointHandler()) as reader:
+        arrays = reader.restore(path.resolve() / "state", args)
+    state = []
+    for name, leaf in wanted.items():
+        array = jax.numpy.array(arrays.pop(name) if name in arrays else np.zeros(**_empty(leaf)))
+        kind = kinds[name]["key"]
+        state.append(jax.random.wrap_key_data(array, impl=kind) if kind else array)
+    return jax.tree.unflatten(jax.tree.structure(like), state), meta
+
+
+def _empty(leaf: jax.Array) -> dict:
+    """Shape and dtype of an array without elements, of keys as of numbers."""
+    key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
+    data = jax.eval_shape(jax.random.key_data, leaf) if key else leaf
+    return {"shape": data.shape, "dtype": data.dtype}
+
+
+def _match(path: Path, kinds: dict[str, dict], wanted: dict, part: bool) -> None:
+    """Raises where a sound checkpoint is of another run than `wanted`."""
+    for name, leaf in wanted.items():
+        here = f"{leaf.dtype}{list(leaf.shape)}"
+        there = f"{kinds[name]['dtype']}{kinds[name]['shape']}" if name in kinds else "absent"
+        if here != there:
+            line = f"{path} does not fit this run: {name} is {here} here and {there} there"
+            raise MisfitError(line)
+    surplus = sorted(set(kinds) - set(wanted))
+    if surplus and not part:
+        raise MisfitError(f"{path} does not fit this run: {surplus[0]} is there and not here")

@@ -1,0 +1,130 @@
+"""What a run leaves to read: metrics.jsonl, tensorboard/, summary.json.
+
+A checkpoint remembers how long metrics.jsonl was when it was written; a resumed
+run cuts the file back to that length, so that every row is there exactly once.
+"""
+
+import json
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+import numpy as np
+
+from hybrid_rl.run.integrity import write_text
+
+if TYPE_CHECKING:
+    from hybrid_rl.run.board import Board
+
+PLACE = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
+
+
+class RunLog:
+    """Rows of numbers, on their way into a run folder.
+
+    In tensorboard/ the scalars of one learner carry their names; those of several
+    learners lie in one subfolder a seed, so that a chart overlays the seeds.
+    """
+
+    def __init__(self, run_dir: Path, seeds: Sequence[int]) -> None:
+        self.run_dir = run_dir
+        self.seeds = tuple(seeds)
+        run_dir.mkdir(parents=True, exist_ok=True)
+        self._rows = (run_dir / "metrics.jsonl").open("ab")
+        self._boards: dict[int, Board] = {}  # by seed
+        self._purge_step: int | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        problem: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for board in self._boards.values():
+            board.close()
+        self._boards.clear()
+        self._rows.close()
+
+    def write(self, rows: list[dict[str, Any]]) -> None:
+        """Appends rows {"step", "seed", "wall_s", name: number or word, ...}."""
+        for row in rows:
+            plain = {n: v if isinstance(v, str) else number(v) for n, v in row.items()}
+            plain["wall_s"] = round(float(row["wall_s"]), 3)
+            self._rows.write(json.dumps(plain, allow_nan=False).encode("ascii") + b"\n")
+            scalars: dict[str, float] = {
+                n: v
+                for n, v in plain.items()
+                if n not in PLACE and v is not None and not isinstance(v, str)
+            }
+            self._board(int(row["seed"])).write(int(row["step"]), scalars)
+        self._rows.flush()
+
+    def flush(self) -> int:
+        """Forces all rows to the disk. [bytes] of metrics.jsonl, for `rewind`."""
+        for board in self._boards.values():
+            board.flush()
+        self._rows.flush()
+        os.fsync(self._rows.fileno())
+        return self._rows.tell()
+
+    def rewind(self, offset: int, step: int) -> list[str]:
+        """Forgets what was written after the checkpoint at `step`; call it before `write`.
+
+        offset: [bytes] that `flush` returned then. The answer says in one line each
+        what is not as the checkpoint knew it.
+        """
+        path = self.run_dir / "metrics.jsonl"
+        known = path.read_bytes()[:offset]
+        whole = known[: known.rfind(b"\n") + 1]
+        self._rows.truncate(len(whole))
+        self._rows.seek(0, os.SEEK_END)
+        self._purge_step = step + 1
+        if len(whole) == offset:
+            return []
+        return [f"{path} has changed: rows before step {step} are missing or edited"]
+
+    def summary(self, fields: dict[str, Any]) -> Path:
+        """Replaces summary.json; NaN and infinity become null."""
+        path = self.run_dir / "summary.json"
+        write_text(path, json.dumps(_finite(fields), indent=2, allow_nan=False) + "\n")
+        return path
+
+    def _board(self, seed: int) -> "Board":
+        """The TensorBoard file of a seed, opened when first needed."""
+        if seed not in self._boards:
+            from hybrid_rl.run.board import Board  # 0.2 s
+
+            several = (f"seed_{seed}",) if len(self.seeds) > 1 else ()
+            folder = self.run_dir.joinpath("tensorboard", *several)
+            self._boards[seed] = Board(folder, self._purge_step)
+        return self._boards[seed]
+
+
+def number(value: Any) -> int | float | None:
+    """A plain number: integers as they are, floats in the digits of float32, None if not finite."""
+    scalar = np.asarray(value)
+    if scalar.dtype.kind in "iub":
+        return int(scalar)
+    single = np.float32(scalar)
+    return float(str(single)) if np.isfinite(single) else None
+
+
+def _finite(value: Any) -> Any:
+    """`value` with None for every float that JSON has no word for."""
+    match value:
+        case dict():
+            return {name: _finite(entry) for name, entry in value.items()}
+        case list() | tuple():
+            return [_finite(entry) for entry in value]
+        case float() | np.floating():
+            return float(value) if math.isfinite(value) else None
+        case np.integer():
+            return int(value)
+        case _:
+            return value

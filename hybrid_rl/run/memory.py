@@ -1,0 +1,50 @@
+"""How much memory a run takes, and whether the machine has it."""
+
+import os
+from typing import Any
+
+import jax
+
+from hybrid_rl.config import Run
+from hybrid_rl.errors import UsageError
+from hybrid_rl.training.loop import Loop
+
+
+def available() -> float:
+    """[bytes] of a device, or of the machine where the CPU is the device."""
+    stats = jax.local_devices()[0].memory_stats() or {}
+    return stats.get("bytes_limit") or os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+def check(loop: Loop, program: Any) -> None:
+    """Raise MemoryError, with how many learners would fit, where the compiled program does not."""
+    need, have = loop.memory(program), available()
+    if need > have:
+        learners = len(loop.seeds)
+        raise MemoryError(
+            f"num_seeds={learners}: the program would take {need / 1e9:,.1f} GB of a device "
+            f"and there are {have / 1e9:,.1f} GB; about {int(learners * have / need)} would fit"
+        )
+
+
+def replay(run: Run) -> str:
+    """The size of the replay memories, in one line.
+
+    Raises:
+        UsageError: where it is more than the machine has.
+    """
+    replay, learners = run.agent.replay, len(run.seeds)
+    each = replay.nbytes(run.agent.spec)
+    have = available()
+    if each * learners > have:
+        fits = int(0.5 * have / learners / (each / replay.capacity))
+        raise UsageError(
+            f"replay.capacity={replay.capacity}: {learners} learners would take "
+            f"{each * learners / 1e9:,.1f} GB and there are {have / 1e9:,.1f} GB; {fits} would fit"
+            + (f", or num_seeds={int(have // each)}" if have > each else "")
+        )
+    kept = "in checkpoints too" if run.config.checkpoint_replay else "not in checkpoints"
+    return (
+        f"replay memory: {replay.capacity:,} decisions, {each / 1e6:,.1f} MB a learner, "
+        f"{each * learners / 1e6:,.1f} MB in all, {kept}"
+    )

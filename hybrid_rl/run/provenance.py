@@ -1,0 +1,61 @@
+"""Where numbers come from: versions, commit, device; for summary.json."""
+
+import os
+import platform
+import subprocess
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import jax
+
+from hybrid_rl import __version__
+
+PACKAGES = ("jax", "jaxlib", "mujoco", "mujoco-mjx", "flax", "optax")
+
+
+def versions() -> dict[str, str | None]:
+    """Python's and each package's version; None where it is not installed."""
+    found: dict[str, str | None] = {
+        "hybrid_rl": __version__,
+        "python": platform.python_version(),
+    }
+    for name in PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = None
+    return found
+
+
+def git_commit() -> str | None:
+    """The commit of the checkout that this package runs from; None outside a checkout."""
+    checkout = Path(__file__).resolve().parents[2]
+    if not (checkout / ".git").exists():
+        return None
+    command = ["git", "-C", str(checkout), "rev-parse", "HEAD"]
+    clean = {name: text for name, text in os.environ.items() if not name.startswith("GIT_")}
+    try:
+        done = subprocess.run(command, env=clean, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return done.stdout.strip()
+
+
+def device() -> str:
+    """What JAX computes on: "gpu: NVIDIA H100" or "cpu: AMD EPYC 7B13, 8 threads"."""
+    devices = jax.devices()
+    first = devices[0]
+    if first.platform == "cpu":
+        return f"cpu: {_processor()}, {os.cpu_count()} threads"
+    several = f"{len(devices)} x " if len(devices) > 1 else ""
+    return f"{first.platform}: {several}{first.device_kind}"
+
+
+def _processor() -> str:
+    """The processor's name, as its maker writes it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()

@@ -1,0 +1,93 @@
+"""From the metrics of decisions to rows of metrics.jsonl.
+
+`metrics` are arrays [rounds, S], `episode/...` [rounds, S, E]; a round is one decision in each
+of E worlds of each of S learners.
+"""
+
+from collections.abc import Container, Mapping
+from typing import Any
+
+import numpy as np
+
+Metrics = dict[str, np.ndarray]
+Row = dict[str, Any]
+
+
+class Gathered:
+    """The metrics since the last row of means; they come in parts and are averaged as one."""
+
+    def __init__(self) -> None:
+        self._parts: list[Metrics] = []
+
+    def add(self, metrics: Metrics) -> None:
+        """Append the metrics of the next rounds; `episode/...` is left out."""
+        kept = {name: m for name, m in metrics.items() if not name.startswith("episode/")}
+        self._parts.append(kept)
+
+    def take(self) -> Metrics:
+        """All of it [rounds, S]; nothing is left."""
+        parts, self._parts = self._parts, []
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+    def pack(self) -> tuple[list[str], np.ndarray | None]:
+        """Names [M] and one array [M, rounds, S], for a checkpoint; None where there is nothing."""
+        if not self._parts:
+            return [], None
+        whole = self.take()
+        self._parts = [whole]
+        return list(whole), np.stack([np.asarray(m, np.float32) for m in whole.values()])
+
+    def unpack(self, names: list[str], array: np.ndarray) -> None:
+        """Take up what `pack` gave."""
+        self._parts = [dict(zip(names, np.asarray(array), strict=True))]
+
+
+def infinite(metrics: Metrics, start: int, worlds: int) -> dict[int, tuple[int, str]]:
+    """Learner -> (step, name) of its earliest infinite entry; the metrics begin after `start`."""
+    found: dict[int, tuple[int, str]] = {}
+    for name, values in metrics.items():
+        if name.startswith("episode/"):
+            continue
+        for i, s in np.argwhere(np.isinf(values)):
+            step = start + (int(i) + 1) * worlds
+            if s not in found or step < found[s][0]:
+                found[int(s)] = step, name
+    return found
+
+
+def episodes(
+    metrics: Metrics, seeds: tuple[int, ...], start: int, worlds: int, ended: Mapping[int, int]
+) -> list[Row]:
+    """A row per episode that ended in the rounds after `start`.
+
+    ended: learner -> the step at which it diverged; from there on it has no rows.
+    """
+    return [
+        {
+            "step": step,
+            "seed": seeds[s],
+            "train/return": metrics["episode/return"][i, s, e],
+            "train/length": int(metrics["episode/length"][i, s, e]),
+        }
+        for i, s, e in np.argwhere(metrics["episode/done"])
+        if (step := start + (int(i) + 1) * worlds) < ended.get(int(s), np.inf)
+    ]
+
+
+def means(
+    metrics: Metrics, seeds: tuple[int, ...], end: int, ended: Container[int] = ()
+) -> list[Row]:
+    """A row of means per seed; NaN is left out, and a name with nothing else.
+
+    ended: learners that diverged, which have no row.
+    """
+    found = []
+    for s, seed in enumerate(seeds):
+        if s in ended:
+            continue
+        row: Row = {"step": end, "seed": seed}
+        for name, values in metrics.items():
+            known = values[:, s][~np.isnan(values[:, s])]
+            row |= {name: known.mean(dtype=np.float64)} if known.size else {}
+        found.append(row)
+    return found

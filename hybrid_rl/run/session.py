@@ -1,0 +1,296 @@
+"""The host's side of a run: decide, log, evaluate, save, until the end or a signal.
+
+Rows of means end at the multiples of `log_every`, `eval_every` and `checkpoint_every`. The
+compiled program is called for a second or two at a time, and a run can stop between two calls:
+its checkpoint has the metrics since the last row, so that a run that was stopped and resumed
+has the rows of one that was not.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from time import monotonic, perf_counter
+from types import MappingProxyType
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from hybrid_rl.errors import DivergenceError
+from hybrid_rl.run import divergence, memory, provenance, rows
+from hybrid_rl.run.divergence import Diverged
+from hybrid_rl.run.evaluations import Evaluations
+from hybrid_rl.run.log import RunLog
+from hybrid_rl.run.pace import Pace, Speed
+from hybrid_rl.run.progress import Progress, clock, rate
+from hybrid_rl.run.schedule import Schedule
+from hybrid_rl.run.store import Store
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import Controller, Params
+
+NOTHING: Mapping[str, float] = MappingProxyType({})
+SURE = 100  # decisions with learning after which the time of the whole run is estimated
+
+
+@dataclass
+class Session:
+    """One run on its way: `begin` or `resume`, then `compile`, then `run`."""
+
+    loop: Loop
+    controllers: Mapping[str, Controller]  # mode -> controller without exploration
+    schedule: Schedule
+    log: RunLog
+    progress: Progress
+    state: Any = None  # AgentState [S, ...], once begun
+    step: int = 0  # decisions of each learner
+    before_s: float = 0.0  # [s] in earlier sessions
+    began: float = field(default_factory=monotonic)
+    returns: list[list[tuple[int, float]]] = field(default_factory=list)  # per seed: (step, return)
+    final_eval: list[float | None] = field(default_factory=list)  # per seed: the latest, mode full
+    learning: Speed = field(default_factory=Speed)  # over all sessions of the run
+    stop: int | None = None  # the signal that asked for an end
+    unevaluated: bool = False  # an evaluation is due at this step
+    saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
+    gathered: rows.Gathered = field(default_factory=rows.Gathered)  # since the last row of means
+    recent: Speed = field(default_factory=Speed)  # since then
+    trial: Speed | None = field(default_factory=Speed)  # until the whole run's time is estimated
+    pace: Pace = field(default_factory=Pace)
+    program: Any = None  # compiled
+    evaluations: Evaluations | None = None  # compiled
+
+    def __post_init__(self) -> None:
+        """What the parts above make."""
+        folder = self.log.run_dir / "checkpoints"
+        self.store = Store(folder, self.loop, self.schedule.checkpoint_replay)
+        self.diverged = Diverged(self.loop, self.store)
+
+    @property
+    def wall_s(self) -> float:
+        """[s] over all sessions of the run."""
+        return self.before_s + monotonic() - self.began
+
+    @property
+    def finished(self) -> bool:
+        """Whether all decisions are made, and evaluated."""
+        return self.step >= self.schedule.total_steps and not self.unevaluated
+
+    def begin(self) -> None:
+        """Start from the first state."""
+        with self.progress.doing("starting"):
+            self.state = self.loop.init()
+        self.returns = [[] for _ in self.loop.seeds]
+        self.final_eval = [None for _ in self.loop.seeds]
+
+    def resume(self) -> None:
+        """Start from the newest sound checkpoint.
+
+        Raises:
+            CheckpointError: where there is none, or it is of another run.
+        """
+        self.state, self.gathered, meta, notes = self.store.restore()
+        self.step = self.progress.step = meta["step"]
+        if not self.schedule.checkpoint_replay:
+            self.loop.agent = replace(self.loop.agent, first_update=self.step)
+            notes = [*notes, "no replay memory in checkpoints: it goes on, but not bit for bit"]
+        self.before_s = meta["wall_s"]
+        self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
+        self.final_eval = meta.get("final_eval", [None for _ in self.loop.seeds])
+        self.learning = Speed(**meta.get("learning", {}))
+        self.unevaluated = meta.get("unevaluated", False)
+        self.saved = self.step, self.unevaluated
+        self.diverged.resume(meta.get("diverged", []))
+        for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
+            self.progress.note(note)
+        self.progress.note(f"going on from step {self.step:,}")
+
+    def compile(self) -> None:
+        """Make all programs that `run` calls.
+
+        Raises:
+            MemoryError: where a device has too little memory for the learners.
+        """
+        if self.finished:
+            return
+        plan, random = self.schedule, self.loop.agent.random_steps
+        if plan.total_steps <= random:
+            decisions = f"all {plan.total_steps:,} decisions are random"
+            self.progress.note(f"{decisions}: random_steps={random}")
+        self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle}")
+        with self.progress.doing("compiling"):
+            import orbax.checkpoint  # noqa: F401  # 1 s, which a checkpoint at a signal has not
+
+            self.program = self.loop.compile(self.state)
+            memory.check(self.loop, self.program)
+            began = perf_counter()
+            modes = {mode: self.controllers[mode] for mode in plan.eval_modes}
+            params = self._params()
+            self.evaluations = Evaluations(self.loop, modes, plan.eval_episodes, params)
+            self.loop.compile_s += perf_counter() - began
+        self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
+
+    def ask(self, number: int) -> None:
+        """Signal `number` asks for an end: with a checkpoint, after the call that is running."""
+        self.stop = number
+        self.progress.note("stopping, with a checkpoint ...")
+
+    def run(self) -> None:
+        """Advance to the end or until `ask`; the last state is always saved.
+
+        Raises:
+            DivergenceError: where the last learner reached NaN or infinity.
+            CheckpointError: where a checkpoint could not be written.
+        """
+        plan, worlds = self.schedule, self.loop.agent.num_envs
+        while not self.finished and self.stop is None:
+            if not self.unevaluated:
+                self._advance()
+            if self.unevaluated:
+                self._evaluate()
+            if not self.unevaluated and plan.due(plan.checkpoint_every, self.step, worlds):
+                self._save()
+        if self.saved != (self.step, self.unevaluated):
+            self._save()
+
+    def _advance(self) -> None:
+        """A call of the program, up to the next mark at most, and its rows."""
+        plan, worlds, start = self.schedule, self.loop.agent.num_envs, self.step
+        changes = self.loop.agent.changes()
+        rounds = self.pace.rounds(-(-(plan.until(start, changes) - start) // worlds))
+        began = perf_counter()
+        self.state, metrics = self.program(self.state, jnp.int32(start), jnp.int32(rounds))
+        metrics = {name: np.asarray(m)[:rounds] for name, m in metrics.items()}
+        took = perf_counter() - began
+        self.step += rounds * worlds
+        self.pace.took(rounds, took)
+        if any(start < change <= self.step for change in changes):
+            self.pace = Pace()
+        if start >= max(changes):
+            self._count(rounds * worlds * self.diverged.left, took)
+        self._keep(metrics, start)
+        due = plan.due(plan.eval_every, self.step, worlds)
+        self.unevaluated = bool(plan.eval_modes) and due
+        self._show(say=False if self.unevaluated else None)
+
+    def _count(self, decisions: int, seconds: float) -> None:
+        """Measure the speed of learning; say once how long the whole run takes."""
+        self.recent.add(decisions, seconds)
+        self.learning.add(decisions, seconds)
+        if self.trial is not None:
+            self.trial.add(decisions, seconds)
+            if self.trial.decisions >= SURE * self.diverged.left and self.trial.rate:
+                left = (self.schedule.total_steps - self.step) * self.diverged.left
+                whole = clock(self.wall_s + left / self.trial.rate)
+                speed, self.trial = rate(self.trial.rate), None
+                self.progress.note(
+                    f"about {whole} for the whole run at {speed} decisions/s, "
+                    "without the evaluations to come"
+                )
+
+    def _keep(self, metrics: rows.Metrics, start: int) -> None:
+        """Write the rows that follow from the rounds after `start`."""
+        seeds, worlds = self.loop.seeds, self.loop.agent.num_envs
+        infinite = rows.infinite(metrics, start, worlds)
+        ended = self._end(infinite)
+        episodes = rows.episodes(metrics, seeds, start, worlds, self.diverged.steps)
+        for row in episodes:
+            pair = (row["step"], float(row["train/return"]))
+            self.returns[seeds.index(row["seed"])].append(pair)
+        self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["seed"])))
+        self._go_on(bool(infinite))
+        self.gathered.add(metrics)
+        if self.schedule.row_due(self.step, worlds):
+            means = rows.means(self.gathered.take(), seeds, self.step, self.diverged.ends)
+            perf = {"perf/compile_s": self.loop.compile_s} | self._speed()
+            self._write([row | perf for row in means])
+            self.recent = Speed()
+
+    def _speed(self) -> dict[str, float]:
+        """Decisions of all learners per second since the last row; empty before they learn."""
+        speed = self.recent.rate
+        return {} if speed is None else {"perf/env_steps_per_s": speed}
+
+    def _params(self) -> Params:
+        """What all learners know [S, ...]."""
+        return jax.vmap(self.loop.agent.params)(self.state)
+
+    def _evaluate(self) -> None:
+        """The outcomes of every evaluated mode, unless a signal comes."""
+        assert self.evaluations is not None
+        with self.progress.doing("evaluating"):
+            found = self.evaluations(self._params(), lambda: self.stop is not None)
+        if found is None:
+            return
+        self.unevaluated = False
+        infinite = {
+            s: (self.step, name)
+            for s, outcome in enumerate(found)
+            for name in reversed(outcome)  # the first of them stays
+            if not np.isfinite(outcome[name])
+        }
+        ended = self._end(infinite)
+        left = {s: found[s] for s in range(len(found)) if s not in self.diverged.ends}
+        place = [{"step": self.step, "seed": seed} for seed in self.loop.seeds]
+        rows_left = [place[s] | outcome for s, outcome in left.items()]
+        self._write(sorted(rows_left + ended, key=lambda row: row["seed"]))
+        self._go_on(bool(ended))
+        for s, outcome in left.items():
+            self.final_eval[s] = outcome.get("eval/return")
+        means = {n: float(np.mean([each[n] for each in left.values()])) for n in found[0]}
+        self._show(means, say=True)
+
+    def _end(self, found: Mapping[int, tuple[int, str]]) -> list[rows.Row]:
+        """The rows of learners that diverged just now; found: learner -> (step, quantity)."""
+        new = self.diverged.add(found)
+        if left := self.diverged.left:  # else the error says it
+            for end in new:
+                self.progress.note(divergence.said(end, left))
+        return [
+            {"step": end["step"], "seed": end["seed"], "diverged": end["quantity"]} for end in new
+        ]
+
+    def _go_on(self, mend: bool) -> None:
+        """Raise DivergenceError where no learner is left; mend those that are not sound."""
+        if not self.diverged.left:
+            ends = list(self.diverged.ends.values())
+            raise DivergenceError(divergence.line(ends, 0, self.store.newest))
+        if mend:
+            self.state = self.diverged.mended(self.state)
+
+    def _save(self) -> None:
+        """A checkpoint of all that the run needs to go on."""
+        self._write(self._end(divergence.unsound(self.state.learners, self.step)))
+        self._go_on(True)
+        meta = {
+            "wall_s": self.wall_s,
+            "metrics_bytes": self.log.flush(),
+            "returns": self.returns,
+            "final_eval": self.final_eval,
+            "learning": asdict(self.learning),
+            "unevaluated": self.unevaluated,
+            "diverged": list(self.diverged.ends.values()),
+        }
+        with self.progress.doing("saving"):
+            self.store.save(self.step, self.state, self.gathered, meta)
+        self.saved = self.step, self.unevaluated
+
+    def _write(self, found: list[rows.Row]) -> None:
+        self.log.write([{**row, "wall_s": self.wall_s} for row in found])
+
+    def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:
+        newest = [p[-1][1] for s, p in enumerate(self.returns) if p and s not in self.diverged.ends]
+        shown = {"train/return": float(np.mean(newest))} if newest else {}
+        self.progress.update(self.step, {**shown, **self._speed(), **scalars}, say)
+
+    def final_returns(self) -> list[float | None]:
+        """Per seed the mean training return over the last tenth; None where it diverged."""
+        tail = self.step - 0.1 * self.schedule.total_steps
+        found = []
+        for s, pairs in enumerate(self.returns):
+            values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
+            sound = bool(values) and s not in self.diverged.ends
+            found.append(float(np.mean(values)) if sound else None)
+        return found
+
+    def final_evaluations(self) -> list[float | None]:
+        """Per seed the last evaluation of mode full; None where it diverged."""
+        return [v if s not in self.diverged.ends else None for s, v in enumerate(self.final_eval)]

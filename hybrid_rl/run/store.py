@@ -1,0 +1,95 @@
+"""The checkpoints of a run: the learners' state, and the metrics since the last row."""
+
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from hybrid_rl.run import checkpoint
+from hybrid_rl.run.rows import Gathered
+from hybrid_rl.training.loop import Loop
+
+
+@dataclass
+class Store:
+    """Checkpoints of `loop` in `folder`; replay: whether they hold the replay memory."""
+
+    folder: Path
+    loop: Loop
+    replay: bool
+    newest: int | None = None  # step of the checkpoint that was written or read last
+    known: set[int] = field(default_factory=set)  # checkpoints that this session may delete
+
+    def save(self, step: int, state: Any, gathered: Gathered, meta: dict) -> None:
+        """A checkpoint of all that the run needs to go on.
+
+        Raises:
+            CheckpointError: where it could not be written.
+        """
+        names, array = gathered.pack()
+        leaves = {part.name: getattr(state, part.name) for part in fields(state)}
+        leaves |= {} if self.replay else {"memory": None}
+        leaves |= {} if array is None else {"gathered": array}
+        shape = [] if array is None else list(array.shape)
+        here = {"step": step, "capacity": self.loop.agent.replay.capacity}
+        here |= {"gathered": {"names": names, "shape": shape}}
+        checkpoint.save(self.folder, step, leaves, here | meta, known=self.known)
+        self.known.add(step)
+        self.newest = step
+
+    def restore(self) -> tuple[Any, Gathered, dict, list[str]]:
+        """(state, metrics since the last row, meta, notes) of the newest sound checkpoint.
+
+        Where checkpoints have no replay memory it is empty.
+
+        Raises:
+            CheckpointError: where there is none, or it is of another run.
+        """
+        self.known = set(checkpoint.steps(self.folder))
+        like = self._like().replace(memory=None)
+        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, part=True)
+        memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
+        gathered, packed = Gathered(), meta.get("gathered", {})
+        if packed.get("names"):
+            array = jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)
+            gathered.unpack(packed["names"], self._read({"gathered": array})["gathered"])
+        return self.loop.place(state.replace(memory=memory)), gathered, meta, notes
+
+    def learner(self, number: int) -> Any:
+        """AgentState [...] of one learner in the newest checkpoint, or else its first one."""
+        key = jax.random.key(self.loop.seeds[number])
+        if self.newest is None:
+            return jax.jit(self.loop.agent.init)(key)
+        like = self._like() if self.replay else self._like().replace(memory=None)
+        one = jax.tree.map(lambda rows: rows[number], self._read(like))
+        if self.replay:
+            return one
+        return one.replace(memory=jax.jit(self.loop.agent.init)(key).memory)
+
+    def _like(self) -> Any:
+        """Shapes of the state [S, ...]."""
+        return jax.eval_shape(self.loop.init)
+
+    def _read(self, like: Any) -> Any:
+        """A part of the newest checkpoint."""
+        return checkpoint.restore(self.folder, like, self.newest, part=True)[1]
+
+    def _memory(self, capacity: int) -> Any:
+        """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
+
+        A longer run has a larger one. What was bounded by the run's length has not come round
+        yet, so that new rows at its end are all that it takes.
+        """
+        agent = self.loop.agent
+        then = replace(agent, replay=replace(agent.replay, capacity=capacity))
+        like = jax.eval_shape(replace(self.loop, agent=then).init)
+        memory = self._read(like.replace(env=None, control=None, learners=None, key=None)).memory
+
+        def grown(old: jax.Array, now: Any) -> jax.Array:
+            ends = zip(old.shape, now.shape, strict=True)
+            return jnp.pad(old, [(0, size - filled) for filled, size in ends])
+
+        return jax.tree.map(grown, memory, self._like().memory)

@@ -1,0 +1,32 @@
+"""p(s) ~ exp(c UCB(s)), UCB = mean + kappa std of a belief (thesis eq. 6.20-6.21)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from jax import Array
+
+from hybrid_rl.types import Params
+
+
+@dataclass(frozen=True)
+class UpperConfidenceBound:
+    """Where phi may be large.
+
+    Raises:
+        ValueError: for constants that are not positive.
+    """
+
+    belief: Any
+    kappa: float = 2.0
+    sharpness: float = 10.0  # c [1/phi]
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("kappa", "sharpness"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"target.{name}={getattr(self, name)}: must be above 0")
+
+    def log_density(self, params: Params, s: Array) -> Array:
+        """log p [] at s [v], up to a constant."""
+        mean, std = self.belief.predict(params.belief, s)
+        return self.sharpness * (mean + self.kappa * std)

@@ -1,0 +1,156 @@
+"""Ctrl-C and SIGTERM, from the first moment of a command on; real processes and real signals."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from tiny import TINY
+
+from hybrid_rl.cli import interrupt
+
+pytestmark = pytest.mark.xdist_group("interrupt")
+ROOT = Path(__file__).parents[2]
+WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+BEGIN = """
+import signal, sys, time
+from hybrid_rl import interrupt
+interrupt.install()
+interrupt.PATIENCE = 0.2
+def say(text):
+    print(text, flush=True)
+"""
+
+
+def start(*arguments):
+    pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+    return subprocess.Popen([sys.executable, *arguments], cwd=ROOT, text=True, **pipes)
+
+
+def ended(process, number):
+    """What was said on stdout, of a process that ended by `number`, with one line on stderr."""
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (128 + number, f"hybrid_rl: {WORDS[number]}\n"), out
+    return out
+
+
+def listens(process):
+    """Whether the process has a handler of SIGTERM, which Python itself does not set."""
+    status = Path(f"/proc/{process.pid}/status").read_text()
+    caught = int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16)
+    return bool(caught >> (signal.SIGTERM - 1) & 1)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+@pytest.mark.parametrize(
+    ("command", "number", "after"),
+    [
+        ("train task=pendulum algo=sac", signal.SIGINT, 0.0),
+        ("train task=pendulum algo=sac", signal.SIGTERM, 0.3),
+        ("train task=pendulum algo=sac", signal.SIGINT, 0.6),
+        ("evaluate run=nowhere", signal.SIGINT, 0.0),
+        ("figures runs=nowhere", signal.SIGTERM, 0.0),
+    ],
+)
+def test_a_signal_during_imports_is_one_line(command, number, after, tmp_path):
+    name, *arguments = command.split()
+    more = [f"run_dir={tmp_path}"] if name == "train" else []
+    process = start("-m", f"hybrid_rl.{name}", *arguments, *more)
+    while not listens(process):
+        time.sleep(0.001)
+    time.sleep(after)
+    process.send_signal(number)
+    assert ended(process, number) == ""
+
+
+def test_a_signal_during_compiling_ends_the_run_at_once(tmp_path):
+    off = ["compile_cache=null", f"run_dir={tmp_path}", "policy.hidden=[24,24]"]
+    process = start("-m", "hybrid_rl.train", *TINY, "algo=hybrid_stochastic", *off)
+    while "compiling on" not in process.stdout.readline():
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    assert "compiled" not in ended(process, signal.SIGINT)
+    assert not (tmp_path / "checkpoints").exists()
+
+
+def press(code, *numbers):
+    """A program that says "ready" gets signals, each after a line of its own."""
+    process = start("-c", BEGIN + code)
+    for number in numbers:
+        assert process.stdout.readline()
+        process.send_signal(number)
+    return process
+
+
+def test_a_run_is_asked_once_and_a_second_ctrl_c_ends_it():
+    code = "with interrupt.answered(say):\n    say('ready')\n    time.sleep(60)\n"
+    process = press(code, signal.SIGINT, signal.SIGINT)  # the second one after it said 2
+    ended(process, signal.SIGINT)
+
+
+def test_after_sigterm_a_second_one_changes_nothing():
+    code = (
+        "with interrupt.answered(say):\n    say('ready')\n    sys.stdin.readline()\n"
+        "    time.sleep(0.2)\n    say('saved')\n"
+    )
+    process = press(code, signal.SIGTERM, signal.SIGTERM)
+    assert process.communicate("\n")[0] == "saved\n"
+    assert process.returncode == 0
+
+
+@pytest.mark.parametrize("number", WORDS)
+def test_a_job_cleans_up(number):
+    code = """
+from hybrid_rl import command
+def job():
+    try:
+        say('ready')
+        time.sleep(60)
+    finally:
+        say('clean')
+command.guarded(job)
+"""
+    assert ended(press(code, number), number) == "clean\n"
+
+
+@pytest.mark.parametrize(
+    "swallow",
+    [
+        """while True:
+        try:
+            say('ready')
+            time.sleep(60)
+        except BaseException: pass""",
+        """class Ends:
+        def __del__(self):
+            say('ready')
+            time.sleep(60)
+    Ends()""",
+    ],
+    ids=["caught", "in a destructor"],
+)
+def test_a_swallowed_interrupt_ends_the_process_all_the_same(swallow):
+    process = press(f"with interrupt.tidily():\n    {swallow}\n", signal.SIGINT)
+    ended(process, signal.SIGINT)
+
+
+def test_a_notebook_is_asked_too_and_keeps_its_handlers():
+    asked, before = [], signal.getsignal(signal.SIGINT)
+
+    def job():
+        with interrupt.answered(asked.append):
+            os.kill(os.getpid(), signal.SIGINT)
+            while not asked:
+                time.sleep(0.001)
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1)
+
+    with pytest.raises(KeyboardInterrupt):
+        job()
+    assert asked == [signal.SIGINT]
+    assert signal.getsignal(signal.SIGINT) is before
+    assert not interrupt.installed()

@@ -1,0 +1,120 @@
+"""A sweep: checked first, all of it run, a table at the end."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from tiny import TINY, call_train
+
+pytestmark = pytest.mark.xdist_group("sweep")
+SHORT = [*TINY, "algo=sac", "total_steps=200", "eval_every=200", "checkpoint_every=200"]
+
+
+@pytest.fixture(autouse=True)
+def alone(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def table(folder):
+    """What jobs.json of the only sweep says."""
+    (file,) = (folder / "runs" / "sweeps").glob("*/jobs.json")
+    return json.loads(file.read_text())
+
+
+def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
+    rates = "policy_learner.policy_learning_rate=1e30,3e-4"
+    assert call_train("-m", *SHORT, rates) == 1
+    out, err = capfd.readouterr()
+    first, second = table(tmp_path)
+    assert (first["code"], second["code"]) == (1, 0)
+    assert first["overrides"].endswith("learning_rate=1e+30")
+    assert "sac/critic_loss is not finite" in first["line"]
+    assert second["line"].startswith(("training return -", "evaluation -"))
+    assert json.loads((tmp_path / second["run_dir"] / "summary.json").read_text())["finished"]
+    assert (tmp_path / first["run_dir"] / "config.yaml").exists()
+    assert "hybrid_rl: job 0: seed 0, step" in err
+    shown = out.splitlines()[-4:]
+    assert shown[0].split() == ["job", "overrides", "run", "folder", "result"]
+    assert "failed (1): seed 0" in shown[1]
+    assert first["run_dir"] in shown[1]
+    assert second["run_dir"] in shown[2]
+    assert shown[3] == "1 of 2 jobs done; not 0"
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("policy_learner.tau=0.005,3", "tau=3: must lie in (0, 1] (job 1: policy_learner.tau=3)"),
+        ("algo=sac,scal", "algo=scal: unknown; choose one of"),
+        ("algo=sac,nn_mppi adjoint_planner.horizon=3,4", "sac, nn_mppi do not use it"),
+        ("task=pendulum,halfcheetah algo=kle3", "task=halfcheetah: kle3 needs a world that is a"),
+        ("seed=0,1 total_step=3", "total_step: unknown key; did you mean total_steps?"),
+        ("+sed=0,1", "sed: unknown key; did you mean seed?"),
+    ],
+)
+@pytest.mark.parametrize("launcher", ["basic", "submitit_local"])
+def test_a_job_that_cannot_run_is_found_before_the_first(tmp_path, capfd, given, words, launcher):
+    assert call_train("-m", *TINY, *given.split(), f"hydra/launcher={launcher}") == 2
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert words in err
+    assert err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):
+    line = ["-m", *SHORT, "seed=0,1", "run_dir=X"]
+    assert call_train(*line) == 0
+    for number in (0, 1):
+        summary = json.loads((tmp_path / "X" / str(number) / "summary.json").read_text())
+        assert summary["seeds"] == [number]
+    capfd.readouterr()
+    assert call_train(*line) == 2
+    assert "run_dir=X/0: holds a run already" in capfd.readouterr().err
+
+
+def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path, capfd):
+    """One of them ends without a result, as where the system kills it."""
+    (tmp_path / "fatal.py").write_text(
+        "import os, signal\n"
+        "from hybrid_rl.envs.analytic.pendulum import Pendulum\n"
+        "class Fatal(Pendulum):\n"
+        "    def reset(self, key):\n"
+        "        os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    world = "env._target_=hybrid_rl.envs.analytic.pendulum.Pendulum,fatal.Fatal"
+    line = [*SHORT, world, "hydra/launcher=submitit_local", "hydra.launcher.timeout_min=5"]
+    env = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    whole = [sys.executable, "-m", "hybrid_rl.train", "-m", *line]
+    done = subprocess.run(whole, env=env, capture_output=True, text=True)
+    assert done.returncode == 1, done.stderr
+    for number in (0, 1):
+        assert f"job {number} sent: local " in done.stdout
+        assert f"job {number} begins: log runs/sweeps/" in done.stdout
+    assert "job 0 ends: training return" in done.stdout or "job 0 ends: eval" in done.stdout
+    assert "job 1 ends: lost: " in done.stdout
+    assert [row["code"] for row in table(tmp_path)] == [0, 1]
+
+
+def test_an_interrupt_ends_all_of_a_sweep(tmp_path):
+    line = [*TINY, "algo=sac", "total_steps=100000000", "seed=0,1"]
+    whole = [sys.executable, "-m", "hybrid_rl.train", "-m", *line]
+    process = subprocess.Popen(whole, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        until = time.monotonic() + 120
+        while not list(tmp_path.glob("runs/pendulum/sac/*/checkpoints/*")):
+            assert time.monotonic() < until
+            time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=120)
+    finally:
+        process.kill()
+    assert process.returncode == 130, err
+    assert "0 of 2 jobs done; not 0, 1" in out
+    assert "not run" in out
+    assert [row["code"] for row in table(tmp_path)] == [130, None]
+    assert len(list((tmp_path / "runs" / "pendulum" / "sac").iterdir())) == 1

@@ -1,0 +1,204 @@
+"""KL-E3: the adjoint controller around an equilibrium."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.controllers.adjoint import AdjointController
+from hybrid_rl.controllers.goal import GoalController
+from hybrid_rl.core import adjoint
+from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
+from hybrid_rl.models.exact import Exact
+from hybrid_rl.models.local_linear import LocalLinear
+from hybrid_rl.policies.regulator import Regulator
+from hybrid_rl.types import Params, Path, Spec
+
+WORLD = CartDoublePendulum()
+PI = Regulator(WORLD, (5.0, 50.0, 50.0, 20.0, 700.0, 700.0), (1600.0,))
+START = jnp.array([0.3, 0.02, -0.01, 0.0, 0.1, 0.0])
+
+
+@dataclass(frozen=True)
+class Right:
+    """J = cart position, summed; counts how often it looked."""
+
+    def begin(self, spec: Spec) -> Array:
+        """Not once."""
+        return jnp.zeros(())
+
+    def look(self, params: Any, memory: Array, x: Array, key: Array) -> Array:
+        """Once more."""
+        return memory + 1
+
+    def value(self, params: Any, memory: Array, path: Path) -> Array:
+        """J []."""
+        return jnp.sum(path.x[:, 0])
+
+
+KLE3 = AdjointController(
+    LocalLinear(WORLD), Right(), PI, 8, gain=5.0, noise_decay=None, lyapunov=PI
+)
+
+
+def follow(controller: Any, decisions: int, x: Array = START) -> tuple:
+    """Observations [T, 6], actions [T, 1], states and metrics [T] in the world."""
+
+    def decide(carry: tuple, key: Array) -> tuple:
+        x, state = carry
+        u, after, metrics = controller.act(Params(), state, x, key)
+        return (WORLD.dynamics(x, u), after), (x, u, after, metrics)
+
+    keys = jax.random.split(jax.random.key(0), decisions)
+    first = (x, controller.init(WORLD.spec))
+    return jax.jit(lambda: jax.lax.scan(decide, first, keys)[1])()
+
+
+def own(x: Array) -> Array:
+    """What the regulator does at x [T, 6]."""
+    return jax.vmap(lambda x: PI.mean((), x))(x)
+
+
+def test_correction_is_the_printed_formula() -> None:
+    """u = pi + R^-1 h' rho, with h the model's control directions over a decision."""
+    model = LocalLinear(WORLD)
+
+    def step(x: Array, u: Array) -> Array:
+        return model.step((), x, u)
+
+    path = adjoint.roll(step, lambda x: PI.mean((), x), START, jnp.zeros((8, 1)))
+    found = adjoint.adjoint(
+        step, lambda x: PI.mean((), x), lambda p: Right().value(None, None, p), path
+    )
+    h = jax.jacfwd(step, argnums=1)(START, path.u[0])
+    u = KLE3.act(Params(), KLE3.init(WORLD.spec), START, jax.random.key(0))[0]
+    np.testing.assert_allclose(u, path.u[0] + 5.0 * h.T @ found.costate[1], rtol=1e-5)
+
+
+def test_horizon_holds_its_corrections_around_the_measured_state() -> None:
+    """They are planned every 8 decisions, and added to the policy where the world really is."""
+    x, u, state, _ = follow(replace(KLE3, apply="horizon"), 16)
+    np.testing.assert_array_equal(state.count, np.arange(1, 17))
+    np.testing.assert_array_equal(state.memory, np.arange(1, 17))
+    for start in (0, 8):
+        plan = state.v[start]
+        held = u[start : start + 8] - own(x[start : start + 8])
+        np.testing.assert_allclose(held, plan, atol=1e-5)
+        assert np.abs(plan).max() > 1e-4
+
+
+def test_search_keeps_the_best_window() -> None:
+    """It earns no less than the whole plan, by the model, and is one part of it."""
+    searching = replace(KLE3, apply="search")
+    plans = {
+        name: c.act(Params(), c.init(WORLD.spec), START, jax.random.key(0))
+        for name, c in (("search", searching), ("horizon", replace(KLE3, apply="horizon")))
+    }
+    returns = {name: float(p[2]["planner/planned_return"]) for name, p in plans.items()}
+    assert returns["search"] >= returns["horizon"]
+    searched, whole = (np.asarray(plans[name][1].v) for name in ("search", "horizon"))
+    on = (searched != 0).ravel()
+    np.testing.assert_array_equal(searched[on], whole[on])
+    assert np.sum(np.diff(on.astype(int)) == 1) <= 1  # one window
+
+
+def test_search_earns_no_less_than_no_correction() -> None:
+    """Where every part of the plan overshoots, none of it acts."""
+
+    @dataclass(frozen=True)
+    class Gentle(Right):
+        """J = -sum (u - 0.1)^2."""
+
+        def value(self, params: Any, memory: Array, path: Path) -> Array:
+            """J []."""
+            return -jnp.sum((path.u - 0.1) ** 2)
+
+    for gain, acts in ((100.0, False), (0.5, True)):
+        wild = replace(
+            KLE3, objective=Gentle(), policy=None, lyapunov=None, gain=gain, apply="search"
+        )
+        _, state, metrics = wild.act(Params(), wild.init(WORLD.spec), START, jax.random.key(0))
+        assert np.asarray(state.v).any() == acts
+        wanted = 0 if acts else -8 * 0.1**2
+        assert float(metrics["planner/planned_return"]) == pytest.approx(wanted, abs=1e-6)
+
+
+def test_record_by_hand() -> None:
+    """V, its change under the policy, and the bound, of the exact model."""
+    controller = replace(KLE3, model=Exact(WORLD), horizon=3)
+    begin = controller.init(WORLD.spec)
+    _, state, metrics = jax.jit(controller.act)(Params(), begin, START, jax.random.key(0))
+    flow, mean = jax.jit(WORLD.dynamics), jax.jit(lambda x: PI.mean((), x))
+    P = PI.solve()[1]
+
+    def value(x: Array) -> float:
+        return float(np.float64(x) @ P @ np.float64(x))
+
+    after = flow(START, mean(START))
+    assert float(metrics["planner/lyapunov"]) == pytest.approx(value(START), rel=1e-4)
+    assert float(metrics["planner/lyapunov_rate"]) == pytest.approx(
+        value(after) - value(START), rel=0.02
+    )
+    assert value(after) < value(START)
+    x, apart = START, []
+    for v in state.v:
+        u = mean(x)
+        apart.append(value(flow(x, u + v)) - value(flow(x, u)))
+        x = flow(x, u + v)
+    assert float(metrics["planner/lyapunov_bound"]) == pytest.approx(max(apart), abs=0.02)
+
+
+def test_value_falls_under_the_regulator() -> None:
+    """V decreases at every decision of the exact world."""
+    quiet = replace(KLE3, gain=1e-9)
+    values = np.asarray(follow(quiet, 300)[3]["planner/lyapunov"])
+    assert (np.diff(values) < 0).all()
+
+
+def test_level_is_never_left() -> None:
+    """With the guard V stays below the level, and corrections still act; without, it does not."""
+    level = 100.0
+    free = replace(KLE3, model=Exact(WORLD), gain=10.0, horizon=3)
+    guarded = replace(free, level=level)
+    near = 0.2 * START
+    x, u, _, metrics = follow(guarded, 300, near)
+    handed = np.asarray(metrics["planner/handed_over"]) > 0
+    assert float(metrics["planner/lyapunov"][0]) < level
+    assert np.max(metrics["planner/lyapunov"]) <= level * (1 + 1e-4)
+    np.testing.assert_array_equal(u[handed], own(x)[handed])
+    assert 0 < handed.sum() < 300
+    assert np.nanmax(follow(free, 300, near)[3]["planner/lyapunov"]) > level
+
+
+def test_acquirer_goes_to_the_greatest_and_stays_for_a_while() -> None:
+    """Without a robot the action is the place; with one it is led there."""
+
+    @dataclass(frozen=True)
+    class Peak:
+        def log_density(self, params: Any, s: Array) -> Array:
+            return -jnp.abs(s[0] - 0.4)
+
+    there = GoalController(Peak(), low=(-1.0,), high=(3.0,))
+    u, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
+    assert float(goal.s[0]) == pytest.approx(0.4, abs=0.02)
+    assert float(u[0]) == pytest.approx((0.4 + 1) / 2 - 1, abs=0.01)
+    x, _, state, _ = follow(GoalController(Peak(), PI, every=50), 1500, 0 * START)
+    assert float(x[-1, 0]) == pytest.approx(0.4, abs=0.03)
+    assert len(np.unique(state.s)) == 30  # drawn anew every 50 decisions
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"apply": "later"}, "apply=later: choose first, horizon, search"),
+        ({"level": 1.0, "lyapunov": None}, "level=1.0: needs lyapunov and policy"),
+    ],
+)
+def test_bad_fields(change: dict, words: str) -> None:
+    """One line that names the field."""
+    with pytest.raises(ValueError, match=words):
+        replace(KLE3, **change)

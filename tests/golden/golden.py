@@ -1,0 +1,166 @@
+"""Metrics and parameters of every method and every experiment after a few dozen decisions.
+
+    python tests/golden/golden.py record   writes golden.json
+    python tests/golden/golden.py compare  compares with it, and ends with 1 where a number moved
+
+For a change that must not move a number: record before it, compare after it, on the same machine,
+since float32 rounds differently on another processor. Networks, batches and horizons are cut down;
+the method, the task and every other setting are those of the configuration.
+"""
+
+import hashlib
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+
+import conftest  # noqa: E402, F401  # the same flags of XLA as in the tests
+import jax  # noqa: E402
+import jax.numpy as jnp  # noqa: E402
+import numpy as np  # noqa: E402
+from hydra import compose, initialize_config_dir  # noqa: E402
+from omegaconf import DictConfig, ListConfig, OmegaConf  # noqa: E402
+from tiny import demonstrate  # noqa: E402
+
+from hybrid_rl import config  # noqa: E402
+from hybrid_rl.command import CONF, options  # noqa: E402
+from hybrid_rl.training.loop import Loop  # noqa: E402
+
+FILE = HERE / "golden.json"
+DECISIONS = 48
+MOST = {  # greatest value of a setting, wherever it stands
+    "batch_size": 4,
+    "samples": 6,
+    "horizon": 3,
+    "iterations": 2,
+    "updates": 2,
+    "capacity": 200,
+    "pretrain": 2,
+    "random_steps": 4,
+    "num_seeds": 1,
+    "total_steps": DECISIONS,
+    "members": 2,
+}
+
+
+def cases() -> dict[str, list[str]]:
+    """Name -> overrides: every method on the pendulum, every experiment by each of its methods."""
+    found = {algo: ["task=pendulum", f"algo={algo}"] for algo in options("algo")}
+    for experiment in options("experiment"):
+        with initialize_config_dir(str(CONF), version_base="1.3"):
+            whole = compose("train", [f"experiment={experiment}"], return_hydra_config=True)
+        compared = OmegaConf.select(whole, "hydra.sweeper.params.algo")
+        for algo in compared.split(",") if compared else [whole.algo]:
+            found[f"{experiment} {algo}"] = [f"experiment={experiment}", f"algo={algo}"]
+    return found
+
+
+def cut(node: Any) -> None:
+    """Cut the sizes down in place, here and below."""
+    for key, value in node.items():
+        if isinstance(value, DictConfig):
+            cut(value)
+        elif key == "hidden":
+            node[key] = [8 for _ in value]
+        elif key in MOST and isinstance(value, (int, float)):
+            node[key] = min(value, MOST[key])
+        elif isinstance(value, ListConfig):
+            for item in value:
+                if isinstance(item, DictConfig):
+                    cut(item)
+
+
+def digest(tree: Any) -> str:
+    """Of all leaves, whatever their order."""
+    each = [hashlib.sha1(np.asarray(leaf).tobytes()).hexdigest() for leaf in jax.tree.leaves(tree)]
+    return hashlib.sha1(" ".join(sorted(each)).encode()).hexdigest()[:12]
+
+
+def size(tree: Any) -> float:
+    """Sum of the absolute values of all leaves."""
+    leaves = [np.abs(np.asarray(leaf, np.float64)).sum() for leaf in jax.tree.leaves(tree)]
+    return float(np.sum(leaves))
+
+
+def outcome(overrides: list[str]) -> dict[str, Any]:
+    """What a method logged, learned, and does without exploration."""
+    whole = config.load(overrides)
+    with tempfile.TemporaryDirectory() as folder:
+        if whole.pretrain:
+            whole = config.load([*overrides, demonstrate(Path(folder), whole)])
+        OmegaConf.set_struct(whole, False)
+        cut(whole)
+        run = config.build(whole)
+        loop = Loop(run.agent, run.seeds, stride=DECISIONS)
+        state = loop.init()
+        program = loop.compile(state)
+        state, metrics = program(state, jnp.int32(0), jnp.int32(DECISIONS))
+        params = jax.tree.map(lambda leaf: leaf[0], jax.vmap(run.agent.params)(state))
+    found: dict[str, Any] = {}
+    for name, values in sorted(metrics.items()):
+        known = np.asarray(values)[~np.isnan(np.asarray(values, np.float32))]
+        found[name] = float(known.mean(dtype=np.float64)) if known.size else None
+    learned = {
+        name: [digest(value), size(value)]
+        for name, value in params._asdict().items()
+        if jax.tree.leaves(value)
+    }
+    obs = state.env.obs[0, 0]
+    actions = {}
+    for mode, controller in run.controllers.items():
+        first = controller.init(run.agent.spec)
+        u = jax.jit(controller.act)(params, first, obs, jax.random.key(7))[0]
+        actions[mode] = [float(value) for value in u]
+    return {"metrics": found, "learned": learned, "actions": actions}
+
+
+def moved(before: Any, after: Any, where: str = "") -> list[str]:
+    """What differs between two outcomes, a line each."""
+    if isinstance(before, dict):
+        lines = [f"{where}{key}: gone" for key in before.keys() - after.keys()]
+        lines += [f"{where}{key}: new" for key in after.keys() - before.keys()]
+        for key in before.keys() & after.keys():
+            lines += moved(before[key], after[key], f"{where}{key} ")
+        return sorted(lines)
+    if before == after:
+        return []
+    numbers = [
+        v[-1] if isinstance(v, list) and isinstance(v[0], str) else v for v in (before, after)
+    ]
+    try:
+        a, b = (np.asarray(each, float) for each in numbers)
+        apart = float(np.max(np.abs(a - b) / np.maximum(np.abs(a), 1e-12)))
+        return [f"{where}: {before} -> {after} (relative {apart:.1e})"]
+    except (TypeError, ValueError):
+        return [f"{where}: {before} -> {after}"]
+
+
+def main() -> None:
+    """The command; further words choose the cases that contain one of them."""
+    mode, words = sys.argv[1], sys.argv[2:]
+    known = json.loads(FILE.read_text()) if FILE.exists() else {}
+    wrong = 0
+    for name, overrides in cases().items():
+        if words and not any(word in name for word in words):
+            continue
+        now = outcome(overrides)
+        if mode == "record":
+            known[name] = now
+            FILE.write_text(json.dumps(known, indent=0, sort_keys=True) + "\n")
+            print(name, flush=True)
+            continue
+        lines = moved(known[name], now) if name in known else ["not recorded"]
+        wrong += bool(lines)
+        print(f"{name}: {'moved' if lines else 'same'}", *lines, sep="\n    ", flush=True)
+        jax.clear_caches()
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    os.chdir(HERE.parents[1])
+    main()

@@ -1,0 +1,101 @@
+"""Imagined data in a model whose every step is known."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.learners.mbpo import MBPO
+from hybrid_rl.types import Batch, Params, Spec
+
+B = 10
+
+
+@dataclass(frozen=True)
+class Counting:
+    """x' = x + 1, whatever is done; a reward of x; the episode ends at 2.5 and beyond."""
+
+    def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """One more."""
+        return x + 1
+
+    def outcome(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
+        """Reward and logit of the end."""
+        return x[0], jnp.where(x[0] > 2.5, 20.0, -20.0)
+
+    def mean(self, params: Any, x: Array) -> Array:
+        """What `sample` is around."""
+        return -x[:1]
+
+    def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
+        """-x, exactly."""
+        return -x[:1], jnp.zeros(())
+
+
+@dataclass(frozen=True)
+class Keeping:
+    """A learner that keeps its last batch."""
+
+    batch_size: int = B
+    updates: float = 1
+
+    batches = 1
+    early = False
+
+    def init(self, key: Array, spec: Spec) -> None:
+        """Nothing."""
+
+    def params(self, state: Any) -> dict[str, Any]:
+        """Nothing."""
+        return {}
+
+    def update(self, state: Any, params: Params, batch: Batch, key: Array) -> tuple[Any, dict]:
+        """The batch."""
+        return batch, {}
+
+
+def dreamt(start: Array, **given: Any) -> Batch:
+    """What the learner gets where all that was seen is at `start` [B] with reward -7."""
+    known: Any = Counting()
+    learner = MBPO(Keeping(), known, known, known, **given)
+    x, same = start[:, None], jnp.full(B, -7.0)
+    seen = Batch(x, x, same, 0 * same, 0 * same, 0 * x, x)
+    return jax.jit(learner.update)(None, Params(), seen, jax.random.key(3))[0]
+
+
+def test_a_share_is_imagined_and_the_rest_is_as_it_was() -> None:
+    """One step from what was seen: x -> x + 1, with the reward at x."""
+    batch = dreamt(jnp.zeros(B), share=0.6)
+    assert batch.obs.shape == (B, 1)
+    np.testing.assert_array_equal(batch.next_obs[:, 0], [1] * 6 + [0] * 4)
+    np.testing.assert_array_equal(batch.reward, [0] * 6 + [-7] * 4)
+    np.testing.assert_allclose(batch.terminated, 0, atol=1e-6)
+
+
+def test_branches_have_every_length_and_start_again_after_an_end() -> None:
+    """From 1: steps 1 -> 2 -> 3, where it ends, and once more from 1."""
+    batch = dreamt(jnp.ones(B), share=1.0, steps=4)
+    at = np.asarray(batch.obs[:, 0])
+    assert set(at) == {1.0, 2.0, 3.0}
+    np.testing.assert_array_equal(batch.reward, at)
+    np.testing.assert_array_equal(batch.action[:, 0], -at)
+    np.testing.assert_array_equal(batch.next_obs[:, 0], at + 1)
+    np.testing.assert_allclose(batch.terminated, at > 2.5, atol=1e-6)
+
+
+def test_nothing_imagined_is_the_learner_alone() -> None:
+    """Share 0 hands the batch through."""
+    np.testing.assert_array_equal(dreamt(jnp.ones(B), share=0.0).reward, -7)
+
+
+def test_bad_fields() -> None:
+    """One line that names the field."""
+    known: Any = Counting()
+    with pytest.raises(ValueError, match=r"imagining\.share=2"):
+        MBPO(Keeping(), known, known, known, share=2)
+    with pytest.raises(ValueError, match=r"imagining\.steps=0"):
+        MBPO(Keeping(), known, known, known, steps=0)

@@ -1,0 +1,237 @@
+"""A run folder belongs to one process; its config.yaml is read back or blamed in one line."""
+
+import errno
+import fcntl
+import json
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from tiny import TINY, call, call_train, contents, run
+
+from hybrid_rl import evaluate, render
+from hybrid_rl.cli import command
+from hybrid_rl.run import folder as run_folder
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from hybrid_rl import run_folder
+with run_folder.locked(Path(sys.argv[1]), "run_dir"):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+READERS = {"evaluate": evaluate.main, "render": render.main}
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    """A run of two seeds that is done."""
+    folder = tmp_path_factory.mktemp("trained") / "run"
+    run(folder, "algo=sac", "num_seeds=2", "total_steps=100", "checkpoint_every=50")
+    return folder
+
+
+@pytest.fixture
+def copied(trained, tmp_path):
+    """The same, to harm."""
+    return shutil.copytree(trained, tmp_path / "run")
+
+
+@pytest.fixture
+def holder(tmp_path):
+    """A process that has a folder, and the folder."""
+    folder = tmp_path / "held"
+    folder.mkdir()
+    line = [sys.executable, "-c", HOLD, str(folder)]
+    with subprocess.Popen(line, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "held\n"
+        yield process, folder
+        process.kill()
+
+
+def only_line(capfd):
+    """The one line on stderr."""
+    line = capfd.readouterr().err
+    assert line.startswith("hybrid_rl: ")
+    assert line.count("\n") == 1
+    return line
+
+
+def test_a_second_process_is_refused_and_names_the_first(holder, capfd):
+    process, folder = holder
+    before = contents(folder)
+    assert call_train(*TINY, f"run_dir={folder}") == 2
+    who = f"process {process.pid} on {socket.gethostname()}"
+    assert f"{folder}: is being written by {who}; wait for it, or stop it" in only_line(capfd)
+    assert contents(folder) == before
+
+
+def test_a_run_that_is_being_written_is_not_resumed(copied, trained, capfd):
+    with run_folder.locked(copied, "run_dir"):
+        assert call_train(f"resume={copied}", "total_steps=200") == 2
+        assert "is being written by process" in only_line(capfd)
+        (copied / "lock").unlink()
+        assert contents(copied) == contents(trained)
+
+
+def test_a_file_that_a_killed_process_left_is_no_lock(holder):
+    process, folder = holder
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert (folder / "lock").read_text().startswith(f"process {process.pid}")
+    with run_folder.locked(folder, "run_dir"):
+        pass
+    assert contents(folder) == {}
+
+
+def test_one_at_a_time_has_a_folder(tmp_path):
+    """The file is deleted at each end: the next holder must not lock a deleted one."""
+    code = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from hybrid_rl import run_folder\n"
+        "from hybrid_rl.config import UsageError\n"
+        "folder, done = Path(sys.argv[1]), 0\n"
+        "while done < 200:\n"
+        "    try:\n"
+        "        with run_folder.locked(folder, 'run_dir'):\n"
+        "            (folder / 'alone').mkdir()\n"  # raises where another one is inside
+        "            (folder / 'alone').rmdir()\n"
+        "            done += 1\n"
+        "    except UsageError:\n"
+        "        pass\n"
+    )
+    line = [sys.executable, "-c", code, str(tmp_path)]
+    several = [subprocess.Popen(line, stderr=subprocess.PIPE) for _ in range(2)]
+    for process in several:
+        assert (process.communicate()[1], process.returncode) == (b"", 0)
+    assert contents(tmp_path) == {}
+
+
+def test_a_disk_without_locks_is_one_line(tmp_path, monkeypatch, capsys):
+    def none(handle, how):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(fcntl, "flock", none)
+    with run_folder.locked(tmp_path, "run_dir"):
+        line = capsys.readouterr().out
+    assert line == f"{tmp_path}: no locks on this disk; let no other process write there\n"
+
+
+def test_two_fresh_runs_of_one_folder_do_not_both_begin(tmp_path):
+    """Begun at the same moment: one trains, the other ends with 2; each row is there once."""
+    overrides = [*TINY, "algo=sac", "total_steps=100", f"run_dir={tmp_path / 'run'}"]
+    line = [sys.executable, "-m", "hybrid_rl.train", *overrides]
+    both = [subprocess.Popen(line, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    ends = [(process.communicate()[1], process.returncode) for process in both]
+    (refused, code), (quiet, fine) = sorted(ends, key=lambda end: -end[1])
+    assert (code, fine, quiet) == (2, 0, "")
+    assert re.search("is being written by process|holds a run already", refused)
+    rows = (tmp_path / "run" / "metrics.jsonl").read_text().splitlines()
+    assert len(rows) == len(set(rows))
+
+
+def broken_yaml(path):
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join([lines[0], "]: [\n", *lines[1:]]))
+    return "config.yaml: line 2 is no YAML"
+
+
+def random_bytes(path):
+    path.write_bytes(bytes(range(160, 256)))
+    return "config.yaml: is no text in YAML"
+
+
+def empty(path):
+    path.write_text("")
+    return "config.yaml: is empty"
+
+
+def a_word(path):
+    path.write_text("hello\n")
+    return "config.yaml: "
+
+
+def without_env(path):
+    text = path.read_text()
+    path.write_text(re.sub(r"(?m)^env:\n(  .*\n)*", "", text))
+    return "config.yaml: lacks env"
+
+
+def without_physics(path):
+    path.write_text(re.sub(r"(?m)^physics:.*\n", "", path.read_text()))
+    return "config.yaml: lacks physics"
+
+
+def other_seeds(path):
+    path.write_text(path.read_text().replace("num_seeds: 2", "num_seeds: 7"))
+    return "config.yaml says 7 seeds, its checkpoint holds 2"
+
+
+def other_value(path):
+    path.write_text(path.read_text().replace("num_envs: 1", "num_envs: 0"))
+    return "config.yaml: num_envs=0: must be a whole number, 1 or more"
+
+
+def other_network(path):
+    path.write_text(re.sub(r"(?m)^(  +)- 16$", r"\1- 8", path.read_text()))
+    return "does not fit this run: learners.policy"
+
+
+def other_module(path):
+    path.write_text(path.read_text().replace("hybrid_rl.envs.analytic.pendulum.", "kettle."))
+    return "config.yaml: env._target_=kettle.Pendulum cannot be imported (No module named 'kettle')"
+
+
+HARM = [broken_yaml, random_bytes, empty, a_word, without_env, without_physics, other_seeds]
+HARM += [other_value, other_network, other_module]
+
+
+@pytest.mark.parametrize("harm", HARM, ids=[harm.__name__ for harm in HARM])
+def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
+    words = harm(copied / "config.yaml")
+    before = contents(copied)
+    lines = []
+    for name, main in READERS.items():
+        assert call(lambda main=main: command.guarded(main), f"run={copied}") == 2, name
+        lines.append(only_line(capfd))
+    assert call_train(f"resume={copied}", "total_steps=200") == 2
+    lines.append(only_line(capfd))
+    for line in lines:
+        assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
+        assert words in line
+    assert contents(copied) == before
+
+
+def test_an_evaluation_that_cannot_be_written_is_not_made(copied, monkeypatch, capfd):
+    def full(dir):
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(run_folder, "TemporaryFile", full)
+    monkeypatch.setattr(evaluate, "evaluate", lambda *_: pytest.fail("it was evaluated"))
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}") == 2
+    assert f"run={copied}: cannot be written to (Read-only file system)" in only_line(capfd)
+
+
+def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd):
+    """And ends with a row for the episodes of all seeds."""
+    folder = shutil.copytree(trained, tmp_path / ("long" * 20) / "run")
+    assert call(lambda: command.guarded(evaluate.main), f"run={folder}", "episodes=2") == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert f"{folder}, mode full, step 100" in lines
+    assert f"2 episodes a seed; written to {folder}/evaluation_full.json" in lines
+    returns = np.array(json.loads((folder / "evaluation_full.json").read_text())["returns"])
+    (row,) = [line.split("\u2502")[1:-1] for line in lines if " all " in line]
+    wanted = (returns.mean(), returns.std(), returns.min(), returns.max())
+    assert [cell.strip() for cell in row] == ["all", *(f"{value:,.1f}" for value in wanted)]
+
+
+def test_a_value_of_the_user_is_not_blamed_on_the_file(copied, capfd):
+    assert call_train(f"resume={copied}", "total_steps=0") == 2
+    assert "hybrid_rl: total_steps=0: must be" in only_line(capfd)

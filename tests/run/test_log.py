@@ -1,0 +1,252 @@
+"""Rows are there once; what is said on the terminal; where numbers come from."""
+
+import json
+import os
+import re
+import struct
+import subprocess
+import sys
+import time
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tensorboardX.proto.event_pb2 import Event
+
+from hybrid_rl.run import progress, provenance
+from hybrid_rl.run.log import RunLog, number
+from hybrid_rl.run.progress import Progress
+
+
+def row(step, seed=0, **scalars):
+    return {"step": step, "seed": seed, "wall_s": step / 3, **scalars}
+
+
+def lines(folder):
+    return (folder / "metrics.jsonl").read_text().splitlines()
+
+
+def events(folder):
+    """Every event of one TensorBoard folder, oldest file first."""
+    found = []
+    for path in sorted(folder.glob("events*")):
+        data = path.read_bytes()
+        while data:
+            (size,) = struct.unpack("<Q", data[:8])  # then 4 bytes of checksum, before and after
+            found.append(Event.FromString(data[12 : 12 + size]))
+            data = data[16 + size :]
+    return found
+
+
+def scalars(folder):
+    return [
+        (event.step, value.tag, value.simple_value)
+        for event in events(folder)
+        for value in event.summary.value
+    ]
+
+
+def test_rows_are_json_with_the_digits_of_float32(tmp_path):
+    loss = {"model/loss": jnp.float32(0.1), "train/length": np.int32(7), "x": 1e-30}
+    with RunLog(tmp_path, [4]) as log:
+        log.write([row(1, 4, **loss)])
+    assert lines(tmp_path) == [
+        '{"step": 1, "seed": 4, "wall_s": 0.333, "model/loss": 0.1, "train/length": 7, "x": 1e-30}'
+    ]
+    step_tag = [(step, tag) for step, tag, _ in scalars(tmp_path / "tensorboard")]
+    assert step_tag == [(1, "model/loss"), (1, "train/length"), (1, "x")]
+
+
+@pytest.mark.parametrize("value", [np.pi, 1e10, 1.17549435e-38, -0.0, 16777217])
+def test_a_number_reads_back_as_the_same_float32(value):
+    back = json.loads(json.dumps(number(np.float32(value))))
+    assert np.float32(back).tobytes() == np.float32(value).tobytes()
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), jnp.float32(-jnp.inf)])
+def test_what_is_not_finite_is_null(tmp_path, bad):
+    with RunLog(tmp_path, [0]) as log:
+        log.write([row(1, loss=bad)])
+        log.summary({"final_return": [1.5, float(bad)]})
+    strict = {"parse_constant": pytest.fail}
+    assert json.loads(lines(tmp_path)[0], **strict)["loss"] is None
+    summary = json.loads((tmp_path / "summary.json").read_text(), **strict)
+    assert summary == {"final_return": [1.5, None]}
+    assert scalars(tmp_path / "tensorboard") == []
+
+
+def test_a_word_is_a_row_but_no_scalar(tmp_path):
+    with RunLog(tmp_path, [0]) as log:
+        log.write([row(3, diverged="sac/q")])
+    assert json.loads(lines(tmp_path)[0])["diverged"] == "sac/q"
+    assert scalars(tmp_path / "tensorboard") == []
+
+
+def test_several_seeds_have_a_board_each(tmp_path):
+    with RunLog(tmp_path, [3, 4]) as log:
+        log.write([row(1, 3, a=1), row(1, 4, a=2)])
+    assert scalars(tmp_path / "tensorboard" / "seed_3") == [(1, "a", 1)]
+    assert scalars(tmp_path / "tensorboard" / "seed_4") == [(1, "a", 2)]
+
+
+def test_a_rewound_run_has_every_row_once(tmp_path):
+    with RunLog(tmp_path, [0]) as log:
+        log.write([row(1, a=1), row(2, a=2)])
+        offset = log.flush()
+        assert offset == (tmp_path / "metrics.jsonl").stat().st_size
+        log.write([row(3, a=-1)])
+    with (tmp_path / "metrics.jsonl").open("a") as file:
+        file.write('{"step": 4, "se')  # a kill in the middle of a row
+    with RunLog(tmp_path, [0]) as log:
+        assert log.rewind(offset, step=2) == []
+        log.write([row(3, a=3)])
+        assert log.flush() == (tmp_path / "metrics.jsonl").stat().st_size
+    assert [json.loads(line)["a"] for line in lines(tmp_path)] == [1, 2, 3]
+    board = events(tmp_path / "tensorboard")
+    purged = [event.step for event in board if event.HasField("session_log")]
+    assert purged == [3]  # TensorBoard drops what older files have from there on
+    assert scalars(tmp_path / "tensorboard")[-1] == (3, "a", 3)
+
+
+def test_flushed_rows_survive_a_kill(tmp_path):
+    code = (
+        "import os, signal, sys; from pathlib import Path\n"
+        "from hybrid_rl.run.log import RunLog\n"
+        "log = RunLog(Path(sys.argv[1]), [0])\n"
+        "log.write([{'step': 1, 'seed': 0, 'wall_s': 0, 'a': 5}]); log.flush()\n"
+        "os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=False)
+    assert json.loads(lines(tmp_path)[0])["a"] == 5
+    assert scalars(tmp_path / "tensorboard") == [(1, "a", 5)]
+
+
+@pytest.mark.parametrize(
+    "edit", [lambda text: "", lambda text: text[:-9], lambda text: "\n" + text]
+)
+def test_a_rewind_says_where_rows_are_gone(tmp_path, edit):
+    path = tmp_path / "metrics.jsonl"
+    with RunLog(tmp_path, [0]) as log:
+        log.write([row(1, a=1), row(2, a=2)])
+        offset = log.flush()
+    path.write_text(edit(path.read_text()))
+    with RunLog(tmp_path, [0]) as log:
+        (note,) = log.rewind(offset, step=2)
+        log.write([row(3, a=3)])
+    assert "rows before step 2 are missing or edited" in note
+    assert json.loads(lines(tmp_path)[-1])["step"] == 3
+    assert all(json.loads(line) for line in lines(tmp_path) if line)
+
+
+def test_versions_commit_and_device_are_told():
+    versions = provenance.versions()
+    assert {"python", "hybrid_rl", *provenance.PACKAGES} == set(versions)
+    assert re.fullmatch(r"\d+\.\d+.*", versions["jax"])
+    commit = provenance.git_commit()
+    assert commit is None or re.fullmatch("[0-9a-f]{40}", commit)
+    assert re.match(r"(cpu|gpu|tpu): .+", provenance.device())
+
+
+def test_the_commit_of_another_checkout_is_not_ours(monkeypatch, tmp_path):
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "a" / "b" / "c.py"))
+    assert provenance.git_commit() is None
+    ours = provenance.Path(__file__).resolve().parents[2] / "hybrid_rl" / "training" / "log.py"
+    monkeypatch.setattr(provenance, "__file__", str(ours))
+    before = provenance.git_commit()
+    monkeypatch.setenv("GIT_DIR", str(tmp_path))  # as in a hook
+    assert provenance.git_commit() == before
+
+
+@pytest.fixture
+def now(monkeypatch):
+    """The clock [s] of a display, in a list; its own thread stands still."""
+    now = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(Progress, "_beat", lambda self: None)
+    return now
+
+
+def test_plain_lines_come_at_once_and_then_every_few_seconds(capsys, now):
+    with Progress(2000, start=1000, label="hopper sac") as shown:
+        shown.note("compiling ...")
+        assert capsys.readouterr().out == "compiling ...\n"
+        for step in range(1010, 1200, 10):  # one second each
+            now[0] += 1
+            shown.update(step, {"train/return": 12.34, "perf/env_steps_per_s": 5e4, "x": 1.0})
+    said = capsys.readouterr().out.splitlines()
+    assert said[0] == "hopper sac  1,010/2,000 (50%)  return 12.3  50,000 decisions/s"
+    assert said[1] == "hopper sac  1,090/2,000 (55%)  return 12.3  50,000 decisions/s  0:01:31 left"
+    assert [line.split()[2] for line in said[2:]] == ["1,170/2,000", "1,190/2,000"]
+
+
+def test_a_line_comes_within_ten_seconds_also_in_a_long_run(capsys, now):
+    with Progress(10**6) as shown:
+        for step in range(3600):
+            now[0] += 1
+            shown.update(step, {})
+            if step == 3000:
+                capsys.readouterr()
+    assert 60 <= len(capsys.readouterr().out.splitlines()) <= 120
+    assert progress.PAUSE + 1 < 10  # the second is the beat's
+
+
+def test_a_line_comes_while_nothing_is_updated(capsys, monkeypatch):
+    """As in a slow call: a thread of its own says it."""
+    monkeypatch.setattr(progress, "PAUSE", 0.0)
+    with Progress(100, label="ant sac") as shown, shown.doing("compiling"):
+        time.sleep(1.2)
+    assert "ant sac  0/100 (0%)  compiling for 0:00:01" in capsys.readouterr().out
+
+
+def test_an_evaluation_is_shown_with_its_own_step(capsys, now):
+    with Progress(1000, label="ant") as shown:
+        shown.update(500, {"train/return": 1.0}, say=False)
+        shown.update(500, {"eval/return": 2.0}, say=True)
+        now[0] += 60
+        shown.update(600, {"train/return": 3.0})
+        assert " ".join(shown._numbers(True)).startswith("return 3.0 eval 2.0 at 500")
+        shown.update(1000, {}, say=False)
+        shown.update(1000, {"eval/return": 4.0}, say=True)
+    assert [line.split("  ")[1:4] for line in capsys.readouterr().out.splitlines()] == [
+        ["500/1,000 (50%)", "return 1.0", "eval 2.0"],
+        ["600/1,000 (60%)", "return 3.0", "1.7 steps/s"],
+        ["1,000/1,000 (100%)", "return 3.0", "eval 4.0"],
+    ]
+
+
+def test_no_speed_is_told_before_it_is_steady(capsys, now):
+    with Progress(1000, steady=500) as shown:
+        for step in (100, 200, 300):
+            now[0] += 9
+            shown.update(step, {})
+    assert "/s" not in capsys.readouterr().out
+
+
+def test_a_terminal_shows_a_bar(monkeypatch):
+    """In a pseudo-terminal of 60 columns, since nothing else is one."""
+    code = (
+        "from hybrid_rl.run.progress import Progress\n"
+        "with Progress(2000, 0, 'hopper sac') as shown:\n"
+        "    shown.note('compiling [soon] ...')\n"
+        "    shown.update(1000, {'train/return': 12.3, 'eval/return': -4.0})\n"
+    )
+    ours, theirs = os.openpty()
+    plain = {"TERM": "xterm", "COLUMNS": "60", "PATH": os.environ["PATH"]}
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=theirs, stderr=theirs, env=plain)
+    os.close(theirs)
+    text = b""
+    while part := _read(ours):
+        text += part
+    os.close(ours)
+    assert child.wait() == 0
+    shown = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", text.decode())
+    assert "compiling [soon] ..." in shown
+    assert re.search(r"hopper sac .*1,000/2,000\s+return 12\.3  eval -4\.0", shown)
+    assert max(len(line) for line in re.split(r"[\r\n]+", shown)) <= 60
+
+
+def _read(handle):
+    try:
+        return os.read(handle, 4096)
+    except OSError:  # Linux's end of a pseudo-terminal
+        return b""

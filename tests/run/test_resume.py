@@ -1,0 +1,152 @@
+"""A run that was stopped and resumed is the run that was never stopped, bit for bit."""
+
+import json
+import shutil
+import signal
+import time
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import numpy as np
+import pytest
+from omegaconf import OmegaConf
+from tiny import TINY, call_train, contents, run
+
+from hybrid_rl.run import checkpoint
+
+pytestmark = pytest.mark.xdist_group("resume")
+SCRIPT = Path(__file__).parents[2] / "scripts" / "interrupt.py"
+HYBRID = ["algo=hybrid_stochastic", "eval_modes=[full,policy]", "replay.capacity=1000000"]
+NATIVE = ["task=cartpole", "algo=hybrid_stochastic", "physics=native", "episode.steps=40"]
+
+
+@pytest.fixture(scope="module")
+def interrupt():
+    """scripts/interrupt.py."""
+    spec = spec_from_file_location("interrupt", SCRIPT)
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A run that was never stopped."""
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    run(folder, *HYBRID)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def halves(tmp_path_factory):
+    """Runs of half its length; the first is of the same seed."""
+    folders = [tmp_path_factory.mktemp("half") / str(seed) for seed in range(3)]
+    for seed, folder in enumerate(folders):
+        run(folder, *HYBRID, "total_steps=300", f"seed={seed}")
+    return folders
+
+
+def stopped(interrupt, folder, by, *overrides):
+    """Exit code of a run that `by` stops after its first checkpoint."""
+    process = interrupt.start([*TINY, *overrides, f"run_dir={folder}"])
+    while interrupt.newest(folder) is None and process.poll() is None:
+        time.sleep(0.002)
+    return interrupt.stop(process, by)
+
+
+@pytest.mark.parametrize(
+    ("by", "code"),
+    [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -signal.SIGKILL)],
+    ids=["interrupt", "terminate", "kill"],
+)
+def test_a_stopped_run_goes_on_bit_for_bit(interrupt, whole, tmp_path, by, code):
+    folder = tmp_path / "run"
+    assert stopped(interrupt, folder, by, *HYBRID) == code
+    reached = interrupt.newest(folder)
+    assert 0 < reached < 600
+    if by != signal.SIGKILL:
+        summary = json.loads((folder / "summary.json").read_text())
+        assert not summary["finished"]
+        assert summary["total_steps"] == reached == interrupt.rows(folder)[-1]["step"]
+    assert call_train(f"resume={folder}") == 0
+    assert interrupt.difference(folder, whole) == ""
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["finished"]
+    assert summary["total_steps"] == 600
+
+
+def test_native_physics_goes_on_bit_for_bit(interrupt, tmp_path):
+    """Stopped anywhere, also before there is a checkpoint."""
+    run(tmp_path / "whole", *NATIVE)
+    line = [*TINY, *NATIVE]
+    done = interrupt.trial(line, tmp_path / "whole", tmp_path / "run", stops=1, within=8.0)
+    assert done.difference == ""
+    assert "same  SIG" in interrupt.line(1, done)
+
+
+def test_a_difference_is_found(interrupt, whole, halves, tmp_path):
+    assert interrupt.difference(halves[0], whole) == "checkpoint 300 and 600"
+    assert "at step 300" in interrupt.difference(halves[0], halves[1])
+    edited = tmp_path / "edited"
+    shutil.copytree(whole, edited)
+    rows = (whole / "metrics.jsonl").read_text().splitlines(keepends=True)
+    (edited / "metrics.jsonl").write_text("".join(rows[:-1]))
+    assert interrupt.difference(edited, whole) == f"{len(rows) - 1} and {len(rows)} rows"
+    (edited / "metrics.jsonl").write_text("".join(rows).replace('"step": 50,', '"step": 51,'))
+    assert interrupt.difference(edited, whole).startswith("row {'step': 51,")
+
+
+def test_same_seed_same_run(interrupt, whole, tmp_path):
+    run(tmp_path / "run", *HYBRID)
+    assert interrupt.difference(tmp_path / "run", whole) == ""
+
+
+def test_no_row_twice_and_none_lost(interrupt, whole):
+    """Rows of what is due when: episodes of 200, means every 50, evaluations every 300."""
+    rows = interrupt.rows(whole)
+    assert [r["step"] for r in rows if "train/return" in r] == [200, 400, 600]
+    assert [r["step"] for r in rows if "world/reward" in r] == list(range(50, 601, 50))
+    assert [r["step"] for r in rows if "eval/return" in r] == [300, 600]
+
+
+def test_a_run_made_longer_is_the_longer_run(interrupt, whole, halves, tmp_path):
+    folder = tmp_path / "run"
+    shutil.copytree(halves[0], folder)
+    assert call_train(f"resume={folder}", "total_steps=600") == 0
+    assert interrupt.difference(folder, whole) == ""
+    kept = OmegaConf.load(folder / "config.yaml")
+    assert (kept.total_steps, kept.resume) == (600, None)
+
+
+def test_a_finished_run_stays_as_it_is(whole, capsys):
+    before = contents(whole)
+    assert call_train(f"resume={whole}", *HYBRID, "policy.hidden=[16]") == 0
+    assert "finished already at 600; raise total_steps to go on" in capsys.readouterr().out
+    assert contents(whole) == before
+
+
+def test_without_replay_it_goes_on_and_says_so(interrupt, whole, tmp_path, capsys):
+    folder = tmp_path / "run"
+    run(folder, *HYBRID, "checkpoint_replay=false", "total_steps=300")
+    listed = json.loads((folder / "checkpoints" / "300" / "leaves.json").read_text())
+    assert not [name for name in listed if name.startswith("memory")]
+    assert call_train(f"resume={folder}", "total_steps=600") == 0
+    assert "no replay memory in checkpoints" in capsys.readouterr().out
+    rows = interrupt.rows(folder)
+    assert [r["step"] for r in rows if "train/return" in r] == [200, 400, 600]
+    learned = [r["step"] for r in rows if "sac/q" in r and r["step"] > 300]
+    assert learned == list(range(350, 601, 50))
+    assert checkpoint.steps(folder / "checkpoints")[-1] == 600
+
+
+def test_seeds_side_by_side_are_the_seeds_alone(interrupt, halves, tmp_path):
+    """To rounding, which grows with every decision: 1e-6 after 100, 7e-4 after 300."""
+    run(tmp_path / "run", *HYBRID, "total_steps=300", "num_seeds=3")
+    together = interrupt.rows(tmp_path / "run")
+    for seed, alone in enumerate(halves):
+        ours, theirs = [r for r in together if r["seed"] == seed], interrupt.rows(alone)
+        assert [r.keys() for r in ours] == [r.keys() for r in theirs]
+        for one, two in zip(ours, theirs, strict=True):
+            tolerance = 1e-5 if one["step"] <= 100 else 1e-2
+            got, wanted = [*one.values()], [*two.values()]
+            np.testing.assert_allclose(got, wanted, rtol=tolerance, atol=1e-3 * tolerance)

@@ -1,0 +1,263 @@
+"""A run is stopped anywhere, its learners diverge alone, its numbers are what their names say."""
+
+import json
+import signal
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tiny import call_train, run
+
+from hybrid_rl import train
+from hybrid_rl.errors import DivergenceError
+from hybrid_rl.run import checkpoint, integrity, pace
+from hybrid_rl.run.evaluations import Evaluations
+from hybrid_rl.run.pace import Pace, Speed
+from hybrid_rl.run.rows import Gathered
+from hybrid_rl.run.schedule import Schedule
+from hybrid_rl.run.session import Session
+from hybrid_rl.training.loop import Loop
+
+pytestmark = pytest.mark.xdist_group("session")
+SAC = ["algo=sac", "num_seeds=2"]
+
+
+@pytest.fixture(scope="module")
+def interrupt():
+    """scripts/interrupt.py."""
+    script = Path(__file__).parents[2] / "scripts" / "interrupt.py"
+    spec = spec_from_file_location("interrupt_script", script)
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A run of two learners that was never stopped."""
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    run(folder, *SAC)
+    return folder
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Calls of seven rounds at most, so that they end between the marks."""
+    monkeypatch.setattr(Pace, "rounds", lambda self, left: min(left, 7))
+
+
+def rows(folder):
+    return [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+
+
+def summary(folder):
+    return json.loads((folder / "summary.json").read_text())
+
+
+def stop_at(monkeypatch, step):
+    """A signal comes in the first call that reaches `step`."""
+    advance = Session._advance
+
+    def stopped(self):
+        advance(self)
+        if self.step >= step:
+            self.ask(signal.SIGTERM)
+
+    monkeypatch.setattr(Session, "_advance", stopped)
+
+
+def test_a_call_takes_about_a_second_and_a_half_whatever_the_speed():
+    for each in (1e-5, 0.01, 0.4, 9.0):  # [s] a round
+        pace_, took = Pace(), []
+        for _ in range(20):
+            rounds = pace_.rounds(10**6)
+            took.append(rounds * each)
+            pace_.took(rounds, rounds * each)
+        assert max(took) <= max(pace.CALL, each) + 1e-9
+        assert took[-1] >= min(max(pace.CALL - each, each), 10**6 * each)
+
+
+def test_a_call_ends_at_marks_and_where_decisions_change():
+    plan = Schedule(1000, 500, 300, 1, (), 1000, True)
+    assert [plan.until(step, {120, 0}) for step in (0, 120, 299, 300, 990)] == [
+        *(120, 300, 300, 500, 1000),
+    ]
+    assert not plan.row_due(120, 1)
+    assert [plan.row_due(step, 7) for step in (301, 308, 504, 994, 1001)] == [
+        *(True, False, True, False, True),
+    ]
+
+
+def test_metrics_in_parts_are_the_metrics_as_one():
+    rng = np.random.default_rng(0)
+    values = rng.normal(size=(50, 3)).astype(np.float32)
+    values[rng.random(values.shape) < 0.3] = np.nan
+    parts, again = Gathered(), Gathered()
+    for cut in np.split(values, [7, 8, 31]):
+        parts.add({"b": cut, "a": -cut, "episode/done": cut})
+    again.unpack(*parts.pack())
+    for gathered in (parts, again):
+        got = gathered.take()
+        assert list(got) == ["b", "a"]
+        assert got["b"].tobytes() == values.tobytes()
+    assert parts.pack() == ([], None)
+
+
+def test_calls_of_other_lengths_make_the_same_run(interrupt, whole, short, tmp_path):
+    run(tmp_path / "run", *SAC)
+    assert interrupt.difference(tmp_path / "run", whole) == ""
+
+
+def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp_path):
+    """Between marks, before an evaluation is made, and before the last one is."""
+    folder, line = tmp_path / "run", []
+    for step in (123, 300, 600):
+        with pytest.MonkeyPatch.context() as patch:
+            stop_at(patch, step)
+            if line:
+                assert call_train(*line) == 128 + signal.SIGTERM
+            else:
+                assert run(folder, *SAC)["signal"] == signal.SIGTERM
+        found, line = summary(folder), [f"resume={folder}"]
+        assert step <= found["total_steps"] < step + 7
+        assert not found["finished"]
+    assert call_train(*line) == 0
+    assert interrupt.difference(folder, whole) == ""
+    assert summary(folder)["finished"]
+    assert summary(folder)["final_eval"] == summary(whole)["final_eval"]
+
+
+def break_learner(patch, number, step):
+    """From `step` on the critic of a learner is no number."""
+    advance = Session._advance
+
+    def broken(self):
+        if self.step == step:
+            spoil = self.state.learners["policy"]
+            leaves, form = jax.tree.flatten(spoil)
+            leaves = [
+                x.at[number].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
+                for x in leaves
+            ]
+            learners = self.state.learners | {"policy": jax.tree.unflatten(form, leaves)}
+            self.state = self.state.replace(learners=learners)
+        advance(self)
+
+    patch.setattr(Session, "_advance", broken)
+
+
+def finite(folder):
+    """Whether the newest checkpoint is."""
+    step = checkpoint.steps(folder / "checkpoints")[-1]
+    place = folder / "checkpoints" / str(step)
+    kinds = json.loads((place / "leaves.json").read_text())
+    like = {
+        name: jax.ShapeDtypeStruct(tuple(kind["shape"]), kind["dtype"])
+        for name, kind in kinds.items()
+        if kind["dtype"] == "float32" and name.startswith("learners")
+    }
+    found = checkpoint.restore(folder / "checkpoints", like, step, part=True)[1]
+    return bool(found) and all(np.isfinite(leaf).all() for leaf in found.values())
+
+
+def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
+    folder = tmp_path / "run"
+    with pytest.MonkeyPatch.context() as patch:
+        break_learner(patch, 1, 250)
+        found = run(folder, *SAC)
+    (end,) = found["diverged"]
+    assert end == {"seed": 1, "step": 251, "quantity": end["quantity"]}
+    assert f"seed 1, step 251: {end['quantity']} is not finite" in capfd.readouterr().out
+    assert (found["finished"], found["final_eval"][1], found["final_return"][1]) == (
+        *(True, None, None),
+    )
+    mine = [row for row in rows(folder) if row["seed"] == 1]
+    assert mine[-1].keys() == {"step", "seed", "wall_s", "diverged"}
+    assert mine[-1]["diverged"] == end["quantity"]
+    assert [row["step"] for row in mine if "world/reward" in row] == list(range(50, 251, 50))
+    clocks = ("wall_s", "perf/env_steps_per_s", "perf/compile_s")
+    others = [
+        [{k: v for k, v in row.items() if k not in clocks} for row in rows(f) if row["seed"] == 0]
+        for f in (folder, whole)
+    ]
+    assert others[0] == others[1]
+    assert finite(folder)
+    assert call_train(f"resume={folder}", "total_steps=700") == 1  # and it stays out
+    said = capfd.readouterr().err
+    assert said.startswith(f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the oth")
+    assert said.count("\n") == 1
+    assert {row["seed"] for row in rows(folder) if row["step"] > 251} == {0}
+    assert rows(folder)[-1]["step"] == 700
+    assert finite(folder)
+
+
+def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path, capfd):
+    folder = tmp_path / "run"
+    call = Evaluations.__call__
+    with pytest.MonkeyPatch.context() as patch:
+        bad = {"eval/return": float("nan")}
+        patch.setattr(Evaluations, "__call__", lambda *given: [r | bad for r in call(*given)])
+        with pytest.raises(DivergenceError) as error:
+            run(folder, "algo=sac")
+    said = str(error.value)
+    assert said.startswith("seed 0, step 300: eval/return is not finite; checkpoint 200 is whole")
+    assert checkpoint.steps(folder / "checkpoints") == [100, 200]
+    assert integrity.verify(folder / "checkpoints" / "200") is None
+    assert rows(folder)[-1]["diverged"] == "eval/return"
+    assert (summary(folder)["finished"], summary(folder)["diverged"][0]["step"]) == (False, 300)
+
+
+def test_a_learner_without_a_checkpoint_goes_back_to_its_first_state(tmp_path):
+    folder = tmp_path / "run"
+    with pytest.MonkeyPatch.context() as patch:
+        break_learner(patch, 0, 50)
+        found = run(folder, *SAC, "checkpoint_replay=false", "total_steps=100")
+    assert [end["seed"] for end in found["diverged"]] == [0]
+    assert finite(folder)
+
+
+def test_the_speed_is_that_of_learning(whole):
+    """Half of the first decisions are random, then the batch fills: no speed before."""
+    found = [row for row in rows(whole) if "world/reward" in row]
+    assert [r["step"] for r in found if "perf/env_steps_per_s" not in r] == [50, 50]
+    assert summary(whole)["env_steps_per_s"] > 0
+    speed = Speed()
+    assert speed.rate is None
+    speed.add(100, 2.0)
+    speed.add(50, 1.0)
+    assert speed.rate == 50
+
+
+def test_a_run_says_what_to_expect(tmp_path, capsys):
+    run(tmp_path / "a", "algo=sac", "total_steps=40")
+    assert "all 40 decisions are random: random_steps=50" in capsys.readouterr().out
+    found = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
+    said = capsys.readouterr().out
+    assert "random:" not in said
+    assert said.count("for the whole run at ") == 1
+    assert "301/301 (100%)" in said
+    assert found["finished"]
+
+
+def test_the_last_line_has_both_returns():
+    values = {"final_eval": [-19.0, None, -20.0], "final_return": [-36.4, None, -36.4]}
+    assert train._result(values) == (
+        "evaluation -19.5 (mean of 2 seeds: -19.0, -, -20.0); "
+        "training return -36.4 (mean of 2 seeds: -36.4, -, -36.4)"
+    )
+    one = {"final_eval": [1234.5], "final_return": [None]}
+    assert train._result(one) == "evaluation 1,234.5; training return none yet"
+
+
+def test_a_learner_is_read_back_from_the_loop(tmp_path):
+    """A row of the state is replaced, and nothing else."""
+    made = {"a": jnp.arange(6.0).reshape(3, 2), "key": jax.random.split(jax.random.key(0), 3)}
+    loop = Loop(agent=None, seeds=(0, 1, 2), stride=1)
+    wanted = np.array([[0, 1], [9, 9], [4, 5]])
+    key = jax.random.key(7)
+    got = loop.replaced(loop.place(made), 1, {"a": jnp.full(2, 9.0), "key": key})
+    np.testing.assert_array_equal(got["a"], wanted)
+    assert jax.random.key_data(got["key"])[1].tolist() == jax.random.key_data(key).tolist()

@@ -1,0 +1,107 @@
+"""When which learner learns: before the first decision, during random decisions, after them."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+from tiny import TINY, demonstrate
+
+from hybrid_rl import config
+from hybrid_rl.training.agent import Agent
+
+KEY = jax.random.key(3)
+
+
+@pytest.fixture(scope="module")
+def agent(tmp_path_factory) -> Agent:
+    """Hybrid learning from demonstrations on the pendulum, with 3 steps of head start."""
+    line = [*TINY, "algo=hybrid_bc", "pretrain=3", "cloning_learner.batch_size=16"]
+    line += ["cloning_learner.updates=1", "random_steps=0"]
+    folder = tmp_path_factory.mktemp("demonstrations")
+    return config.build(config.load([*line, demonstrate(folder, config.load(line))])).agent
+
+
+def paid(agent: Agent, reward: Array | float):
+    """The same agent in a world whose rewards are `reward`."""
+    world = agent.episode.env
+
+    class Paid(type(world)):
+        def step(self, state, action):
+            return super().step(state, action).replace(reward=jnp.float32(reward))
+
+    env = Paid(**vars(world))
+    return replace(agent, episode=replace(agent.episode, env=env))
+
+
+def after(agent: Agent, decisions: int):
+    """What is known after so many decisions."""
+
+    def run(key):
+        one = lambda state, t: (agent.step(state, t)[0], None)  # noqa: E731
+        return agent.params(jax.lax.scan(one, agent.init(key), jnp.arange(decisions))[0])
+
+    return jax.jit(run)(KEY)
+
+
+def same(a, b) -> bool:
+    """Whether all numbers are equal."""
+    return all(map(np.array_equal, jax.tree.leaves(a), jax.tree.leaves(b)))
+
+
+def test_experience_changes_the_models_and_not_the_policy(agent):
+    """Two worlds that pay differently: one policy, two rewards; and all of it goes on learning."""
+    learned = jax.jit(lambda reward: after(paid(agent, reward), 6))
+    one, other = learned(1.0), learned(-1.0)
+    first = agent.params(jax.jit(agent.init)(KEY))
+    assert same(one.policy, other.policy)
+    assert not same(one.reward, other.reward)
+    assert not same(first.policy, one.policy)
+    assert not same(first.model, one.model)
+
+
+def test_the_pretrain_is_gradient_steps_on_demonstrations(agent):
+    """The policy that a plain loop of the learner's updates makes."""
+    learners = {"cloning": agent.learners["cloning"]}
+    alone = replace(agent, learners=learners, pretrain=3)
+    ahead, still = (
+        jax.jit(a.init)(KEY).learners["cloning"] for a in (alone, replace(alone, pretrain=0))
+    )
+    count = ahead.optimiser[0].count
+    assert (int(count), int(still.optimiser[0].count)) == (3, 0)
+    state = still
+    for key in jax.random.split(jax.random.split(KEY, 4)[3], 3):
+        ((_, updating),) = jax.random.split(key, (1, 2))
+        state = learners["cloning"].update(state, None, None, updating)[0]
+    jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
+
+
+def test_no_key_of_the_pretrain_is_used_again(agent, monkeypatch):
+    """Its own, and those of its steps, are none of the first state's or the first decision's."""
+    given = []
+    monkeypatch.setattr(Agent, "_ahead", lambda _, states, memory, key: given.append(key) or states)
+    state = agent.init(KEY)
+    first = jax.random.split(KEY, 2 + len(agent.learners))
+    decision = jax.random.split(state.key, 3 + 2 * agent.num_envs)
+    steps = jax.random.split(given[0], agent.pretrain)
+    keys = jnp.concatenate([given[0][None], steps, first, decision])
+    assert len(np.unique(jax.random.key_data(keys), axis=0)) == len(keys)
+
+
+def test_a_pretrain_needs_demonstrations(agent):
+    bare = replace(agent.replay, demonstrations=None)
+    with pytest.raises(ValueError, match="pretrain=3: there is nothing to learn from"):
+        replace(agent, replay=bare)
+
+
+def test_the_model_learns_from_random_decisions_and_the_policy_after_them() -> None:
+    """So that what the policy imagines first is not the prediction of first weights."""
+    line = [*TINY, "algo=hybrid_stochastic", "random_steps=24"]
+    early = config.build(config.load(line)).agent
+    first = early.params(jax.jit(early.init)(KEY))
+    during, later = after(early, 24), after(early, 25)
+    assert not same(first.model, during.model)
+    assert same(first.policy, during.policy)
+    assert not same(first.policy, later.policy)

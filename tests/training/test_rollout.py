@@ -1,0 +1,126 @@
+"""What an evaluation tells of episodes."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.errors import UsageError
+from hybrid_rl.evaluate import Trained
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import evaluate_episodes
+from hybrid_rl.types import EnvState, Params, Spec
+
+
+@dataclass(frozen=True)
+class Walk:
+    """Adds the action up; ends, a success, at a sum of 3 or more."""
+
+    told: bool = True
+    spec: Spec = Spec(obs=1, act=1, dt=0.1)
+
+    def reset(self, key: Array) -> EnvState:
+        """At 0."""
+        return self._state(jnp.zeros(()))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """One more."""
+        return self._state(state.data + action[0])
+
+    def _state(self, at: Array) -> EnvState:
+        metrics = {"success": (at >= 3).astype(jnp.float32)} if self.told else {}
+        return EnvState(at, at[None], at, at >= 3, jnp.zeros((), bool), metrics, {})
+
+
+class Draws:
+    """Takes steps of 1 or of 0, drawn once an episode."""
+
+    def init(self, spec: Spec) -> Array:
+        """Not drawn yet."""
+        return jnp.float32(-1)
+
+    def act(
+        self, params: Params, state: Array, obs: Array, key: Array
+    ) -> tuple[Array, Array, dict]:
+        """The step [1]."""
+        drawn = jax.random.bernoulli(key).astype(jnp.float32)
+        state = jnp.where(state < 0, drawn, state)
+        return state[None], state, {}
+
+
+def test_returns_and_successes_by_hand() -> None:
+    keys = jax.random.split(jax.random.key(0), 16)
+    got = evaluate_episodes(Episode(Walk(), steps=5), Draws(), Params(), keys)
+    success = np.asarray(got["success"])
+    assert set(success) == {0.0, 1.0}
+    np.testing.assert_array_equal(got["return"], 6 * success)  # 1 + 2 + 3, and nothing after
+
+
+def test_a_task_without_successes_tells_none() -> None:
+    keys = jax.random.split(jax.random.key(0), 4)
+    got = evaluate_episodes(Episode(replace(Walk(), told=False), steps=5), Draws(), Params(), keys)
+    assert list(got) == ["return"]
+
+
+@dataclass(frozen=True)
+class Counts:
+    """The action is the count of decisions in this episode, plus the observation."""
+
+    def init(self, spec: Spec) -> Array:
+        """None yet."""
+        return jnp.zeros(())
+
+    def act(
+        self, params: Params, state: Array, obs: Array, key: Array
+    ) -> tuple[Array, Array, dict]:
+        """The count."""
+        return (state + obs) * params.policy, state + 1, {}
+
+
+def run_of(controller: Any) -> Trained:
+    """A run of two learners, of which the second acts the other way round."""
+    params = Params(policy=jnp.array([1.0, -1.0]))
+    return Trained("walk", Episode(Walk()), {"full": controller}, params, (3, 4), 100, ())
+
+
+def test_a_trained_policy_acts_from_observations() -> None:
+    """One world and many; its state lasts for an episode, in each world alone."""
+    policy = run_of(Counts()).policy()
+    got = [policy(np.array([0.5])) for _ in range(3)]
+    np.testing.assert_array_equal(got, [[0.5], [1.5], [2.5]])
+    policy.reset()
+    np.testing.assert_array_equal(policy(np.zeros((2, 1))), [[0], [0]])
+    np.testing.assert_array_equal(policy(np.zeros((2, 1))), [[1], [1]])
+    policy.reset(np.array([True, False]))
+    np.testing.assert_array_equal(policy(np.zeros((2, 1))), [[0], [2]])
+    other = run_of(Counts()).policy(seed=4)
+    np.testing.assert_array_equal(other(np.array([0.5])), [-0.5])
+
+
+def test_a_trained_policy_draws_for_each_world_and_decision() -> None:
+    draws, again, other = (run_of(Draws()).policy(key=key) for key in (0, 0, 1))
+    first = draws(np.zeros((32, 1)))
+    assert 0 < first.sum() < 32
+    np.testing.assert_array_equal(again(np.zeros((32, 1))), first)
+    assert (other(np.zeros((32, 1))) != first).any()
+    draws.reset()
+    assert (draws(np.zeros((32, 1))) != first).any()
+
+
+def test_a_trained_policy_refuses_what_does_not_fit() -> None:
+    trained = run_of(Counts())
+    policy = trained.policy()
+    for wrong in (np.zeros(2), np.zeros((1, 1, 1)), 0.0):
+        with pytest.raises(ValueError, match=r"it must be \[1\] or \[N, 1\]"):
+            policy(wrong)
+    policy(np.zeros((2, 1)))
+    with pytest.raises(ValueError, match=r"obs of 3 worlds after 2; reset\(\) first"):
+        policy(np.zeros((3, 1)))
+    with pytest.raises(UsageError, match="seed=5: the run has 3, 4"):
+        trained.policy(seed=5)
+    with pytest.raises(UsageError, match="mode=planner: the run has full"):
+        trained.policy(mode="planner")
