@@ -28,7 +28,7 @@ from omegaconf import DictConfig, ListConfig, OmegaConf  # noqa: E402
 from tiny import demonstrate  # noqa: E402
 
 from hybrid_rl import config  # noqa: E402
-from hybrid_rl.command import CONF, options  # noqa: E402
+from hybrid_rl.cli.command import options  # noqa: E402
 from hybrid_rl.training.loop import Loop  # noqa: E402
 
 FILE = HERE / "golden.json"
@@ -52,7 +52,7 @@ def cases() -> dict[str, list[str]]:
     """Name -> overrides: every method on the pendulum, every experiment by each of its methods."""
     found = {algo: ["task=pendulum", f"algo={algo}"] for algo in options("algo")}
     for experiment in options("experiment"):
-        with initialize_config_dir(str(CONF), version_base="1.3"):
+        with initialize_config_dir(str(config.CONF), version_base="1.3"):
             whole = compose("train", [f"experiment={experiment}"], return_hydra_config=True)
         compared = OmegaConf.select(whole, "hydra.sweeper.params.algo")
         for algo in compared.split(",") if compared else [whole.algo]:
