@@ -110,12 +110,14 @@ def build(config: DictConfig) -> Run:
         controllers = {mode: _instantiate(node) for mode, node in config.controllers.items()}
         env = _instantiate({**config.env, **physics(config)})
         replay = _instantiate(config.replay)
-        longest = (rounds + replay.given(config.num_envs)) * config.num_envs
+        longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
         agent = Agent(
             Episode(env, config.episode.steps, config.episode.action_repeat),
             controllers["full"],
             {name: _instantiate(node) for name, node in config.learners.items()},
-            replace(replay, capacity=min(replay.capacity, max(longest, replay.given(1)))),
+            replace(
+                replay, capacity=min(replay.capacity, max(longest, replay.num_demonstrated(1)))
+            ),
             config.num_envs,
             config.random_steps,
             config.pretrain,
@@ -156,8 +158,8 @@ def _usage(config: DictConfig) -> Iterator[None]:
         if not isinstance(cause, (ValueError, TypeError)):
             raise
         line = str(cause)
-        if "needs an analytic world" in line:
-            needs = f"task={config.task}: {config.algo} needs an analytic world"
+        if "needs an analytic environment" in line:
+            needs = f"task={config.task}: {config.algo} needs an analytic environment"
             line = f"{needs}; choose one of {', '.join(analytic_tasks())}"
         field = line.partition("=")[0]  # of the world, whose keys are typed as env.KEY
         raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error

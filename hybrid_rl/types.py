@@ -1,17 +1,20 @@
 """The nouns that parts exchange, and the protocols that parts follow.
 
-Shapes, once for the whole project:
+Shapes, the same in the whole project:
 
     o observation   n planning state   m action   T planning horizon [decisions]
-    K samples       B batch            E parallel worlds   C capacity
-    s search state  v its size         N points of it
+    K samples       B batch            E parallel environments   C capacity
+    v search state                     N points
 
-Everything is written for ONE world and ONE sample; `jax.vmap` adds E, K, B and
-the seeds. Actions u lie in [-1, 1]^m everywhere; a world scales them to its own
-units. J is a return and is maximised everywhere. A key is always the last
-argument and is consumed.
+Everything is written for ONE environment and ONE sample; `jax.vmap` adds E, K, B and the seeds.
+Actions u lie in [-1, 1]^m; an environment scales them to its own units. J is a return and is
+maximised. A key is always the last argument and is consumed.
+
+A model lifts an observation [o] to a planning state x [n], whose first o entries are the
+observation. Policies, critics, rewards and objectives see x.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
 from flax import struct
@@ -21,24 +24,30 @@ PyTree = Any
 
 
 class Spec(NamedTuple):
-    """Sizes and rate of a world, as every part sees it."""
+    """Sizes and rate of an environment, as parts need them."""
 
     obs: int  # o
     act: int  # m
     dt: float  # [s] between two decisions
+    state: int | None = None  # n; None: the observation is the planning state
+
+    @property
+    def n(self) -> int:
+        """The size of the planning state."""
+        return self.obs if self.state is None else self.state
 
 
 @struct.dataclass
 class EnvState:
-    """What a world is between two decisions (a superset of Brax's fields)."""
+    """The state of an environment between two decisions (a superset of Brax's fields)."""
 
-    data: PyTree  # the world's own physical state
+    data: PyTree  # the physical state
     obs: Array  # [o]
     reward: Array  # []
     terminated: Array  # [] bool: the task ended, nothing comes after
-    truncated: Array  # [] bool: the clock ended it, the task would go on
-    metrics: dict[str, Array]  # name -> [], for logs alone
-    info: dict[str, Array]  # task memory
+    truncated: Array  # [] bool: the time limit ended the episode, the task would go on
+    metrics: dict[str, Array]  # name -> [], for logs only
+    info: dict[str, Array]  # what the task remembers
 
     @property
     def done(self) -> Array:
@@ -47,7 +56,7 @@ class EnvState:
 
 
 class Transition(NamedTuple):
-    """One decision, as remembered."""
+    """One decision and its outcome."""
 
     obs: Array  # [o]
     action: Array  # [m]
@@ -58,7 +67,7 @@ class Transition(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """B transitions, as recalled; arrays lead with [B]."""
+    """B transitions for a learner."""
 
     obs: Array  # [B, o]
     action: Array  # [B, m]
@@ -66,110 +75,187 @@ class Batch(NamedTuple):
     terminated: Array  # [B] 0 or 1
     truncated: Array  # [B] 0 or 1
     next_obs: Array  # [B, o]
-    next_action: Array  # [B, m] executed at next_obs; meaningless where the episode ended
+    next_action: Array | None = None  # [B, m] at next_obs; arbitrary after an end
 
 
 class Path(NamedTuple):
-    """A trajectory, real or imagined: the currency between parts."""
+    """A trajectory, real or imagined."""
 
     x: Array  # [T+1, n]
     u: Array  # [T, m]
 
 
 class Params(NamedTuple):
-    """Read-only view of all that is learned."""
+    """Read-only view of everything that is learned; each field has one learner at most."""
 
     model: PyTree = None  # f(x, u)
     reward: PyTree = None  # r(x, u)
     policy: PyTree = None  # pi(x)
     critic: PyTree = None  # Q(x, u)
     belief: PyTree = None  # whatever else a method learns
-    decisions: Array | None = None  # [] into the run, where it is training
+    decisions: Array | None = None  # [] of the run so far, during training
 
 
 class Env(Protocol):
-    """A world. Frozen and hashable; all that changes is in EnvState."""
+    """An environment. Frozen and hashable; everything that changes is in EnvState."""
 
     spec: Spec
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """The first state of an episode."""
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state one decision later. action: [m] in [-1, 1]."""
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text, for drawing."""
 
     def pose(self, state: EnvState) -> Array:
-        """Qpos [nq] of `scene` that shows `state`."""
+        """Qpos [nq] of `scene` at `state`."""
 
 
 class AnalyticEnv(Env, Protocol):
-    """A world whose motion is known in full: its observation is its whole state.
+    """An environment with known dynamics whose observation is its whole state.
 
-    Around its equilibrium it has coordinates e [d], zero there, in which it can be linearised.
+    Near its equilibrium it has local coordinates e [d], zero there, in which it is linearised.
     """
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The observation [o] that follows x [o] under u [m]."""
 
     def equilibrium(self) -> tuple[Array, Array]:
-        """The equilibrium: x [o] and u [m] with flow(x, u) = x."""
+        """x [o] and u [m] with dynamics(x, u) = x."""
 
     def to_local(self, x: Array) -> Array:
-        """e [d] of x [o]."""
+        """Local coordinates e [d] of x [o]."""
 
     def from_local(self, e: Array) -> Array:
-        """x [o] of e [d]; the inverse of `deviation`."""
+        """x [o] of local coordinates e [d]."""
 
 
 class Model(Protocol):
     """x' = f(x, u)."""
 
     def init(self, key: Array, spec: Spec) -> PyTree:
-        """First parameters."""
+        """Initial parameters."""
 
     def lift(self, params: PyTree, obs: Array) -> Array:
-        """Planning state x [n] of an observation [o]."""
+        """The planning state x [n] of an observation [o]; x[:o] is the observation."""
 
     def step(self, params: PyTree, x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
+
+
+class Trainable(Model, Protocol):
+    """A model that learns by gradients of its "weights", an entry of its parameters."""
+
+    members: int  # models in an ensemble, each with a batch of its own
+
+    def observe(self, params: PyTree, obs: Array, next_obs: Array) -> PyTree:
+        """Parameters with statistics updated by observations [B, o] and their successors."""
+
+    def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
+        """Mean loss [] of transitions [members * B, ...]."""
+
+    def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """Random next planning states [B, n] for noise [B, n] ~ N(0, I)."""
+
+
+class Uncertain(Model, Protocol):
+    """A model with a predictive standard deviation."""
+
+    def std(self, params: PyTree, x: Array) -> Array:
+        """Standard deviation [n] of the change at x [n], in running standard deviations."""
 
 
 class Policy(Protocol):
     """u = pi(x), stochastic."""
 
     def init(self, key: Array, spec: Spec) -> PyTree:
-        """First parameters."""
+        """Initial parameters, for planning states of size spec.n."""
 
     def mean(self, params: PyTree, x: Array) -> Array:
         """The action [m] without noise."""
 
     def sample(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array]:
-        """The action [m] that `noise` [m] ~ N(0, I) becomes, and its log-density []."""
+        """The action [m] for noise [m] ~ N(0, I), and its log-density []."""
 
     def variance(self, params: PyTree, x: Array) -> Array:
-        """Of the action [m]."""
+        """Variance [m] of the action."""
+
+
+class LearnedPolicy(Policy, Protocol):
+    """A policy that learns by gradients."""
+
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
+
+    def log_prob(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Log-density [...] of actions u [..., m] at x [..., n]."""
+
+
+class StabilizingPolicy(Policy, Protocol):
+    """A policy that holds an analytic environment at its equilibrium."""
+
+    world: AnalyticEnv
+
+    def towards(self, x: Array, goal: Array) -> Array:
+        """The action [m] at x [n] that leads to `goal` [o] instead of the equilibrium."""
+
+    def lyapunov(self, x: Array) -> Array:
+        """V(x) [], a Lyapunov function under the policy."""
+
+
+class Critic(Protocol):
+    """Q(x, u), an ensemble."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def all(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Q [members, ...] at x [..., n] and u [..., m]."""
+
+    def value(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Q [...], reduced over the members."""
+
+
+class Reward(Protocol):
+    """r(x, u), learned; its parameters hold "weights" as a Trainable's do."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
+
+    def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
+        """The reward [] of u [m] at x [n], and the logit [] that the episode ends there."""
+
+    def loss(self, params: PyTree, x: Array, u: Array, target: Array, ended: Array) -> Array:
+        """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
+
+
+Return = Callable[[Path], Array]  # path -> J []
 
 
 class Objective(Protocol):
-    """J(path), a return: what a planner maximises. It may couple all times, and the past."""
+    """J(path): the return that a planner maximises. It may couple all times, and the past."""
 
-    def begin(self, spec: Spec) -> PyTree:
-        """What it remembers before the first decision of an episode."""
+    def init(self, spec: Spec) -> PyTree:
+        """Memory before the first decision of an episode."""
 
-    def look(self, params: Params, memory: PyTree, x: Array, key: Array) -> PyTree:
-        """Memory at the planning state x [n] of now, with all chance that J needs, from `key`."""
+    def prepare(
+        self, params: Params, memory: PyTree, x: Array, u_before: Array, key: Array
+    ) -> tuple[Return, PyTree]:
+        """J of paths that begin at the planning state x [n], and the memory after this decision.
 
-    def value(self, params: Params, memory: PyTree, path: Path) -> Array:
-        """J [] of a path that begins at that state."""
+        u_before: [m] the action of the decision before, 0 at the first. J is a plain function,
+        which holds whatever was drawn from `key`; the memory holds only what is remembered.
+        """
 
 
 class Staged(Objective, Protocol):
     """An objective that is a sum over time."""
-
-    discount: float  # per decision
 
     def rewards(self, params: Params, path: Path) -> Array:
         """r [T] of each decision of the path."""
@@ -185,25 +271,37 @@ class Target(Protocol):
         """log p(s) [] at s [v], up to a constant."""
 
 
-class Lyapunov(Protocol):
-    """V(x) that falls under a policy."""
+class Belief(Protocol):
+    """What measurements y at s say about an unknown function, updated recursively."""
 
-    def lyapunov(self, x: Array) -> Array:
-        """V [] at x [n]."""
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """The belief before any measurement."""
+
+    def add(self, state: PyTree, s: Array, y: Array, key: Array) -> PyTree:
+        """The belief after y [] was measured at s [v]."""
+
+    def predict(self, state: PyTree, s: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation [] of the function at s [v]."""
+
+    def loss(self, state: PyTree, s: Array, y: Array) -> Array:
+        """Negative log-likelihood [] of y [] at s [v], before it is added."""
+
+    def report(self, state: PyTree) -> dict[str, Array]:
+        """Metrics, name -> []."""
 
 
 class Proposal(Protocol):
-    """v ~ ?: where a sampling planner draws its candidates from."""
+    """The distribution that a sampling planner draws its candidates from."""
 
-    def init(self, spec: Spec, place: Array) -> PyTree:
-        """Carry of one imagined path before its first action; `place` [] in [0, 1) is k / K."""
+    def init(self, spec: Spec, quantile: Array) -> PyTree:
+        """Carry of one imagined path before its first action; `quantile` [] in [0, 1) is k / K."""
 
     def __call__(
         self, params: Params, carry: PyTree, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, PyTree]:
-        """A candidate v [m] at x [n] beside the plan [m], its log-density [], the next carry.
+        """A candidate v [m] at x [n] near the plan [m], its log-density [], the next carry.
 
-        All chance is in `noise` [m] ~ N(0, I): the planner draws it for all candidates at once.
+        All randomness is in `noise` [m] ~ N(0, I), which the planner draws for all candidates.
         """
 
 
@@ -216,22 +314,33 @@ class Controller(Protocol):
     def act(
         self, params: Params, state: PyTree, obs: Array, key: Array
     ) -> tuple[Array, PyTree, dict[str, Array]]:
-        """Action [m] in [-1, 1], next state, metrics (name -> [])."""
+        """Action [m] in [-1, 1], next state, metrics (name -> [], NaN where one does not apply)."""
 
     def greedy(self) -> "Controller":
         """The same controller without exploration, for evaluation."""
 
 
-class Learner(Protocol):
-    """data -> parameters."""
+class Demonstrations(Protocol):
+    """An expert's decisions."""
 
-    batch_size: int  # transitions of a batch
-    batches: int  # that one update takes, one after the other in its rows
-    updates: float  # per decision
-    early: bool  # whether it learns while decisions are random, too
+    def load(self) -> Transition:
+        """All of them [N, ...], in order."""
+
+
+class Learner(Protocol):
+    """data -> parameters.
+
+    `data` says which transitions an update gets:
+
+        uniform   a batch drawn from the replay memory; see UniformLearner
+        latest    this step's transitions [E, ...], each one once; see LatestLearner
+    """
+
+    data: str
+    owns: tuple[str, ...]  # the fields of `Params` that it learns
 
     def init(self, key: Array, spec: Spec) -> PyTree:
-        """First state: parameters, optimisers, targets."""
+        """Initial state: parameters, optimisers, targets."""
 
     def params(self, state: PyTree) -> dict[str, PyTree]:
         """The fields of `Params` that this learner owns."""
@@ -239,4 +348,23 @@ class Learner(Protocol):
     def update(
         self, state: PyTree, params: Params, batch: Batch, key: Array
     ) -> tuple[PyTree, dict[str, Array]]:
-        """One gradient step on `batch` [batches * batch_size]; `params` of all learners."""
+        """One update; `params` of all learners before it, metrics name -> []."""
+
+
+class UniformLearner(Learner, Protocol):
+    """A learner whose updates get batches [batches * batch_size] of the replay memory."""
+
+    batch_size: int  # transitions of a batch
+    batches: int  # batches of one update, concatenated
+    updates: float  # per decision
+    early: bool  # whether it also learns while decisions are random
+
+
+class LatestLearner(Learner, Protocol):
+    """A learner that takes each decision once, with its true next observation.
+
+    Its updates get the transitions [E] of the step that just ended, without a delay, from the
+    first decision of the run on, random ones included.
+    """
+
+    every: int  # decisions of each environment between two updates; 1: none is left out

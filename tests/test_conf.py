@@ -22,16 +22,25 @@ PARTS = [
 ]
 
 
+def keys_of(path: Path) -> set[str]:
+    """The keys of a part's YAML, and of the presets that it inherits."""
+    node = OmegaConf.load(path)
+    node = node.get("env", node)
+    keys = {str(key) for key in node} - {"defaults"}
+    for default in node.get("defaults", []):
+        if isinstance(default, str):
+            keys |= keys_of(path.with_name(f"{default}.yaml")) if default != "_self_" else set()
+        else:
+            keys |= {str(key).split("@")[-1] for key in default}
+    return keys
+
+
 @pytest.mark.parametrize("path", PARTS, ids=lambda p: str(p.relative_to(config.CONF)))
 def test_a_part_lists_every_field(path: Path) -> None:
     """A part's YAML and its dataclass have the same names."""
     node = OmegaConf.load(path)
-    node = node.get("env", node)
-    fields = {field.name for field in dataclasses.fields(get_class(node._target_))}
-    given = {str(key) for key in node} - {"_target_", "defaults"}
-    for default in node.get("defaults", []):
-        given |= {str(key).split("@")[-1] for key in default} if default != "_self_" else set()
-    assert given == fields
+    fields = dataclasses.fields(get_class(node.get("env", node)._target_))
+    assert keys_of(path) == {"_target_", *(field.name for field in fields)}
 
 
 EACH = [  # every method on one task, the default method on the default task, one on every task
@@ -58,7 +67,7 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
     program = loop.compile(state)
     state, metrics = program(state, jnp.int32(0), jnp.int32(8))
     assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(run.agent.params(state)))
-    shown = run.agent.replay.given(run.agent.num_envs)
+    shown = run.agent.replay.num_demonstrated(run.agent.num_envs)
     assert (state.memory.count - shown == 8).all()
     learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
     assert learned or not run.agent.learners
@@ -81,16 +90,16 @@ def test_every_experiment_builds(experiment: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("algo", ["kle3", "kle3_bayesopt"])
-def test_a_method_that_needs_a_formula_says_so(algo: str) -> None:
-    """Where the world is MuJoCo's."""
-    with pytest.raises(config.UsageError, match="needs an analytic world"):
+def test_a_method_that_needs_an_analytic_environment_says_so(algo: str) -> None:
+    """Where the environment is MuJoCo's."""
+    with pytest.raises(config.UsageError, match="needs an analytic environment"):
         config.build(config.load(["task=halfcheetah", f"algo={algo}"]))
 
 
 def test_settings_stand_on_the_command_line() -> None:
     """They come after the method, and before what else the line says."""
     c = config.load(["settings=thesis"])
-    assert (c.planner.horizon, c.model.hidden, c.imagining.share) == (5, [200], 0)
+    assert (c.planner.horizon, c.model.hidden, c.mbpo.share) == (5, [200], 0)
     c = config.load(["settings=light", "total_steps=10", "algo=hybrid_stochastic"])
     learner = c.learners.policy.learner
     assert (learner.updates, learner.critic.hidden, c.total_steps) == (1, [128, 128], 10)
@@ -111,9 +120,9 @@ def test_thesis_parameters() -> None:
         assert got == (horizon, steps, samples, temperature)
         assert c.task == task
         assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
-        assert (c.imagining.share, c.policy_learner.updates, c.model.hidden) == (0, 1, [200])
+        assert (c.mbpo.share, c.policy_learner.updates, c.model.hidden) == (0, 1, [200])
         assert not c.critic.layer_norm
-        assert not c.objective.ends
+        assert not c.reward.ends
     robots = {  # figure -> task, H, T, K, lambda, policy
         "fig_3_3": ("sawyer_push", 10, 100, 10, 0.01, [128, 128]),
         "fig_3_5": ("ant", 20, 400, 40, 1.0, [128, 64]),
@@ -135,29 +144,30 @@ PLANNERS = [  # methods that have mode=planner
 
 @pytest.mark.parametrize("algo", PLANNERS)
 def test_the_planner_alone_has_neither_policy_nor_critic(algo: str) -> None:
-    """Nor has its objective, whatever the method's own has; with none it looks further."""
-    given = config.load([f"algo={algo}"])
+    """Nor has its objective, for any objective of the method; its horizon is longer then."""
+    composed = config.load([f"algo={algo}"])
     planner, full = (
-        instantiate(node, _convert_="all") for node in (given.controllers.planner, given.objective)
+        instantiate(node, _convert_="all")
+        for node in (composed.controllers.planner, composed.objective)
     )
     assert (planner.policy, planner.objective.critic, planner.objective.policy) == (None,) * 3
     assert planner.objective == dataclasses.replace(full, critic=None, policy=None)
     assert planner.horizon >= (20 if full.critic else 5)
     thesis = config.load(["experiment=thesis/fig_3_2_hopper", f"algo={algo}"]).controllers.planner
-    assert thesis.horizon == (20 if algo == "deterministic_mpc" else 5)
+    assert thesis.horizon == 5
     if "proposal" in thesis:
         assert (thesis.samples, thesis.proposal.std) == (20, 0.3)
 
 
 @pytest.mark.parametrize("algo", ["hybrid_stochastic", "hybrid_deterministic"])
-def test_the_planner_alone_acts_whatever_the_critic_says(algo: str) -> None:
+def test_the_planner_alone_does_not_depend_on_the_critic(algo: str) -> None:
     """Its action is that of the model, the same with other parameters of critic and policy."""
-    given = ["task=pendulum", f"algo={algo}", *SMALL, "model=gaussian", "model.hidden=[8]"]
+    overrides = ["task=pendulum", f"algo={algo}", *SMALL, "model=gaussian", "model.hidden=[8]"]
     if algo == "hybrid_stochastic":
-        given += ["model_planner.horizon=2", "model_planner.samples=3"]
+        overrides += ["model_planner.horizon=2", "model_planner.samples=3"]
     else:
-        given += ["shooting_planner.horizon=2"]
-    run = config.build(config.load(given))
+        overrides += ["shooting_planner.horizon=2"]
+    run = config.build(config.load(overrides))
     obs, init = (
         jnp.array([1.0, 0.0, 0.1]),
         jax.jit(lambda key: run.agent.params(run.agent.init(key))),
@@ -174,6 +184,13 @@ def test_the_planner_alone_acts_whatever_the_critic_says(algo: str) -> None:
     assert (same == other).all()
     same, other = actions("full")
     assert (same != other).all()
+
+
+def test_slots_are_few() -> None:
+    """A method brings its own by its family; the root has what every method has."""
+    root = OmegaConf.load(config.CONF / "train.yaml")
+    slots = [d for d in root.defaults if d != "_self_" and "override" not in str(next(iter(d)))]
+    assert len(slots) <= 18
 
 
 def test_two_copies_are_equal_by_value() -> None:

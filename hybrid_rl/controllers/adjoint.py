@@ -1,6 +1,6 @@
 """Receding-horizon control by the adjoint: correct the policy along the gradient of the return.
 
-    v <- clip(v + W_t g_t),   u = clip(pi(x) + v_t + e),   e ~ N(0, s^2),  s = decay^decisions
+    v <- clip(v + W_t g_t),   u = clip(pi(x) + v_t)
 
 One iteration from v = 0 with W = Sigma(x), the policy's variance, is deterministic hybrid
 learning: u* = Sigma (f_u' rho_{t+1} + r_u) + mu (thesis Algorithm 2 and Theorem 1). Without a
@@ -13,7 +13,7 @@ Algorithm 6 and eq. 6.10). `apply` chooses the time tau and the duration lambda 
     search   plan every T decisions, tau and lambda of greatest return; lambda = 0 is no correction
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import jax
@@ -21,23 +21,33 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, lyapunov, sampling
-from hybrid_rl.types import Lyapunov, Model, Objective, Params, Path, Policy, Spec
+from hybrid_rl.types import (
+    Model,
+    Objective,
+    Params,
+    Path,
+    Policy,
+    Return,
+    Spec,
+    StabilizingPolicy,
+)
 
 APPLY = ("first", "horizon", "search")
 WINDOWS = 8  # values of tau, and of lambda, that a search compares
 
 
-class Held(NamedTuple):
-    """What goes from one decision to the next."""
+class AdjointState(NamedTuple):
+    """What one decision leaves to the next."""
 
-    v: Array  # [T, m] the corrections that rollout_with_actions last, from then on
+    v: Array  # [T, m] the corrections, from the decision before on
+    u: Array  # [m] the action of the decision before
     count: Array  # [] decisions of the episode so far
     memory: Any  # the objective's
 
 
 @dataclass(frozen=True)
 class AdjointController:
-    """A planner by gradients, around a policy or around rest.
+    """A planner by gradients, around a policy or around zero.
 
     Raises:
         ValueError: for counts, gains or rates out of range.
@@ -45,7 +55,7 @@ class AdjointController:
 
     model: Model
     objective: Objective
-    policy: Policy | None = None  # None: corrections around no action at all
+    policy: Policy | None = None  # None: corrections of a zero action
     horizon: int = 5  # T [decisions]
     iterations: int = 1
     warm_start: bool = False  # from the last correction, shifted
@@ -53,10 +63,8 @@ class AdjointController:
     gain_decay: float = 1.0  # of W, per decision of the episode
     normalise: bool = False  # g by its root mean square over the horizon; W is then [u]
     costate_bound: float | None = None  # the author's clip of rho, 1
-    noise_decay: float | None = 0.999  # of the executed noise, per decision of the run; None: none
     apply: str = "first"  # first | horizon | search
-    lyapunov: Lyapunov | None = None  # whose record is logged; None: none
-    level: float | None = None  # the policy takes over where V would exceed it; None: never
+    lyapunov: StabilizingPolicy | None = None  # whose V is logged; None: none
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -70,73 +78,58 @@ class AdjointController:
             raise ValueError(f"adjoint planner: gain={self.gain}: must be above 0")
         if not 0 < self.gain_decay <= 1:
             raise ValueError(f"adjoint planner: gain_decay={self.gain_decay}: must lie in (0, 1]")
-        if self.noise_decay is not None and not 0 < self.noise_decay <= 1:
-            raise ValueError(f"adjoint planner: noise_decay={self.noise_decay}: must lie in (0, 1]")
         if self.apply not in APPLY:
             raise ValueError(f"adjoint planner: apply={self.apply}: choose {', '.join(APPLY)}")
-        if self.level is not None and (self.lyapunov is None or self.policy is None):
-            raise ValueError(f"adjoint planner: level={self.level}: needs lyapunov and policy")
 
-    def init(self, spec: Spec) -> Held:
-        """No correction, nothing seen."""
+    def init(self, spec: Spec) -> AdjointState:
+        """No correction, and the objective's empty memory."""
         v = jnp.zeros((self.horizon, spec.act))
-        return Held(v, jnp.zeros((), jnp.int32), self.objective.begin(spec))
+        none = jnp.zeros((), jnp.int32)
+        return AdjointState(v, v[0], none, self.objective.init(spec))
 
     def act(
-        self, params: Params, state: Held, obs: Array, key: Array
-    ) -> tuple[Array, Held, dict[str, Array]]:
+        self, params: Params, state: AdjointState, obs: Array, key: Array
+    ) -> tuple[Array, AdjointState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
-        looking, noising = jax.random.split(key)
+        drawing = jax.random.split(key)[0]  # the stream of version 0.1, whose numbers stay
         x = self.model.lift(params.model, obs)
-        memory = self.objective.look(params, state.memory, x, looking)
-        plan = _Plan(self, params, memory, x, state.v.shape[1], self.gain_decay**state.count)
+        value, memory = self.objective.prepare(params, state.memory, x, state.u, drawing)
+        plan = _Plan(self, params, value, x, state.v.shape[1], self.gain_decay**state.count)
         due = (self.apply == "first") | (state.count % self.horizon == 0)
         left = sampling.shift(state.v)
         held = left if self.warm_start else jnp.where(due, 0, left)
         if self.apply == "first":
             v = plan.better(held)
         else:
-            v = jax.lax.cond(due, lambda v: plan.window(plan.better(v)), _same, held)
-        action, metrics = plan.mean(x) + v[0], plan.metrics(v)
-        if self.noise_decay is not None:
-            decisions: Any = params.decisions
-            action += self.noise_decay**decisions * jax.random.normal(noising, action.shape)
-        action = jnp.clip(action, -1, 1)
-        if self.level is not None:
-            out = plan.leaves(action, self.level)
-            action = jnp.where(out, jnp.clip(plan.mean(x), -1, 1), action)
-            metrics["planner/handed_over"] = out.astype(jnp.float32)
-        return action, Held(v, state.count + 1, memory), metrics
+            v = jax.lax.cond(due, lambda v: plan.window(plan.better(v)), lambda v: v, held)
+        u = jnp.clip(plan.mean(x) + v[0], -1, 1)
+        return u, AdjointState(v, u, state.count + 1, memory), plan.metrics(v)
 
     def greedy(self) -> "AdjointController":
-        """Without noise."""
-        return replace(self, noise_decay=None)
+        """The same: it has no exploration noise."""
+        return self
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """The problem of one decision, at x [n]."""
+    """The planning problem of one decision, at x [n]."""
 
     of: AdjointController
     params: Params
-    memory: Any
+    value: Return  # J
     x: Array
     act: int  # m
-    share: Array  # [] of W that the episode has left
+    share: Array  # [] of W at this decision
 
     def step(self, x: Array, u: Array) -> Array:
         """The model."""
         return self.of.model.step(self.params.model, x, u)
 
     def mean(self, x: Array) -> Array:
-        """What is corrected."""
+        """The action [m] that is corrected."""
         if self.of.policy is None:
             return jnp.zeros(self.act)
         return self.of.policy.mean(self.params.policy, x)
-
-    def value(self, path: Path) -> Array:
-        """J []."""
-        return self.of.objective.value(self.params, self.memory, path)
 
     def roll(self, v: Array) -> Path:
         """The path under corrections v [T, m]."""
@@ -145,7 +138,7 @@ class _Plan:
     def better(self, v: Array) -> Array:
         """Corrections [T, m] of more return than v [T, m]."""
 
-        def once(v: Array, _: None) -> tuple[Array, None]:
+        def iterate(v: Array, _: None) -> tuple[Array, None]:
             path, bound = self.roll(v), self.of.costate_bound
             g = adjoint.adjoint(self.step, self.mean, self.value, path, bound).gradient
             if self.of.normalise:
@@ -153,17 +146,17 @@ class _Plan:
             u = path.u + self.share * self._gain(path.x[:-1]) * g
             return jnp.clip(u, -1, 1) - (path.u - v), None
 
-        return jax.lax.scan(once, v, None, length=self.of.iterations)[0]
+        return jax.lax.scan(iterate, v, None, length=self.of.iterations)[0]
 
     def _gain(self, x: Array) -> Array | float:
         """W at x [T, n]."""
         if self.of.gain is not None:
             return self.of.gain
-        policy: Any = self.of.policy  # of which __post_init__ made sure
+        policy: Any = self.of.policy  # __post_init__ has checked that there is one
         return jax.vmap(policy.variance, (None, 0))(self.params.policy, x)
 
     def window(self, v: Array) -> Array:
-        """V [T, m], or with `search` the part of it, zero elsewhere, or none, that earns most."""
+        """Corrections v [T, m]; with `search` the window of them with the greatest return."""
         if self.of.apply != "search":
             return v
         T = len(v)
@@ -175,36 +168,27 @@ class _Plan:
         returns = jax.vmap(lambda v: self.value(self.roll(v)))(parts)
         return parts[jnp.argmax(returns)]
 
-    def leaves(self, u: Array, level: float) -> Array:
-        """[] bool: whether u [m] leads out of the level set."""
-        inside: Any = self.of.lyapunov
-        return lyapunov.exits_level_set(inside.lyapunov, self.step, self.x, u, level)
-
     def metrics(self, v: Array) -> dict[str, Array]:
-        """What is logged of corrections v [T, m]."""
+        """Metrics of corrections v [T, m]."""
         mean, path, nominal = self.mean(self.x), self.roll(v), self.roll(0 * v)
         action = mean + v[0]
         around = adjoint.adjoint(self.step, self.mean, self.value, nominal)
         insertion = adjoint.mode_insertion_gradient(self.step, self.value, around, action)
-        found = {
+        metrics = {
             "planner/mode_insertion_gradient": insertion,
             "planner/planned_return": self.value(path),
         }
         if self.of.policy is not None:
             own, correction = jnp.linalg.norm(mean), jnp.linalg.norm(action - mean)
-            found["planner/policy_share"] = own / (own + correction + 1e-6)
+            metrics["planner/policy_share"] = own / (own + correction + 1e-6)
             if self.of.gain is None:
                 variance = self.of.policy.variance(self.params.policy, self.x)
-                found |= adjoint.per_variance(insertion, variance)
+                metrics |= adjoint.per_variance(insertion, variance)
         if self.of.lyapunov is not None:
-            kept = lyapunov.record(self.of.lyapunov.lyapunov, self.step, self.mean, path)
-            found |= {
-                "planner/lyapunov": kept.now,
-                "planner/lyapunov_rate": kept.rate,
-                "planner/lyapunov_bound": kept.bound,
+            record = lyapunov.record(self.of.lyapunov.lyapunov, self.step, self.mean, path)
+            metrics |= {
+                "planner/lyapunov": record.now,
+                "planner/lyapunov_rate": record.rate,
+                "planner/lyapunov_bound": record.bound,
             }
-        return found
-
-
-def _same(v: Array) -> Array:
-    return v
+        return metrics

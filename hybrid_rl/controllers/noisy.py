@@ -1,45 +1,51 @@
-"""u = clip(pi(x) + e): a policy, and noise beside it.
+"""u = clip(u' + share e): exploration noise around any controller, whose action is u'.
 
     normal   e ~ level N(0, I)
     uniform  e ~ level U(-1, 1)
-    ou       e' = (1 - theta dt) e + level sqrt(dt) N(0, I)       Ornstein and Uhlenbeck's
+    ou       e' = (1 - theta dt) e + level sqrt(dt) N(0, I)       Ornstein-Uhlenbeck
+    held     e ~ level N(0, I), drawn every `hold` decisions
 
-What ergodic exploration around an equilibrium is compared with (thesis section 6.3.2), and how
-deep deterministic policy gradients explore (Lillicrap et al. 2016).
+share = decay^k max(1 - k / until, 0) after k decisions of the run. The baselines of ergodic
+exploration (thesis section 6.3.2), the exploration of deep deterministic policy gradients
+(Lillicrap et al. 2016), and the executed noise of thesis Algorithm 2.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Params, Policy, Spec
+from hybrid_rl.types import Controller, Params, Spec
 
-KINDS = ("normal", "uniform", "ou")
+KINDS = ("normal", "uniform", "ou", "held")
 
 
-class Held(NamedTuple):
-    """What goes from one decision to the next."""
+class NoisyState(NamedTuple):
+    """The noise, and the inner controller's state."""
 
     e: Array  # [m]
-    dt: Array  # [] [s] of a decision
+    count: Array  # [] decisions of the episode so far
+    dt: Array  # [s] of a decision
+    inner: Any
 
 
 @dataclass(frozen=True)
 class NoisyController:
-    """The policy's mean with noise of full actuation's `level`.
+    """`controller` with noise; evaluation leaves it out.
 
     Raises:
         ValueError: for an unknown kind, or numbers out of range.
     """
 
-    policy: Policy
+    controller: Controller
     kind: str = "normal"
     level: float = 0.1  # [u], of ou [u / sqrt(s)]
     theta: float = 0.15  # [1/s] of ou
-    decay: int | None = None  # decisions of the run until there is none left; None: it stays
+    hold: int = 1  # [decisions] of held
+    decay: float = 1.0  # factor per decision of the run
+    until: int | None = None  # decisions of the run over which it falls to 0; None: it stays
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -47,30 +53,45 @@ class NoisyController:
             raise ValueError(f"noisy.kind={self.kind}: choose {', '.join(KINDS)}")
         if self.level < 0 or self.theta < 0:
             raise ValueError("noisy: level and theta must be 0 or more")
-        if self.decay is not None and self.decay < 1:
-            raise ValueError(f"noisy.decay={self.decay}: must be 1 or more")
+        if self.hold < 1:
+            raise ValueError(f"noisy.hold={self.hold}: must be 1 or more")
+        if not 0 < self.decay <= 1:
+            raise ValueError(f"noisy.decay={self.decay}: must lie in (0, 1]")
+        if self.until is not None and self.until < 1:
+            raise ValueError(f"noisy.until={self.until}: must be 1 or more")
 
-    def init(self, spec: Spec) -> Held:
+    def init(self, spec: Spec) -> NoisyState:
         """No noise yet."""
-        return Held(jnp.zeros(spec.act), jnp.float32(spec.dt))
+        none, dt = jnp.zeros((), jnp.int32), jnp.float32(spec.dt)
+        return NoisyState(jnp.zeros(spec.act), none, dt, self.controller.init(spec))
 
     def act(
-        self, params: Params, state: Held, obs: Array, key: Array
-    ) -> tuple[Array, Held, dict[str, Array]]:
-        """Action [m]. The key is consumed."""
-        if self.kind == "uniform":
-            e = self.level * jax.random.uniform(key, state.e.shape, minval=-1, maxval=1)
-        else:
-            e = self.level * jax.random.normal(key, state.e.shape)
-        if self.kind == "ou":
-            e = (1 - self.theta * state.dt) * state.e + jnp.sqrt(state.dt) * e
-        share: Any = 1.0
-        if self.decay is not None:
-            decisions: Any = params.decisions
-            share = jnp.maximum(1 - decisions / self.decay, 0)
-        u = jnp.clip(self.policy.mean(params.policy, obs) + share * e, -1, 1)
-        return u, state._replace(e=e), {}
+        self, params: Params, state: NoisyState, obs: Array, key: Array
+    ) -> tuple[Array, NoisyState, dict[str, Array]]:
+        """Action [m], next state, metrics of the inner controller. The key is consumed."""
+        acting, drawing = jax.random.split(key)
+        u, inner, metrics = self.controller.act(params, state.inner, obs, acting)
+        e = self._noise(state, drawing)
+        after = NoisyState(e, state.count + 1, state.dt, inner)
+        return jnp.clip(u + self._share(params) * e, -1, 1), after, metrics
 
-    def greedy(self) -> "NoisyController":
-        """Without noise."""
-        return replace(self, level=0.0, decay=None)
+    def _noise(self, state: NoisyState, key: Array) -> Array:
+        """e [m] of this decision. The key is consumed."""
+        if self.kind == "uniform":
+            return self.level * jax.random.uniform(key, state.e.shape, minval=-1, maxval=1)
+        e = self.level * jax.random.normal(key, state.e.shape)
+        if self.kind == "ou":
+            return (1 - self.theta * state.dt) * state.e + jnp.sqrt(state.dt) * e
+        if self.kind == "held":
+            return jnp.where(state.count % self.hold == 0, e, state.e)
+        return e
+
+    def _share(self, params: Params) -> Any:
+        """[] of the noise that is left."""
+        decisions: Any = params.decisions
+        share: Any = 1.0 if self.decay == 1 else self.decay**decisions
+        return share if self.until is None else share * jnp.maximum(1 - decisions / self.until, 0)
+
+    def greedy(self) -> Controller:
+        """The inner controller without exploration."""
+        return self.controller.greedy()

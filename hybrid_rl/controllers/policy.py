@@ -1,32 +1,35 @@
-"""u = pi(x): act from what was learned, without planning."""
+"""u = pi(x): act by the learned policy, without planning."""
 
 from dataclasses import dataclass, replace
 
 import jax
 from jax import Array
 
-from hybrid_rl.types import Params, Policy, Spec
+from hybrid_rl.core.lifting import lift
+from hybrid_rl.types import Model, Params, Policy, Spec
 
 
 @dataclass(frozen=True)
 class PolicyController:
-    """The policy alone: samples while it learns, its mean when `explore` is off."""
+    """The policy alone: samples during training, its mean when `explore` is off."""
 
     policy: Policy
+    model: Model | None = None  # lifts observations to planning states; None: they are the same
     explore: bool = True
 
     def init(self, spec: Spec) -> tuple[()]:
-        """Nothing is kept."""
+        """No state."""
         return ()
 
     def act(
         self, params: Params, state: tuple[()], obs: Array, key: Array
     ) -> tuple[Array, tuple[()], dict[str, Array]]:
         """Action [m]. The key is consumed."""
-        mean = self.policy.mean(params.policy, obs)
+        x = lift(self.model, params.model, obs)
+        mean = self.policy.mean(params.policy, x)
         if self.explore:
             noise = jax.random.normal(key, mean.shape)
-            return self.policy.sample(params.policy, obs, noise)[0], state, {}
+            return self.policy.sample(params.policy, x, noise)[0], state, {}
         return mean, state, {}
 
     def greedy(self) -> "PolicyController":

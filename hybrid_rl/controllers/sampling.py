@@ -1,8 +1,8 @@
 """Receding-horizon control by sampling: plan with the core, execute, shift.
 
 Stochastic hybrid learning (thesis Algorithm 3) with proposals from the policy; MPPI on a
-learned model with proposals from noise. `execute` says what is done with the weighted
-candidates: `mean` is sum_k w_k v_k (the thesis); `sample` draws one of them, which leaves the
+learned model with proposals from noise. `execute` chooses the action from the weighted
+candidates: `mean` executes sum_k w_k v_k (the thesis); `sample` draws one of them, which keeps the
 policy's exploration in the data.
 """
 
@@ -25,7 +25,7 @@ class SamplingController:
 
     Raises:
         ValueError: for a horizon, a number of samples or a temperature that is not positive,
-            an unknown way to execute, or `log_density` of candidates that are of several laws.
+            an unknown way to execute, or `log_density` of candidates from several distributions.
     """
 
     model: Model
@@ -38,7 +38,7 @@ class SamplingController:
     normalise: bool = False
     log_density: bool = False  # the thesis' p(v) in the weight
     execute: str = "mean"
-    rest: float = 0.0  # [u] what a plan is before the first decision, and beyond its end
+    rest: float = 0.0  # [u] of a plan before the first decision, and beyond its end
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -52,14 +52,14 @@ class SamplingController:
             raise ValueError(f"planner.execute={self.execute}: choose {' or '.join(EXECUTE)}")
         if self.log_density and getattr(self.proposal, "mixed", False):
             raise ValueError(
-                "planner.log_density=True: needs candidates of one law; "
+                "planner.log_density=True: needs candidates of one distribution; "
                 "choose proposal=policy or proposal=noise, or false"
             )
 
     def init(self, spec: Spec) -> tuple[Array, Any]:
         """The plan [T, m] at `rest`, and the first carries [K, ...] of the proposals."""
-        places = jnp.arange(self.samples) / self.samples
-        carries = jax.vmap(lambda place: self.proposal.init(spec, place))(places)
+        quantiles = jnp.arange(self.samples) / self.samples
+        carries = jax.vmap(lambda q: self.proposal.init(spec, q))(quantiles)
         return jnp.full((self.horizon, spec.act), self.rest), carries
 
     def act(
@@ -102,7 +102,7 @@ class SamplingController:
         return jax.vmap(lambda path: self.objective.rewards(params, path)[0])(first)
 
     def _agreement(self, params: Params, x: Array, plan: Array) -> dict[str, Array]:
-        """How far the weighted mean is from what the policy would do.
+        """Difference between the weighted mean and the policy's action.
 
         The share |mu| / (|mu| + |u - mu|) is 1 where the policy alone acts, 0 where the model does.
         """

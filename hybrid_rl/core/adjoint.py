@@ -74,8 +74,8 @@ def adjoint(
         return rho, (rho, g)
 
     along = (path.x[:-1], path.u, dJ.x[:-1], dJ.u)
-    rows = scan_unroll(len(path.u))
-    costate, gradient = jax.lax.scan(back, dJ.x[-1], along, reverse=True, unroll=rows)[1]
+    unroll = scan_unroll(len(path.u))
+    costate, gradient = jax.lax.scan(back, dJ.x[-1], along, reverse=True, unroll=unroll)[1]
     costate = jnp.concatenate([costate, dJ.x[-1:]])
     if bound is not None:
         costate = jnp.clip(costate, -bound, bound)

@@ -21,20 +21,6 @@ class Points(NamedTuple):
     log_p: Array  # [N] log of weights that sum to one
 
 
-def box(name: str, coordinates: tuple[int, ...], low: tuple, high: tuple) -> None:
-    """Raise ValueError where these make no search space."""
-    if not len(coordinates) == len(low) == len(high) or not coordinates:
-        raise ValueError(f"{name}: coordinates, low and high must be of one length, 1 or more")
-    if not all(a < b for a, b in zip(low, high, strict=True)):
-        raise ValueError(f"{name}: low={list(low)} must lie below high={list(high)}")
-
-
-def uniform(low: tuple[float, ...], high: tuple[float, ...], count: int, key: Array) -> Array:
-    """Points s [N, v] in the box. The key is consumed."""
-    shape = (count, len(low))
-    return jax.random.uniform(key, shape, minval=jnp.array(low), maxval=jnp.array(high))
-
-
 def log_sum(s: Array, x: Array, variance: Array, counted: Array | None = None) -> Array:
     """log sum_t N(s; x_t, diag(variance)) [N] at s [N, v], of x [M, v] where `counted` [M]."""
     apart = (s[:, None] - x[None]) ** 2 / variance[None, None]
@@ -50,13 +36,7 @@ def divergence(points: Points, log_q: Array, volume: float) -> Array:
     return jnp.sum(p * (points.log_p + jnp.log(count / volume) - log_q))
 
 
-def spread(points: Points, x: Array, variance: Array) -> Array:
+def mean_distance(points: Points, x: Array, variance: Array) -> Array:
     """1/2 mean_t sum_i p_i |s_i - x_t|^2 in units of the variance [v], for x [M, v]."""
     apart = (points.s[:, None] - x[None]) ** 2 / variance[None, None]
     return 0.5 * jnp.mean(jnp.exp(points.log_p) @ jnp.sum(apart, -1))
-
-
-def outside(x: Array, low: tuple[float, ...], high: tuple[float, ...]) -> Array:
-    """Mean over x [M, v] of the squared distance to the box."""
-    over = jnp.maximum(x - jnp.array(high)[None], 0) + jnp.maximum(jnp.array(low)[None] - x, 0)
-    return jnp.mean(jnp.sum(over**2, -1))

@@ -1,4 +1,4 @@
-"""Q(x, u): an ensemble of action values, read by its minimum (Fujimoto et al. 2018, eq. 10)."""
+"""Q(x, u): an ensemble of action values, reduced to its minimum (Fujimoto et al. 2018, eq. 10)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -34,8 +34,8 @@ class EnsembleQ:
         return MLP(self.hidden, 1, self.activation, self.layer_norm)
 
     def init(self, key: Array, spec: Spec) -> Any:
-        """First parameters, members on axis 0. The key is consumed."""
-        return ensemble_init(self._net(), key, self.members, jnp.zeros(spec.obs + spec.act))
+        """Initial parameters, members on axis 0. The key is consumed."""
+        return ensemble_init(self._net(), key, self.members, jnp.zeros(spec.n + spec.act))
 
     def all(self, params: Any, x: Array, u: Array) -> Array:
         """Q of every member [members, ...] at x [..., n] and u [..., m]."""

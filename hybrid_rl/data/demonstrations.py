@@ -122,9 +122,9 @@ class Demonstrations:
         """Check the fields and the file."""
         if self.episodes is not None and self.episodes < 1:
             raise ValueError(f"num_demonstrations={self.episodes}: must be 1 or more, or null")
-        self.recall()
+        self.load()
 
-    def recall(self) -> Transition:
+    def load(self) -> Transition:
         """Its decisions [N], in order."""
         found, said = load(self.file), f"demonstrations={self.file}:"
         if str(found["task"]) != self.task:

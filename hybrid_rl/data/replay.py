@@ -1,19 +1,18 @@
-"""Replay memory: a ring of packed rows, uniform sampling.
+"""Replay memory: a ring of packed rows, sampled uniformly.
 
-A transition is one row of float32 [width]; the row of the same world one decision later gives
-the action that was executed next, so that it is stored once. What was demonstrated stands
-in it before the first decision, where it was given any.
+A transition is one row of float32 [width]; the next executed action is that of the row of the same
+environment one decision later, so that it is stored once. The memory starts with the
+demonstrations, if there are any.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import jax
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Spec, Transition
+from hybrid_rl.types import Batch, Demonstrations, Spec, Transition
 
 
 @struct.dataclass
@@ -21,12 +20,12 @@ class Memory:
     """The ring. `rows` is overwritten in place where it is donated."""
 
     rows: Array  # [C, E, width] float32
-    count: Array  # [] int32 decisions of each world ever added
+    count: Array  # [] int32 decisions of each environment ever added
 
 
 @dataclass(frozen=True)
 class Replay:
-    """A bounded memory of `capacity` decisions, over all worlds of one learner.
+    """A bounded memory of `capacity` decisions, over all environments of one learner.
 
     Raises:
         ValueError: for a capacity that is not a positive whole number, or too little for
@@ -34,20 +33,23 @@ class Replay:
     """
 
     capacity: int = 1_000_000
-    demonstrations: Any = None  # offers `recall`: what the memory holds at first
+    demonstrations: Demonstrations | None = None  # the initial contents
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if not isinstance(self.capacity, int) or self.capacity < 1:
             raise ValueError(f"replay.capacity={self.capacity}: must be a whole number, 1 or more")
-        if self.capacity < self.given(1):
+        if self.capacity < self.num_demonstrated(1):
             raise ValueError(
-                f"replay.capacity={self.capacity}: the demonstrations alone are {self.given(1)}"
+                f"replay.capacity={self.capacity}: the demonstrations alone have "
+                f"{self.num_demonstrated(1)} decisions"
             )
 
-    def given(self, worlds: int) -> int:
-        """Decisions of each of `worlds` worlds that the memory holds at first."""
-        return 0 if self.demonstrations is None else len(self.demonstrations.recall()[2]) // worlds
+    def num_demonstrated(self, worlds: int) -> int:
+        """Decisions of each of `worlds` environments in the initial memory."""
+        if self.demonstrations is None:
+            return 0
+        return len(self.demonstrations.load().reward) // worlds
 
     @staticmethod
     def width(spec: Spec) -> int:
@@ -59,31 +61,30 @@ class Replay:
         return 4 * self.capacity * self.width(spec)
 
     def init(self, spec: Spec, worlds: int) -> Memory:
-        """The first memory for `worlds` worlds: empty, or with what was demonstrated.
+        """The memory for `worlds` environments: empty, or with the demonstrations.
 
-        Demonstrations are dealt out over the worlds, each a stretch in order; a stretch that
-        was cut off inside an episode ends as truncated, since what follows is of another.
+        Demonstrations are divided among the environments, a stretch in order for each. A stretch
+        that is cut inside an episode ends as truncated, since another episode follows it.
         """
         length = max(self.capacity // worlds, 2)
         rows = jnp.zeros((length, worlds, self.width(spec)))
-        given = self.given(worlds)
-        if given:
-            flat = _packed(Transition(*map(jnp.asarray, self.demonstrations.recall())))
-            stretches = flat[: given * worlds].reshape(worlds, given, -1).swapaxes(0, 1)
+        count = self.num_demonstrated(worlds)
+        if self.demonstrations is not None and count:
+            flat = _packed(Transition(*map(jnp.asarray, self.demonstrations.load())))
+            stretches = flat[: count * worlds].reshape(worlds, count, -1).swapaxes(0, 1)
             terminated, truncated = spec.obs + spec.act + 1, spec.obs + spec.act + 2
             cut = 1 - stretches[-1, :, terminated]
-            rows = rows.at[:given].set(stretches.at[-1, :, truncated].set(cut))
-        return Memory(rows, jnp.full((), given, jnp.int32))
+            rows = rows.at[:count].set(stretches.at[-1, :, truncated].set(cut))
+        return Memory(rows, jnp.full((), count, jnp.int32))
 
     def add(self, memory: Memory, new: Transition) -> Memory:
-        """Memory with one decision of every world; arrays of `new` lead with [E]."""
-        row = _packed(new)
-        at = memory.count % memory.rows.shape[0]
-        rows = jax.lax.dynamic_update_index_in_dim(memory.rows, row, at, 0)
+        """Memory with one decision of every environment; arrays of `new` lead with [E]."""
+        slot = memory.count % memory.rows.shape[0]
+        rows = jax.lax.dynamic_update_index_in_dim(memory.rows, _packed(new), slot, 0)
         return Memory(rows, memory.count + 1)
 
     def sample(self, memory: Memory, spec: Spec, batch_size: int, key: Array) -> Batch:
-        """`batch_size` transitions drawn alike among those whose successor is known.
+        """`batch_size` transitions, uniform among those whose successor is in the memory.
 
         The key is consumed.
         """
@@ -96,15 +97,26 @@ class Replay:
         time, world = oldest + draw // worlds, draw % worlds
         flat = memory.rows.reshape(-1, width)
         row = flat[(time % length) * worlds + world]
-        o, m = spec.obs, spec.act
-        later = flat[((time + 1) % length) * worlds + world, o : o + m]
-        reward, terminated, truncated = row[:, o + m], row[:, o + m + 1], row[:, o + m + 2]
-        return Batch(
-            row[:, :o], row[:, o : o + m], reward, terminated, truncated, row[:, o + m + 3 :], later
-        )
+        later = flat[((time + 1) % length) * worlds + world]
+        action = slice(spec.obs, spec.obs + spec.act)
+        return Batch(*unpack(row, spec), next_action=later[:, action])
+
+
+def unpack(rows: Array, spec: Spec) -> Transition:
+    """The transitions [...] in rows [..., width] of a memory."""
+    o, m = spec.obs, spec.act
+    reward, terminated, truncated = (rows[..., o + m + i] for i in range(3))
+    obs, action, after = rows[..., :o], rows[..., o : o + m], rows[..., o + m + 3 :]
+    return Transition(obs, action, reward, terminated, truncated, after)
+
+
+def as_batch(new: Transition) -> Batch:
+    """Transitions [B, ...] as a batch, whose next actions are unknown."""
+    flags = (flag.astype(jnp.float32) for flag in (new.terminated, new.truncated))
+    return Batch(new.obs, new.action, new.reward, *flags, new.next_obs)
 
 
 def _packed(new: Transition) -> Array:
-    """Rows [B, width] of transitions that lead with [B]."""
+    """Rows [B, width] of transitions [B, ...]."""
     flags = [v.astype(jnp.float32)[:, None] for v in new[2:5]]
     return jnp.concatenate([new.obs, new.action, *flags, new.next_obs], axis=-1)

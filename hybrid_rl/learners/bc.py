@@ -2,13 +2,12 @@
 
     loss = -mean log pi(u | x),   (x, u) from demonstrations alone
 
-What the world pays, and what the learner itself did there, does not enter: the batch of
-experience is left aside. Actions at the edge of [-1, 1], where a squashed density has no bound,
-are taken as `edge`.
+The batch of experience is not used. Actions are clipped to [-edge, edge], since a squashed density
+has no bound at -1 and 1.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -16,12 +15,13 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.core.lifting import lift, lifted_spec
+from hybrid_rl.types import Batch, Demonstrations, LearnedPolicy, Model, Params, Spec
 
 
 @struct.dataclass
 class CloningState:
-    """What behaviour cloning carries."""
+    """The state of behaviour cloning."""
 
     policy: Any
     optimiser: Any
@@ -29,7 +29,7 @@ class CloningState:
 
 @dataclass(frozen=True)
 class BehaviourCloning:
-    """Gradient steps on a policy that offers `log_prob`, from what `demonstrations` recalls.
+    """Gradient steps on the log-likelihood of demonstrated actions.
 
     Without `demonstrations` it holds a learned policy, and cannot be updated.
 
@@ -37,15 +37,18 @@ class BehaviourCloning:
         ValueError: for a rate or an edge out of range.
     """
 
-    policy: Any
-    demonstrations: Any
+    policy: LearnedPolicy
+    demonstrations: Demonstrations | None
+    model: Model | None = None  # lifts observations to planning states; None: they are the same
     learning_rate: float = 3e-3
-    edge: float = 0.99  # greatest action that is imitated
+    edge: float = 0.99  # greatest imitated action
     batch_size: int = 128
     updates: float = 0.25  # per decision
 
-    batches = 1
-    early = False  # it waits for the end of random decisions
+    data: ClassVar[str] = "uniform"
+    owns: ClassVar[tuple[str, ...]] = ("policy",)
+    batches: ClassVar[int] = 1
+    early: ClassVar[bool] = False  # it waits for the end of random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -55,11 +58,17 @@ class BehaviourCloning:
             raise ValueError(f"cloning_learner.edge={self.edge}: must lie in (0, 1)")
 
     def init(self, key: Array, spec: Spec) -> CloningState:
-        """First parameters and optimiser. The key is consumed."""
-        policy = self.policy.init(key, spec)
+        """Initial parameters and optimiser. The key is consumed."""
+        policy = self.policy.init(key, lifted_spec(self.model, spec))
         if self.demonstrations is not None:
-            policy = self.policy.observe(policy, jnp.asarray(self.demonstrations.recall().obs))
+            model = None if self.model is None else self.model.init(key, spec)
+            x = self._states(model, self.demonstrations.load().obs)
+            policy = self.policy.observe(policy, x)
         return CloningState(policy, optax.adam(self.learning_rate).init(policy))
+
+    def _states(self, model: Any, obs: Any) -> Array:
+        """Planning states [B, n] of observations [B, o], by the parameters of the model."""
+        return jax.vmap(lambda obs: lift(self.model, model, obs))(jnp.asarray(obs))
 
     def params(self, state: CloningState) -> dict[str, Any]:
         """The policy."""
@@ -69,10 +78,11 @@ class BehaviourCloning:
         self, state: CloningState, params: Params, batch: Batch, key: Array
     ) -> tuple[CloningState, dict[str, Array]]:
         """One Adam step on `batch_size` demonstrated decisions. The key is consumed."""
-        shown = self.demonstrations.recall()
-        drawn = jax.random.randint(key, (self.batch_size,), 0, len(shown.reward))
-        x = jnp.asarray(shown.obs)[drawn]
-        u = jnp.clip(jnp.asarray(shown.action)[drawn], -self.edge, self.edge)
+        assert self.demonstrations is not None
+        demonstrated = self.demonstrations.load()
+        drawn = jax.random.randint(key, (self.batch_size,), 0, len(demonstrated.reward))
+        x = self._states(params.model, jnp.asarray(demonstrated.obs)[drawn])
+        u = jnp.clip(jnp.asarray(demonstrated.action)[drawn], -self.edge, self.edge)
 
         def loss(policy: Any) -> Array:
             return -self.policy.log_prob(policy, x, u).mean()

@@ -1,39 +1,34 @@
-"""Measure what the world pays: y = r at s, one measurement every few decisions.
-
-A replay memory of two decisions hands out the newest whose successor is known, so that the
-belief is told of the path in order (thesis Algorithm 9, lines 15 to 20).
-"""
+"""Update a belief by measurements of the reward, y = r at s (thesis Algorithm 9, lines 15-20)."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
-import jax.numpy as jnp
+import jax
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.core.domain import Box
+from hybrid_rl.types import Batch, Belief, Params, Spec
 
 
 @dataclass(frozen=True)
 class BeliefLearner:
-    """Adds (s, r) of the batch to a belief, s after the decision.
+    """Adds (s, r) of the latest decision to a belief, s after the decision.
 
     Raises:
-        ValueError: for a batch of more than one.
+        ValueError: for an interval that is not positive.
     """
 
-    belief: Any
-    coordinates: tuple[int, ...] = (0,)  # of the observation, [v]
-    batch_size: int = 1
-    updates: float = 0.05  # measurements a decision
+    belief: Belief
+    domain: Box  # whose coordinates of the observation are s
+    every: int = 20  # decisions between two measurements
 
-    batches = 1
-    early = False  # it waits for the end of random decisions
+    data: ClassVar[str] = "latest"
+    owns: ClassVar[tuple[str, ...]] = ("belief",)
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        object.__setattr__(self, "coordinates", tuple(self.coordinates))
-        if self.batch_size != 1:
-            raise ValueError(f"belief_learner.batch_size={self.batch_size}: must be 1")
+        if self.every < 1:
+            raise ValueError(f"belief_learner.every={self.every}: must be 1 or more")
 
     def init(self, key: Array, spec: Spec) -> Any:
         """The belief before any measurement. The key is consumed."""
@@ -46,12 +41,17 @@ class BeliefLearner:
     def update(
         self, state: Any, params: Params, batch: Batch, key: Array
     ) -> tuple[Any, dict[str, Array]]:
-        """One measurement."""
-        s, y = batch.next_obs[0][jnp.array(self.coordinates)], batch.reward[0]
-        after = self.belief.add(state, s, y)
+        """One measurement of each environment. The key is consumed."""
+        s, y = self.domain.of(batch.next_obs), batch.reward
+
+        def add(state: Any, measured: tuple[Array, ...]) -> tuple[Any, Array]:
+            s, y, key = measured
+            return self.belief.add(state, s, y, key), self.belief.loss(state, s, y)
+
+        after, losses = jax.lax.scan(add, state, (s, y, jax.random.split(key, len(y))))
         return after, {
-            "belief/prediction_loss": self.belief.loss(state, s, y),
-            "belief/best": self.belief.best(after),
-            "belief/place": s[0],
-            "belief/value": y,
+            "belief/prediction_loss": losses.mean(),
+            **self.belief.report(after),
+            "belief/position": s[-1, 0],
+            "belief/value": y[-1],
         }

@@ -9,7 +9,7 @@ members, of which the original has one. A time limit is no end of the task.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -17,12 +17,13 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.types import Batch, Critic, LearnedPolicy, Model, Params, Spec
 
 
 @struct.dataclass
 class DDPGState:
-    """What it carries."""
+    """The state of DDPG."""
 
     policy: Any
     critic: Any
@@ -34,14 +35,15 @@ class DDPGState:
 
 @dataclass(frozen=True)
 class DDPG:
-    """Deterministic policy gradients over a `policy` that offers `observe`, and a `critic`.
+    """Deterministic policy gradients on the mean of a policy and a critic.
 
     Raises:
         ValueError: for rates, a discount or a smoothing out of range.
     """
 
-    policy: Any
-    critic: Any
+    policy: LearnedPolicy
+    critic: Critic
+    model: Model | None = None  # lifts observations to planning states; None: they are the same
     policy_learning_rate: float = 1e-4
     critic_learning_rate: float = 1e-3
     discount: float = 0.99
@@ -49,8 +51,10 @@ class DDPG:
     batch_size: int = 128
     updates: float = 1  # per decision
 
-    batches = 1
-    early = False  # it waits for the end of random decisions
+    data: ClassVar[str] = "uniform"
+    owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
+    batches: ClassVar[int] = 1
+    early: ClassVar[bool] = False  # it waits for the end of random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -63,9 +67,10 @@ class DDPG:
                 raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
 
     def init(self, key: Array, spec: Spec) -> DDPGState:
-        """First parameters, optimisers and targets. The key is consumed."""
-        of_policy, of_critic = jax.random.split(key)
-        policy, critic = self.policy.init(of_policy, spec), self.critic.init(of_critic, spec)
+        """Initial parameters, optimisers and targets. The key is consumed."""
+        for_policy, for_critic = jax.random.split(key)
+        spec = lifted_spec(self.model, spec)
+        policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
         return DDPGState(
             policy,
             critic,
@@ -83,6 +88,7 @@ class DDPG:
         self, state: DDPGState, params: Params, batch: Batch, key: Array
     ) -> tuple[DDPGState, dict[str, Array]]:
         """One step of critic, policy and targets."""
+        batch = lifted_batch(self.model, params.model, batch)
         state = state.replace(
             policy=self.policy.observe(state.policy, batch.obs),
             target_policy=self.policy.observe(state.target_policy, batch.obs),

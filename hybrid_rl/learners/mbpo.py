@@ -1,47 +1,55 @@
-"""Any learner, fed with what the model imagines beside what was seen.
+"""Model-based policy optimisation: any learner, with data that the model imagines.
 
-A share of each batch is replaced: from the states of its first rows the policy acts in the model,
+A share of each batch is replaced: from the first states of the batch the policy acts in the model,
 
     u ~ pi(x),   x' ~ f(x, u),   r, end = reward(x, u),
 
-for 1 to `steps` decisions, of which the last is kept; of an ensemble, each row's f is one member,
-drawn again at each step. These are the branched rollouts of Janner et al. 2019 (MBPO), drawn for
+for 1 to `steps` decisions, of which the last is used; of an ensemble, f is one member for each
+branch, drawn at each step. These are the branched rollouts of Janner et al. 2019 (MBPO), drawn for
 each update instead of stored.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Batch, Learner, Params, Policy, Spec
+from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.types import Batch, Params, Policy, Reward, Spec, Trainable, UniformLearner
 
 
 @dataclass(frozen=True)
 class MBPO:
-    """`learner` with `share` of its data from `model` and `reward`, by `policy`; 0: untouched.
+    """`learner` with a `share` of its data imagined by `model`, `reward` and `policy`.
 
-    The model's planning state must be the observation itself.
+    It lifts the observations: the learner gets planning states, and needs no model of its own.
 
     Raises:
         ValueError: for a share or a number of steps out of range.
     """
 
-    learner: Learner
-    model: Any
-    reward: Any
+    learner: UniformLearner
+    model: Trainable
+    reward: Reward
     policy: Policy
     share: float = 0.9
     steps: int = 1  # longest branch [decisions]
 
+    data: ClassVar[str] = "uniform"
+
     def __post_init__(self) -> None:
         """Check the fields."""
         if not 0 <= self.share <= 1:
-            raise ValueError(f"imagining.share={self.share}: must lie in [0, 1]")
+            raise ValueError(f"mbpo.share={self.share}: must lie in [0, 1]")
         if not isinstance(self.steps, int) or self.steps < 1:
-            raise ValueError(f"imagining.steps={self.steps}: must be a whole number, 1 or more")
+            raise ValueError(f"mbpo.steps={self.steps}: must be a whole number, 1 or more")
+
+    @property
+    def owns(self) -> tuple[str, ...]:
+        """The learner's."""
+        return self.learner.owns
 
     @property
     def batch_size(self) -> int:
@@ -64,45 +72,47 @@ class MBPO:
         return self.learner.updates
 
     def init(self, key: Array, spec: Spec) -> Any:
-        """The learner's first state. The key is consumed."""
-        return self.learner.init(key, spec)
+        """The learner's initial state. The key is consumed."""
+        return self.learner.init(key, lifted_spec(self.model, spec))
 
     def params(self, state: Any) -> dict[str, Any]:
-        """What the learner owns."""
+        """The learner's."""
         return self.learner.params(state)
 
     def update(
         self, state: Any, params: Params, batch: Batch, key: Array
     ) -> tuple[Any, dict[str, Array]]:
         """One step of the learner on the mixed batch. The key is consumed."""
+        batch = lifted_batch(self.model, params.model, batch)
         count = round(self.share * self.batch_size)
         if not count:
             return self.learner.update(state, params, batch, key)
         imagining, updating = jax.random.split(key)
-        dream = self._dream(params, batch.obs[:count], imagining)
-        batch = jax.tree.map(lambda new, old: jnp.concatenate([new, old[count:]]), dream, batch)
+        imagined = self._imagine(params, batch.obs[:count], imagining)
+        batch = batch._replace(next_action=None)
+        batch = jax.tree.map(lambda new, old: jnp.concatenate([new, old[count:]]), imagined, batch)
         return self.learner.update(state, params, batch, updating)
 
-    def _dream(self, params: Params, x: Array, key: Array) -> Batch:
-        """One imagined transition for each of the states x [b, o]."""
+    def _imagine(self, params: Params, x: Array, key: Array) -> Batch:
+        """One imagined transition for each of the states x [b, n]."""
         acting, moving, choosing, stopping = jax.random.split(key, 4)
         m = jax.eval_shape(self.policy.mean, params.policy, x[0]).shape[-1]
-        length, (b, o) = self.steps, x.shape
+        length, (b, n) = self.steps, x.shape
         along = (
             jax.random.normal(acting, (length, b, m)),
-            jax.random.normal(moving, (length, b, o)),
+            jax.random.normal(moving, (length, b, n)),
             jax.random.split(choosing, length),
             jnp.arange(length),
         )
         last = jax.random.randint(stopping, (b,), 0, length)
 
         def forward(carry: tuple[Array, Batch], at: tuple[Array, ...]) -> tuple:
-            x, kept = carry
+            x, last_one = carry
             *random, t = at
             new = self._transitions(params, x, *random)
-            kept = jax.tree.map(lambda a, b: _where(t == last, a, b), new, kept)
+            last_one = jax.tree.map(lambda a, b: _where(t == last, a, b), new, last_one)
             ended = new.terminated > 0.5  # a branch that ended starts again where it began
-            return (_where(ended, start, new.next_obs), kept), None
+            return (_where(ended, start, new.next_obs), last_one), None
 
         start = x
         empty = jax.tree.map(
@@ -114,11 +124,11 @@ class MBPO:
     def _transitions(
         self, params: Params, x: Array, for_policy: Array, for_model: Array, key: Array
     ) -> Batch:
-        """One from each x [b, o]; `terminated` is a probability, which (1 - end) averages."""
+        """One from each x [b, n]; `terminated` is a probability."""
         u = jax.vmap(self.policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
         after = self.model.draw(params.model, x, u, for_model, key)
         reward, end = jax.vmap(self.reward.outcome, (None, 0, 0))(params.reward, x, u)
-        return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(len(x)), after, u)
+        return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(len(x)), after)
 
 
 def _where(flags: Array, a: Array, b: Array) -> Array:

@@ -1,49 +1,53 @@
-"""Learn f and r from experience, jointly (thesis appendix B).
+"""Learn f, and r where there is one, from experience (thesis appendix B).
 
     loss = -log N(x'; x + f(x, u), s^2) + 0.5 (r + c (1 - end) r(x', u') - r(x, u))^2
 
 with u' the action that was executed at x' and no gradient through the target; one Adam for both.
-`reward_discount` c is 0.95 in the thesis, 0 makes r the reward itself. Where an episode ended, at
-its time limit too, no action was executed at x', so that the target is the reward alone.
+`reward_discount` c = 0 makes r a reward; c = 0.95 makes it the thesis' value-like utility, which
+the planner then sums once more. Where an episode ended, at its time limit too, no action was
+executed at x', so that the target is the reward alone. Without a reward the loss is the likelihood
+of thesis eq. (6.24)-(6.25).
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.types import Batch, Params, Reward, Spec, Trainable
 
 
 @struct.dataclass
 class ModelState:
-    """What the model learner carries."""
+    """The state of the model learner."""
 
     model: Any
-    reward: Any
+    reward: Any  # None without a reward
     optimiser: Any
 
 
 @dataclass(frozen=True)
 class ModelLearner:
-    """Gradient steps on a model and a reward that offer `observe`, `loss` and "weights".
+    """Gradient steps on a model and, unless it is None, a reward.
 
     Raises:
-        ValueError: for counts, rates or a discount out of range.
+        ValueError: for a rate or a discount out of range.
     """
 
-    model: Any
-    reward: Any
+    model: Trainable
+    reward: Reward | None = None
     learning_rate: float = 3e-3
     batch_size: int = 128
     updates: float = 2  # per decision
     reward_discount: float = 0.0
     max_grad_norm: float | None = None
 
-    early = True  # random decisions inform the model
+    data: ClassVar[str] = "uniform"
+    early: ClassVar[bool] = True  # random decisions inform the model
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -53,6 +57,11 @@ class ModelLearner:
             )
         if self.learning_rate <= 0:
             raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
+
+    @property
+    def owns(self) -> tuple[str, ...]:
+        """The fields of `Params` that it learns."""
+        return ("model",) if self.reward is None else ("model", "reward")
 
     @property
     def batches(self) -> int:
@@ -66,43 +75,68 @@ class ModelLearner:
         return optax.chain(optax.clip_by_global_norm(self.max_grad_norm), adam)
 
     def init(self, key: Array, spec: Spec) -> ModelState:
-        """First parameters and optimiser. The key is consumed."""
-        of_model, of_reward = jax.random.split(key)
-        model, reward = self.model.init(of_model, spec), self.reward.init(of_reward, spec)
-        weights = (model["weights"], reward["weights"])
-        return ModelState(model, reward, self._optimiser().init(weights))
+        """Initial parameters and optimiser. The key is consumed."""
+        if self.reward is None:
+            model, reward = self.model.init(key, spec), None
+        else:
+            for_model, for_reward = jax.random.split(key)
+            model = self.model.init(for_model, spec)
+            reward = self.reward.init(for_reward, lifted_spec(self.model, spec))
+        return ModelState(model, reward, self._optimiser().init(_weights(model, reward)))
 
     def params(self, state: ModelState) -> dict[str, Any]:
-        """The model and the reward."""
-        return {"model": state.model, "reward": state.reward}
+        """The model, and the reward if there is one."""
+        return {name: getattr(state, name) for name in self.owns}
 
     def update(
         self, state: ModelState, params: Params, batch: Batch, key: Array
     ) -> tuple[ModelState, dict[str, Array]]:
-        """One Adam step on both losses: the model's on all batches, the reward's on the first."""
+        """One Adam step: the model's loss on all batches, the reward's on the first."""
         model = self.model.observe(state.model, batch.obs, batch.next_obs)
-        first = jax.tree.map(lambda rows: rows[: self.batch_size], batch)
-        reward = self.reward.observe(state.reward, first.obs)
+        reward, reward_loss = self._reward(state.reward, model, batch)
+
+        def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array | None]]:
+            f, r = weights
+            tuned = {**model, "weights": f}
+            of_model = self.model.loss(tuned, batch.obs, batch.action, batch.next_obs)
+            if reward_loss is None:
+                return of_model, (of_model, None)
+            of_reward = reward_loss(r)
+            return of_model + of_reward, (of_model, of_reward)
+
+        weights = _weights(model, reward)
+        grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
+        change, optimiser = self._optimiser().update(grads, state.optimiser, weights)
+        updated: Any = optax.apply_updates(weights, change)
+        f, r = updated
+        metrics = {"model/loss": of_model}
+        if of_reward is not None:
+            reward, metrics["model/reward_loss"] = {**reward, "weights": r}, of_reward
+        return ModelState({**model, "weights": f}, reward, optimiser), metrics
+
+    def _reward(self, reward: Any, model: Any, batch: Batch) -> tuple[Any, Any]:
+        """The reward's parameters with their statistics updated, and its loss of weights."""
+        part = self.reward
+        if part is None:
+            return None, None
+        first: Any = jax.tree.map(lambda rows: rows[: self.batch_size], batch)
+        first = lifted_batch(self.model, jax.lax.stop_gradient(model), first)
+        reward = part.observe(reward, first.obs)
         target = first.reward
         if self.reward_discount > 0:
-            rate = jax.vmap(self.reward.reward, (None, 0, 0))
-            after = rate(reward, first.next_obs, first.next_action)
+            rate = jax.vmap(part.outcome, (None, 0, 0))
+            after = rate(reward, first.next_obs, first.next_action)[0]
             goes_on = self.reward_discount * (1 - first.terminated) * (1 - first.truncated)
             target = target + goes_on * after
 
-        def loss(weights: tuple[Any, Any]) -> tuple[Array, tuple[Array, Array]]:
-            f, r = weights
-            known = {**model, "weights": f}
-            of_model = self.model.loss(known, batch.obs, batch.action, batch.next_obs)
-            errors = jax.vmap(self.reward.loss, (None, 0, 0, 0, 0))
-            known = {**reward, "weights": r}
-            of_reward = errors(known, first.obs, first.action, target, first.terminated).mean()
-            return of_model + of_reward, (of_model, of_reward)
+        def loss(weights: Any) -> Array:
+            each = jax.vmap(part.loss, (None, 0, 0, 0, 0))
+            tuned = {**reward, "weights": weights}
+            return each(tuned, first.obs, first.action, target, first.terminated).mean()
 
-        weights = (model["weights"], reward["weights"])
-        grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
-        change, optimiser = self._optimiser().update(grads, state.optimiser, weights)
-        new: Any = optax.apply_updates(weights, change)
-        f, r = new
-        state = ModelState({**model, "weights": f}, {**reward, "weights": r}, optimiser)
-        return state, {"model/loss": of_model, "model/reward_loss": of_reward}
+        return reward, loss
+
+
+def _weights(model: Any, reward: Any) -> tuple[Any, Any]:
+    """What gradients change."""
+    return model["weights"], None if reward is None else reward["weights"]

@@ -1,4 +1,4 @@
-"""Soft actor-critic (Haarnoja et al. 2018b): twin Q, minimum, reparameterised, own temperature.
+"""Soft actor-critic (Haarnoja et al. 2018b): twin Q, reparameterised, learned temperature.
 
     y      = r + gamma (1 - terminated) (min_i Q'_i(x', u') - alpha log pi(u'|x')),  u' ~ pi(x')
     L_Q    = 0.5 sum_i mean (Q_i(x, u) - y)^2
@@ -9,7 +9,7 @@ A time limit is no end of the task: `truncated` does not enter.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -17,12 +17,13 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.types import Batch, Critic, LearnedPolicy, Model, Params, Spec
 
 
 @struct.dataclass
 class SACState:
-    """What soft actor-critic carries."""
+    """The state of soft actor-critic."""
 
     policy: Any
     critic: Any
@@ -35,14 +36,15 @@ class SACState:
 
 @dataclass(frozen=True)
 class SAC:
-    """Soft actor-critic over a `policy` that offers `observe`, and an ensemble `critic`.
+    """Soft actor-critic on a policy and a critic.
 
     Raises:
         ValueError: for rates, a discount or a smoothing out of range.
     """
 
-    policy: Any
-    critic: Any
+    policy: LearnedPolicy
+    critic: Critic
+    model: Model | None = None  # lifts observations to planning states; None: they are the same
     policy_learning_rate: float = 3e-4
     critic_learning_rate: float = 3e-4
     alpha_learning_rate: float = 3e-4
@@ -53,8 +55,10 @@ class SAC:
     batch_size: int = 256
     updates: float = 1  # per decision
 
-    batches = 1
-    early = False  # it waits for the end of random decisions
+    data: ClassVar[str] = "uniform"
+    owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
+    batches: ClassVar[int] = 1
+    early: ClassVar[bool] = False  # it waits for the end of random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -67,9 +71,10 @@ class SAC:
                 raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
 
     def init(self, key: Array, spec: Spec) -> SACState:
-        """First parameters, optimisers and target. The key is consumed."""
-        of_policy, of_critic = jax.random.split(key)
-        policy, critic = self.policy.init(of_policy, spec), self.critic.init(of_critic, spec)
+        """Initial parameters, optimisers and target. The key is consumed."""
+        for_policy, for_critic = jax.random.split(key)
+        spec = lifted_spec(self.model, spec)
+        policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
         log_alpha = jnp.log(jnp.float32(self.alpha))
         return SACState(
             policy,
@@ -89,6 +94,7 @@ class SAC:
         self, state: SACState, params: Params, batch: Batch, key: Array
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
+        batch = lifted_batch(self.model, params.model, batch)
         for_target, for_policy = jax.random.normal(key, (2, *batch.action.shape))
         alpha = jnp.exp(state.log_alpha)
         state = state.replace(policy=self.policy.observe(state.policy, batch.obs))
@@ -112,9 +118,14 @@ class SAC:
             self.policy_learning_rate, grads, state.policy_optimiser, state.policy
         )
         entropy = -log_prob.mean()
-        wanted = -batch.action.shape[-1] if self.target_entropy is None else self.target_entropy
+        target_entropy = self.target_entropy
+        if target_entropy is None:
+            target_entropy = -batch.action.shape[-1]
         log_alpha, alpha_optimiser = _adam(
-            self.alpha_learning_rate, entropy - wanted, state.alpha_optimiser, state.log_alpha
+            self.alpha_learning_rate,
+            entropy - target_entropy,
+            state.alpha_optimiser,
+            state.log_alpha,
         )
         target = optax.incremental_update(critic, state.target, self.tau)
         metrics = {

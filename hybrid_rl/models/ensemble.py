@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Spec
+from hybrid_rl.types import Spec, Trainable
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Ensemble:
         ValueError: for a count that is not a positive whole number.
     """
 
-    model: Any
+    model: Trainable
     members: int = 5
 
     def __post_init__(self) -> None:
@@ -34,21 +34,21 @@ class Ensemble:
             raise ValueError(f"model.members={self.members}: must be a whole number, 1 or more")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """First parameters; weights lead with [members]. The key is consumed."""
+        """Initial parameters; weights lead with [members]. The key is consumed."""
         keys = jax.random.split(key, self.members)
         weights = jax.vmap(lambda k: self.model.init(k, spec)["weights"])(keys)
         return {**self.model.init(key, spec), "weights": weights}
 
-    def observe(self, params: dict[str, Any], x: Array, next_x: Array) -> dict[str, Any]:
-        """Parameters whose statistics have seen x and next_x [B, n]."""
-        return self.model.observe(params, x, next_x)
+    def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
+        """Parameters with statistics updated by observations [B, o] and their successors."""
+        return self.model.observe(params, obs, next_obs)
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """The planning state of an observation [o]."""
         return self.model.lift(params, obs)
 
     def each(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """What every member predicts [members, n]."""
+        """The prediction of every member [members, n]."""
 
         def one(weights: Any) -> Array:
             return self.model.step({**params, "weights": weights}, x, u)
@@ -68,26 +68,26 @@ class Ensemble:
         weights = jax.tree.map(lambda w: w[order], params["weights"])
         short = -len(x) % self.members
 
-        def dealt(rows: Array) -> Array:
+        def share(rows: Array) -> Array:
             return jnp.pad(rows, ((0, short), (0, 0))).reshape(self.members, -1, rows.shape[1])
 
-        def one(weights: Any, *rows: Array) -> Array:
-            return self.model.draw({**params, "weights": weights}, *rows, key)
+        def one(weights: Any, x: Array, u: Array, noise: Array) -> Array:
+            return self.model.draw({**params, "weights": weights}, x, u, noise, key)
 
-        drawn = jax.vmap(one)(weights, *map(dealt, (x, u, noise)))
+        drawn = jax.vmap(one)(weights, *map(share, (x, u, noise)))
         return drawn.reshape(-1, x.shape[1])[: len(x)]
 
-    def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
-        """Mean [] over the members of the loss on a batch of each one's own, [members * B, ...].
+    def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
+        """Mean [] over the members of their losses, each on its own share of [members * B, ...].
 
         Raises:
-            ValueError: where the rows do not divide among the members.
+            ValueError: where the transitions do not divide among the members.
         """
-        if len(x) % self.members:
-            raise ValueError(f"{len(x)} rows do not divide among {self.members} members")
+        if len(obs) % self.members:
+            raise ValueError(f"{len(obs)} transitions do not divide among {self.members} members")
 
-        def one(weights: Any, *rows: Array) -> Array:
-            return self.model.loss({**params, "weights": weights}, *rows)
+        def one(weights: Any, obs: Array, action: Array, next_obs: Array) -> Array:
+            return self.model.loss({**params, "weights": weights}, obs, action, next_obs)
 
-        shares = [rows.reshape(self.members, -1, rows.shape[1]) for rows in (x, u, next_x)]
+        shares = [rows.reshape(self.members, -1, rows.shape[1]) for rows in (obs, action, next_obs)]
         return jax.vmap(one)(params["weights"], *shares).mean()

@@ -1,30 +1,30 @@
-"""x' = f(x, u) of a world that is a formula: nothing is learned."""
+"""x' = f(x, u) of an analytic environment: nothing is learned."""
 
 from dataclasses import dataclass
 from typing import Any
 
 from jax import Array
 
-from hybrid_rl.core import riccati
+from hybrid_rl.core import analytic
 from hybrid_rl.types import AnalyticEnv, Spec
 
 
 @dataclass(frozen=True)
 class Exact:
-    """The world's own motion; the planning state is the observation.
+    """The environment's own dynamics; the planning state is the observation.
 
     Raises:
-        ValueError: for a world that is no formula.
+        ValueError: for an environment that is not analytic.
     """
 
     world: AnalyticEnv
 
     def __post_init__(self) -> None:
-        """Check the world."""
-        riccati.check("model", self.world)
+        """Check the environment."""
+        analytic.require("model", self.world)
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
-        """Nothing."""
+        """No parameters."""
         return ()
 
     def lift(self, params: Any, obs: Array) -> Array:

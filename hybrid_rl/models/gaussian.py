@@ -1,13 +1,13 @@
 """x' ~ N(x + f(x, u), diag(s^2)): a learned one-step model (thesis appendix B).
 
 f = W_2 a(W_1 [x, u] + b_1) + b_2 by default; s is constant, or with `state_noise` a network's
-s(x) (thesis eq. 6.22). With `normalise`, the networks see states and predict changes in units of
-their running deviation. `inputs` are the coordinates that they see: a free body's motion does not
-depend on where it is, and no flight about one place would tell them.
+s(x) (thesis eq. 6.22). With `normalise`, the networks' inputs and outputs are divided by running
+standard deviations. `inputs` selects the coordinates of the state that the networks see: a free
+body's motion does not depend on its position, which flights near one position cannot teach.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -31,10 +31,10 @@ class Gaussian:
     normalise: bool = True
     log_std_min: float = -10.0
     log_std_max: float = 2.0
-    state_noise: bool = False  # s(x) instead of a constant
+    state_noise: bool = False  # s(x) in place of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
 
-    members = 1  # an ensemble has more
+    members: ClassVar[int] = 1  # an ensemble has more
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -44,23 +44,23 @@ class Gaussian:
             object.__setattr__(self, "inputs", tuple(self.inputs))
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Weights, and the statistics that they are relative to. The key is consumed."""
+        """Weights, and the statistics that normalise their data. The key is consumed."""
         net = MLP(self.hidden, spec.obs, self.activation)
-        seen, log_std = len(self._seen(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
+        size, log_std = len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
         if self.state_noise:
-            log_std: Any = net.init(jax.random.fold_in(key, 1), jnp.zeros(seen))
+            log_std: Any = net.init(jax.random.fold_in(key, 1), jnp.zeros(size))
         return {
-            "weights": {"net": net.init(key, jnp.zeros(seen + spec.act)), "log_std": log_std},
+            "weights": {"net": net.init(key, jnp.zeros(size + spec.act)), "log_std": log_std},
             "state": statistics.init(spec.obs),
             "change": statistics.init(spec.obs),
         }
 
-    def observe(self, params: dict[str, Any], x: Array, next_x: Array) -> dict[str, Any]:
-        """Parameters whose statistics have seen x and next_x [B, n]."""
+    def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
+        """Parameters with statistics updated by observations [B, o] and their successors."""
         if not self.normalise:
             return params
-        state = statistics.update(params["state"], x)
-        change = statistics.update(params["change"], next_x - x, state.magnitude)
+        state = statistics.update(params["state"], obs)
+        change = statistics.update(params["change"], next_obs - obs, state.magnitude)
         return {**params, "state": state, "change": change}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
@@ -68,17 +68,17 @@ class Gaussian:
         return obs
 
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """Predicted change [n] of x [n] under u [m], in running deviations."""
+        """Predicted change [n] of x [n] under u [m], in running standard deviations."""
         net = MLP(self.hidden, x.shape[-1], self.activation)
-        inputs = jnp.concatenate([self._seen(statistics.normalise(params["state"], x)), u])
+        inputs = jnp.concatenate([self._inputs(statistics.normalise(params["state"], x)), u])
         return net.apply(params["weights"]["net"], inputs)
 
     def std(self, params: dict[str, Any], x: Array) -> Array:
-        """s [n] of the change at x [n], in running deviations."""
+        """s [n] of the change at x [n], in running standard deviations."""
         log_std: Any = params["weights"]["log_std"]
         if self.state_noise:
             net = MLP(self.hidden, x.shape[-1], self.activation)
-            log_std = net.apply(log_std, self._seen(statistics.normalise(params["state"], x)))
+            log_std = net.apply(log_std, self._inputs(statistics.normalise(params["state"], x)))
         return jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
@@ -86,7 +86,7 @@ class Gaussian:
         return x + statistics.denormalise(params["change"], self.change(params, x, u))
 
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
-        """Next planning states [B, n] for noise [B, n] ~ N(0, I); `key` has nothing to choose."""
+        """Next planning states [B, n] for noise [B, n] ~ N(0, I); the key is not used."""
 
         def one(x: Array, u: Array, noise: Array) -> Array:
             change = self.change(params, x, u) + self.std(params, x) * noise
@@ -94,11 +94,11 @@ class Gaussian:
 
         return jax.vmap(one)(x, u, noise)
 
-    def _seen(self, x: Array) -> Array:
+    def _inputs(self, x: Array) -> Array:
         return x if self.inputs is None else x[jnp.array(self.inputs)]
 
-    def loss(self, params: dict[str, Any], x: Array, u: Array, next_x: Array) -> Array:
-        """Negative log-likelihood [] of next_x [B, n], mean over its entries."""
+    def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
+        """Negative log-likelihood [] of next_obs [B, o], mean over its entries."""
 
         def one(x: Array, u: Array, next_x: Array) -> Array:
             std = self.std(params, x)
@@ -106,4 +106,4 @@ class Gaussian:
             error = (target - self.change(params, x, u)) / std
             return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
 
-        return jax.vmap(one)(x, u, next_x).mean()
+        return jax.vmap(one)(obs, action, next_obs).mean()

@@ -1,7 +1,7 @@
-"""e' = A e + B (u - u_0) around a world's equilibrium: nothing is learned.
+"""e' = A e + B (u - u_0) around an equilibrium: nothing is learned.
 
-e are the world's coordinates there; A and B are its Jacobians (thesis section 6.3, Table C.1).
-The planning state is the observation x, so that this model stands in wherever another stood.
+e are the environment's local coordinates; A and B are its Jacobians (thesis section 6.3, Table
+C.1). The planning state is the observation, as for the other models.
 """
 
 from dataclasses import dataclass
@@ -10,26 +10,26 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import riccati
+from hybrid_rl.core import analytic
 from hybrid_rl.types import AnalyticEnv, Spec
 
 
 @dataclass(frozen=True)
 class LocalLinear:
-    """The world's motion to first order.
+    """The environment's dynamics to first order.
 
     Raises:
-        ValueError: for a world that is no formula.
+        ValueError: for an environment that is not analytic.
     """
 
     world: AnalyticEnv
 
     def __post_init__(self) -> None:
-        """Check the world."""
-        riccati.check("model", self.world)
+        """Check the environment."""
+        analytic.require("model", self.world)
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
-        """Nothing."""
+        """No parameters."""
         return ()
 
     def lift(self, params: Any, obs: Array) -> Array:
@@ -38,9 +38,7 @@ class LocalLinear:
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
         """The next observation [o]."""
-        a, b = riccati.around_rest(self.world)
-        e = self.world.to_local(x)
-        e = jnp.asarray(a, e.dtype) @ e + jnp.asarray(b, e.dtype) @ (
-            u - self.world.equilibrium()[1]
-        )
+        a, b = analytic.at_equilibrium(self.world)
+        e, hold = self.world.to_local(x), self.world.equilibrium()[1]
+        e = jnp.asarray(a, e.dtype) @ e + jnp.asarray(b, e.dtype) @ (u - hold)
         return self.world.from_local(e)

@@ -1,6 +1,6 @@
-"""J = -sum_t e_{t+1}' Q e_{t+1} + (u_t - u_0)' R (u_t - u_0): be at a world's equilibrium, soon.
+"""J = -sum_t e_{t+1}' Q e_{t+1} + (u_t - u_0)' R (u_t - u_0): reach an equilibrium soon.
 
-e are the world's coordinates there. The return is known; nothing of it is learned.
+e are the environment's local coordinates. The return is known; nothing of it is learned.
 """
 
 from dataclasses import dataclass
@@ -9,8 +9,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import riccati
-from hybrid_rl.types import AnalyticEnv, Params, Path, Spec
+from hybrid_rl.core import analytic
+from hybrid_rl.types import AnalyticEnv, Params, Path, Return, Spec
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Quadratic:
     """Minus the squared distance to the equilibrium, summed along a path.
 
     Raises:
-        ValueError: for a world that is no formula, or weights below 0.
+        ValueError: for an environment that is not analytic, or weights below 0.
     """
 
     world: AnalyticEnv
@@ -27,34 +27,33 @@ class Quadratic:
     discount: float = 1.0  # per decision
 
     def __post_init__(self) -> None:
-        """Check the world and the weights."""
-        riccati.check("regulation", self.world)
+        """Check the fields."""
+        analytic.require("objective", self.world)
         for name in ("state_weights", "action_weights"):
-            given = tuple(getattr(self, name))
-            object.__setattr__(self, name, given)
-            if not all(weight >= 0 for weight in given):
-                raise ValueError(f"regulation.{name}={list(given)}: must be 0 or more")
+            weights = tuple(getattr(self, name))
+            object.__setattr__(self, name, weights)
+            if not all(weight >= 0 for weight in weights):
+                raise ValueError(f"objective.{name}={list(weights)}: must be 0 or more")
 
-    def begin(self, spec: Spec) -> tuple[()]:
-        """Nothing is remembered."""
+    def init(self, spec: Spec) -> tuple[()]:
+        """No memory."""
         return ()
 
-    def look(self, params: Params, memory: tuple[()], x: Array, key: Array) -> tuple[()]:
-        """Nothing is drawn."""
-        return memory
-
-    def value(self, params: Params, memory: tuple[()], path: Path) -> Array:
-        """J [] of `path`."""
-        return self.reward_to_go(params, path)[0]
+    def prepare(
+        self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
+    ) -> tuple[Return, tuple[()]]:
+        """J of a path; nothing is drawn."""
+        return lambda path: self.reward_to_go(params, path)[0], memory
 
     def rewards(self, params: Params, path: Path) -> Array:
-        """r [T] along path, x [T+1, o] and u [T, m]."""
-        e, v = jax.vmap(self.world.to_local)(path.x[1:]), path.u - self.world.equilibrium()[1][None]
+        """r [T] along path, x [T+1, n] and u [T, m]."""
+        rest, hold = self.world.equilibrium()
+        e = jax.vmap(self.world.to_local)(path.x[1:, : rest.size])
         q, r = jnp.array(self.state_weights), jnp.array(self.action_weights)
-        return -jnp.sum(q[None] * e**2, -1) - jnp.sum(r[None] * v**2, -1)
+        return -jnp.sum(q[None] * e**2, -1) - jnp.sum(r[None] * (path.u - hold[None]) ** 2, -1)
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
-        """S [T+1] along path, x [T+1, o] and u [T, m]; S[T] is 0."""
+        """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is 0."""
 
         def back(after: Array, r: Array) -> tuple[Array, Array]:
             now = r + self.discount * after

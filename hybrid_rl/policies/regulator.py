@@ -1,11 +1,12 @@
-"""u = clip(u_0 - K e): back to a world's equilibrium, by the linear-quadratic regulator.
+"""u = clip(u_0 - K e): the linear-quadratic regulator around an equilibrium.
 
 V(x) = e' P e is its Lyapunov function (thesis eq. 6.4): it falls as long as the action is not
-clipped and the world is linear enough. With `free` coordinates V is the least over these,
+clipped and the dynamics are nearly linear. With `free` coordinates f, V is the minimum over these,
 
     V(x) = min_f e' P e = e' (P - P_f P_ff^-1 P_f') e,
 
-how far x is from the nearest state that differs in them alone: a cart that may stand anywhere.
+the distance to the nearest state that differs from the equilibrium only in f, such as the position
+of a cart.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core import riccati
+from hybrid_rl.core import analytic, riccati
 from hybrid_rl.types import AnalyticEnv, Spec
 
 
@@ -24,56 +25,58 @@ class Regulator:
     """The regulator of `world` around its equilibrium, by the discrete Riccati equation.
 
     Raises:
-        ValueError: for a world that is no formula, or weights that fit none of its sizes.
+        ValueError: for an environment that is not analytic, or weights of another size.
     """
 
     world: AnalyticEnv
     state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
     action_weights: tuple[float, ...] = (1.0,)  # diagonal of R, of actions in [-1, 1]
-    free: tuple[int, ...] = ()  # f, of the coordinates [d], which V does not count
+    free: tuple[int, ...] = ()  # f, indices of e [d] that V ignores
 
     def __post_init__(self) -> None:
-        """Check the world and the weights."""
-        riccati.check("equilibrium", self.world)
+        """Check the environment and the weights."""
+        analytic.require("equilibrium", self.world)
         for name in ("state_weights", "action_weights"):
-            given = tuple(getattr(self, name))
-            object.__setattr__(self, name, given)
-            if not all(weight > 0 for weight in given):
-                raise ValueError(f"equilibrium.{name}={list(given)}: must be above 0")
+            weights = tuple(getattr(self, name))
+            object.__setattr__(self, name, weights)
+            if not all(weight > 0 for weight in weights):
+                raise ValueError(f"equilibrium.{name}={list(weights)}: must be above 0")
         object.__setattr__(self, "free", tuple(self.free))
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """K [m, d] and P [d, d]."""
-        a, b = riccati.around_rest(self.world)
+        a, b = analytic.at_equilibrium(self.world)
         q = riccati.as_weights("equilibrium.state_weights", self.state_weights, len(a))
         r = riccati.as_weights("equilibrium.action_weights", self.action_weights, b.shape[1])
         return riccati.regulator(a, b, q, r)
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
-        """Nothing is learned."""
+        """No parameters."""
         return ()
 
+    def _local(self, x: Array) -> Array:
+        """Local coordinates e [d] of the observation in x [n]."""
+        return self.world.to_local(x[: self.world.equilibrium()[0].size])
+
     def towards(self, x: Array, goal: Array) -> Array:
-        """The action [m] at x [o] that leads to `goal` [o] instead of the equilibrium."""
-        e = self.world.to_local(x) - self.world.to_local(goal)
-        return jnp.clip(
-            self.world.equilibrium()[1] - jnp.asarray(self.solve()[0], e.dtype) @ e, -1, 1
-        )
+        """The action [m] at x [n] that leads to `goal` [o] in place of the equilibrium."""
+        e, hold = self._local(x) - self.world.to_local(goal), self.world.equilibrium()[1]
+        return jnp.clip(hold - jnp.asarray(self.solve()[0], e.dtype) @ e, -1, 1)
 
     def mean(self, params: Any, x: Array) -> Array:
-        """The action [m] at x [o]."""
+        """The action [m] at x [n]."""
         return self.towards(x, self.world.equilibrium()[0])
 
     def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
-        """The same action, whatever the noise; log-density of a deterministic action: 0."""
+        """The same action for any noise; the log-density of a deterministic action is 0."""
         return self.mean(params, x), jnp.zeros(())
 
     def variance(self, params: Any, x: Array) -> Array:
-        """Zero [m]: it has no noise."""
+        """Zero [m]: the policy is deterministic."""
         return jnp.zeros_like(self.mean(params, x))
 
     def lyapunov(self, x: Array) -> Array:
-        """V [] at x [o]."""
-        e, P, f = self.world.to_local(x), self.solve()[1], list(self.free)
+        """V(x) [] at x [n]."""
+        e, P, f = self._local(x), self.solve()[1], list(self.free)
         P = P - P[:, f] @ np.linalg.solve(P[np.ix_(f, f)], P[f])
         return e @ jnp.asarray(P, e.dtype) @ e

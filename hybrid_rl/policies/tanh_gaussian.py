@@ -4,8 +4,8 @@ log pi(u|x) = log N(z; mu, sigma) - sum_i log(1 - tanh(z_i)^2)      (Haarnoja et
 
 One trunk with two heads, or two networks (thesis appendix B: a sine layer for the mean, a
 rectified layer for the deviation) where `log_std_activation` is given. With `normalise` they see
-states in units of their deviation in what the learner learns from: cloning in the demonstrations,
-SAC and DDPG in their batches.
+states divided by their running standard deviation in the learner's data: the demonstrations for
+behaviour cloning, the batches for SAC and DDPG.
 """
 
 from dataclasses import dataclass
@@ -47,20 +47,20 @@ class TanhGaussian:
         return MLP(self.hidden, out, activation or self.activation)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """First parameters. The key is consumed."""
-        x, m = jnp.zeros(spec.obs), spec.act
-        seen = {"state": statistics.init(spec.obs)} if self.normalise else {}
+        """Initial parameters. The key is consumed."""
+        x, m = jnp.zeros(spec.n), spec.act
+        state = {"state": statistics.init(spec.n)} if self.normalise else {}
         if self.log_std_activation is None:
-            return {**seen, "trunk": self._net(2 * m).init(key, x)}
+            return {**state, "trunk": self._net(2 * m).init(key, x)}
         mean, log_std = jax.random.split(key)
         return {
-            **seen,
+            **state,
             "mean": self._net(m).init(mean, x),
             "log_std": self._net(m, self.log_std_activation).init(log_std, x),
         }
 
     def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
-        """Parameters whose statistics have seen states x [B, n]."""
+        """Parameters with statistics updated by states x [B, n]."""
         if not self.normalise:
             return params
         return {**params, "state": statistics.update(params["state"], x)}

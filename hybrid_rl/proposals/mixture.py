@@ -1,13 +1,13 @@
 """A share of the candidates from one proposal, the rest from another.
 
-Policy and noise together: the planner works from the first decisions on, while the policy is
-still wrong, and leaves the field to the policy where that is better.
+Policy and noise together: noise lets the planner work from the first decisions on, while the policy
+is still wrong; candidates of the policy prevail where they have higher returns.
 
 The candidates are pooled with equal rights, w_k ~ exp(S_k / lambda): the weighted mean estimates
 that of the law proportional to q exp(S / lambda), with q = share first + (1 - share) second. That
 is Theorem 2 with q instead of the policy pi; the importance ratio pi / q, which would make it
-Theorem 2 with pi, is left out. A planner refuses `log_density` here: the densities of candidates
-from different laws would be compared.
+Theorem 2 with pi, is left out. A planner refuses `log_density` here: the densities of
+different distributions would be compared.
 """
 
 from dataclasses import dataclass
@@ -30,16 +30,20 @@ class MixtureProposal:
     first: Proposal
     second: Proposal
     share: float = 0.5
-    mixed: ClassVar[bool] = True  # its candidates are of several laws
+    mixed: ClassVar[bool] = True  # its candidates have several distributions
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if not 0 <= self.share <= 1:
             raise ValueError(f"proposal.share={self.share}: must lie in [0, 1]")
 
-    def init(self, spec: Spec, place: Array) -> tuple[Array, Any, Any]:
-        """Whose path this is, and what both carry."""
-        return place < self.share, self.first.init(spec, place), self.second.init(spec, place)
+    def init(self, spec: Spec, quantile: Array) -> tuple[Array, Any, Any]:
+        """Which proposal draws this path, and the carries of both."""
+        return (
+            quantile < self.share,
+            self.first.init(spec, quantile),
+            self.second.init(spec, quantile),
+        )
 
     def __call__(
         self, params: Params, carry: tuple[Array, Any, Any], x: Array, plan: Array, noise: Array

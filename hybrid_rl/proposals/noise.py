@@ -1,8 +1,8 @@
 """v = clip(a + e), e_0 ~ N(0, s^2), e_t ~ N(c e_{t-1}, (1 - c^2) s^2): noise around the plan.
 
-e is stationary: its deviation is s at each decision, the first included, which is the one that
-is executed. c = 0 gives the proposals of MPPI without its control cost (Williams et al. 2017,
-alpha = 1); c > 0 colours them.
+e is stationary: its standard deviation is s at each decision, also at the first, which is
+executed. c = 0 gives the proposals of MPPI without its control cost (Williams et al. 2017,
+alpha = 1); c > 0 correlates them in time.
 """
 
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ from jax import Array
 from hybrid_rl.types import Params, Spec
 
 
-class Before(NamedTuple):
-    """What the noise of a path was."""
+class NoiseState(NamedTuple):
+    """The noise of the decision before."""
 
     e: Array  # [m]
     correlation: Array  # [] its correlation with the next: 0 before the first
@@ -26,7 +26,7 @@ class NoiseProposal:
     """Candidates around the warm-started plan.
 
     Raises:
-        ValueError: for a deviation that is not positive or a correlation outside [0, 1).
+        ValueError: for a standard deviation that is not positive or a correlation outside [0, 1).
     """
 
     std: float = 0.3  # of full actuation
@@ -39,17 +39,17 @@ class NoiseProposal:
         if not 0 <= self.correlation < 1:
             raise ValueError(f"proposal.correlation={self.correlation}: must lie in [0, 1)")
 
-    def init(self, spec: Spec, place: Array) -> Before:
-        """Nothing before the first action."""
-        return Before(jnp.zeros(spec.act), jnp.zeros(()))
+    def init(self, spec: Spec, quantile: Array) -> NoiseState:
+        """No noise before the first action."""
+        return NoiseState(jnp.zeros(spec.act), jnp.zeros(()))
 
     def __call__(
-        self, params: Params, carry: Before, x: Array, plan: Array, noise: Array
-    ) -> tuple[Array, Array, Before]:
+        self, params: Params, carry: NoiseState, x: Array, plan: Array, noise: Array
+    ) -> tuple[Array, Array, NoiseState]:
         """V [m] around plan [m], and log p(e_t | e_{t-1}) [] of its noise before the clipping."""
         share = 1 - carry.correlation**2  # of the variance that is new
         new = jnp.sqrt(share) * self.std * noise
         log_prob = -0.5 * (new / self.std) ** 2 / share - jnp.log(self.std * 2.5066283)
         log_prob = jnp.sum(log_prob - 0.5 * jnp.log(share))
         e = carry.correlation * carry.e + new
-        return jnp.clip(plan + e, -1, 1), log_prob, Before(e, jnp.full((), self.correlation))
+        return jnp.clip(plan + e, -1, 1), log_prob, NoiseState(e, jnp.full((), self.correlation))

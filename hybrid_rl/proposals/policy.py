@@ -14,13 +14,13 @@ class PolicyProposal:
 
     policy: Policy
 
-    def init(self, spec: Spec, place: Array) -> tuple[()]:
-        """Nothing is carried."""
+    def init(self, spec: Spec, quantile: Array) -> tuple[()]:
+        """No carry."""
         return ()
 
     def __call__(
         self, params: Params, carry: Any, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, Any]:
-        """V [m] ~ pi(x) and log pi(v|x); `plan` plays no part."""
+        """V [m] ~ pi(x) and log pi(v|x); the plan is not used."""
         v, log_prob = self.policy.sample(params.policy, x, noise)
         return v, log_prob, carry

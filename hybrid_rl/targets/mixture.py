@@ -1,4 +1,4 @@
-"""p(s) = sum_j w_j N(s; m_j, s_j^2 I): a target that is known, to look at exploration itself."""
+"""p(s) = sum_j w_j N(s; m_j, s_j^2 I): a known target."""
 
 from dataclasses import dataclass
 
@@ -25,20 +25,20 @@ class Mixture:
         """Check the fields."""
         object.__setattr__(self, "means", tuple(tuple(mean) for mean in self.means))
         for name in ("stds", "weights"):
-            given = tuple(getattr(self, name))
-            object.__setattr__(self, name, given)
-            if len(given) != len(self.means) or not all(number > 0 for number in given):
-                raise ValueError(f"target.{name}={list(given)}: one number above 0 for each mean")
+            numbers = tuple(getattr(self, name))
+            object.__setattr__(self, name, numbers)
+            if len(numbers) != len(self.means) or not all(number > 0 for number in numbers):
+                raise ValueError(f"target.{name}={list(numbers)}: one number above 0 for each mean")
 
     def log_density(self, params: Params, s: Array) -> Array:
-        """log p [] at s [v]; means of fewer entries are continued with their last."""
-        means = jnp.stack([_as_long(jnp.array(mean), len(s)) for mean in self.means])
+        """log p [] at s [v]; the last entry of a shorter mean is repeated."""
+        means = jnp.stack([_extended(jnp.array(mean), len(s)) for mean in self.means])
         stds = jnp.array(self.stds)
         each = -0.5 * jnp.sum((s[None] - means) ** 2, -1) / stds**2 - len(s) * jnp.log(stds)
         weights = jnp.array(self.weights) / sum(self.weights)
         return jax.nn.logsumexp(each, b=weights) - 0.5 * len(s) * jnp.log(2 * jnp.pi)
 
 
-def _as_long(mean: Array, size: int) -> Array:
+def _extended(mean: Array, size: int) -> Array:
     """The first `size` entries, the last one repeated where there are fewer."""
     return jnp.pad(mean, (0, max(0, size - len(mean))), mode="edge")[:size]

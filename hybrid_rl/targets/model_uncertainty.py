@@ -1,40 +1,39 @@
-"""p(s) ~ exp(c mean_i sigma_i(s)): where a learned model is unsure (thesis eq. 6.23).
+"""p(s) ~ exp(c mean_i sigma_i(s)): the predictive std of a learned model (thesis eq. 6.23).
 
-sigma is a vector there; its mean over the entries, in running deviations of their change, makes it
-the number that the exponent needs. What is not searched is as at the world's equilibrium.
+sigma is a vector in the thesis; here its mean over the entries, in running standard deviations of
+their change, is the exponent. Coordinates outside the domain are those of the equilibrium.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import riccati
-from hybrid_rl.types import AnalyticEnv, Params
+from hybrid_rl.core import analytic
+from hybrid_rl.core.domain import Box
+from hybrid_rl.types import AnalyticEnv, Params, Uncertain
 
 
 @dataclass(frozen=True)
 class ModelUncertainty:
-    """Where the next state is not known.
+    """Proportional to the exponential of the predictive standard deviation.
 
     Raises:
-        ValueError: for a world that is no formula, or a constant that is not positive.
+        ValueError: for an environment that is not analytic, or a constant that is not positive.
     """
 
-    model: Any  # offers `deviation`
+    model: Uncertain
     world: AnalyticEnv
-    coordinates: tuple[int, ...] = (0,)  # of the observation, [v]
-    sharpness: float = 10.0  # c
+    domain: Box
+    sharpness: float = 10.0  # c [1/std]
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        riccati.check("target", self.world)
-        object.__setattr__(self, "coordinates", tuple(self.coordinates))
+        analytic.require("target", self.world)
         if not self.sharpness > 0:
             raise ValueError(f"target.sharpness={self.sharpness}: must be above 0")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v], up to a constant."""
-        x = self.world.equilibrium()[0].astype(s.dtype).at[jnp.array(self.coordinates)].set(s)
+        x = self.domain.put(self.world.equilibrium()[0].astype(s.dtype), s)
         return self.sharpness * jnp.mean(self.model.std(params.model, x))

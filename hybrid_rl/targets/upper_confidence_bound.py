@@ -1,22 +1,21 @@
 """p(s) ~ exp(c UCB(s)), UCB = mean + kappa std of a belief (thesis eq. 6.20-6.21)."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from jax import Array
 
-from hybrid_rl.types import Params
+from hybrid_rl.types import Belief, Params
 
 
 @dataclass(frozen=True)
 class UpperConfidenceBound:
-    """Where phi may be large.
+    """Proportional to the exponential of the upper confidence bound.
 
     Raises:
         ValueError: for constants that are not positive.
     """
 
-    belief: Any
+    belief: Belief
     kappa: float = 2.0
     sharpness: float = 10.0  # c [1/phi]
 

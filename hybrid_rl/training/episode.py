@@ -1,15 +1,13 @@
 """Episodes: time limit, action repeat, and the one place where a world starts anew."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
-from jax.custom_batching import custom_vmap
 
+from hybrid_rl.core.branching import when_any
 from hybrid_rl.types import Env, EnvState, Spec
 
 # A world is exact, whatever precision the networks' products have on an accelerator.
@@ -81,27 +79,8 @@ class Episode:
         Under `vmap` the reset is computed only when some world needs one.
         """
 
-        def choose(state: EnvState, key: Array) -> EnvState:
+        def reset_done(state: EnvState, key: Array) -> EnvState:
             fresh = self.reset(key)
             return jax.tree.map(lambda a, b: jnp.where(state.done, a, b), fresh, state)
 
-        return _when_any_done(choose)(state, key)
-
-
-def _when_any_done(choose: Callable[[EnvState, Array], EnvState]) -> Any:
-    """`choose(state, key)` behind one branch, however many `vmap`s are around it."""
-
-    @custom_vmap
-    def branch(state: EnvState, key: Array) -> EnvState:
-        return jax.lax.cond(jnp.any(state.done), choose, lambda state, _: state, state, key)
-
-    @branch.def_vmap
-    def _(size: int, batched: Any, state: EnvState, key: Array) -> tuple[EnvState, Any]:
-        def lead(is_batched: bool, x: Array) -> Array:
-            return x if is_batched else jnp.broadcast_to(x, (size, *x.shape))
-
-        state, key = jax.tree.map(lead, batched, [state, key])
-        now = _when_any_done(jax.vmap(choose))(state, key)
-        return now, jax.tree.map(lambda _: True, now)
-
-    return branch
+        return when_any(lambda state: state.done, reset_done)(state, key)

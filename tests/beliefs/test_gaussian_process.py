@@ -12,14 +12,14 @@ GP = GaussianProcess(size=2, capacity=8, length=0.3, signal=0.7, noise=0.1)
 SPEC = Spec(obs=2, act=1, dt=0.1)
 
 
-def told(count: int) -> tuple:
-    """A belief of `count` measurements, and these."""
+def measured(count: int) -> tuple:
+    """A belief after `count` measurements, and these."""
     rng = np.random.default_rng(0)
     s, y = rng.uniform(-1, 1, (count, 2)), rng.normal(size=count)
-    known = GP.init(jax.random.key(0), SPEC)
+    state = GP.init(jax.random.key(0), SPEC)
     for at, value in zip(s, y, strict=True):
-        known = GP.add(known, jnp.asarray(at), jnp.asarray(value))
-    return known, s, y
+        state = GP.add(state, jnp.asarray(at), jnp.asarray(value), None)
+    return state, s, y
 
 
 def by_hand(s, y, at) -> tuple[float, float]:
@@ -36,22 +36,22 @@ def by_hand(s, y, at) -> tuple[float, float]:
 def test_prediction_is_the_formula(count) -> None:
     """Empty, half full, full, and with the oldest gone."""
     with jax.enable_x64(True):
-        known, s, y = told(count)
+        state, s, y = measured(count)
         at = np.array([0.1, -0.2])
-        got, best = GP.predict(known, jnp.asarray(at)), float(GP.best(known))
+        got, best = GP.predict(state, jnp.asarray(at)), GP.report(state)["belief/best"]
     s, y = s[-8:], y[-8:]
     np.testing.assert_allclose(got, by_hand(s, y, at) if count else (0.0, 0.7), atol=1e-9)
     if count:
-        assert best == pytest.approx(y.max())
+        assert float(best) == pytest.approx(y.max())
 
 
 def test_loss_is_the_likelihood_of_what_comes() -> None:
     """Of y with the noise of a measurement."""
     with jax.enable_x64(True):
-        known, s, y = told(5)
+        state, s, y = measured(5)
         at = np.array([0.3, 0.3])
         mean, std = by_hand(s, y, at)
         variance = std**2 + 0.01
         wanted = 0.5 * ((0.4 - mean) ** 2 / variance + np.log(2 * np.pi * variance))
-        got = GP.loss(known, jnp.asarray(at), jnp.asarray(0.4))
+        got = GP.loss(state, jnp.asarray(at), jnp.asarray(0.4))
         assert float(got) == pytest.approx(wanted, rel=1e-9)

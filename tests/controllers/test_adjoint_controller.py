@@ -10,7 +10,7 @@ import pytest
 from jax import Array
 
 from hybrid_rl.controllers.adjoint import AdjointController
-from hybrid_rl.types import Params, Path, Spec
+from hybrid_rl.types import Params, Spec
 
 SPEC = Spec(obs=2, act=1, dt=0.1)
 
@@ -20,7 +20,7 @@ class Cart:
     """A mass on a line: x' = [p + 0.1 v, v + 0.1 u]."""
 
     def lift(self, params: Any, obs: Array) -> Array:
-        """As it is."""
+        """The observation."""
         return obs
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
@@ -34,17 +34,13 @@ class Speed:
 
     price: float = 0.0
 
-    def begin(self, spec: Spec) -> tuple[()]:
-        """Nothing is remembered."""
+    def init(self, spec: Spec) -> tuple[()]:
+        """No memory."""
         return ()
 
-    def look(self, params: Any, memory: Any, x: Array, key: Array) -> Any:
-        """Nothing is drawn."""
-        return memory
-
-    def value(self, params: Any, memory: Any, path: Path) -> Array:
-        """J []."""
-        return jnp.sum(path.x[1:, 1]) - self.price * jnp.sum(path.u**2)
+    def prepare(self, params: Any, memory: Any, x: Array, u_before: Array, key: Array) -> tuple:
+        """J of a path."""
+        return lambda path: jnp.sum(path.x[1:, 1]) - self.price * jnp.sum(path.u**2), memory
 
 
 @dataclass(frozen=True)
@@ -75,7 +71,7 @@ def actions(controller: AdjointController, keys: int, decisions: int = 0) -> Arr
 def test_one_step_is_the_closed_form() -> None:
     """U = mu + Sigma g: each of T decisions after it is 0.1 faster, so g = 0.1 T."""
     for horizon in (1, 5):
-        controller = AdjointController(Cart(), Speed(), Half(), horizon, noise_decay=None)
+        controller = AdjointController(Cart(), Speed(), Half(), horizon)
         u, _, metrics = act(controller)
         assert float(u[0]) == pytest.approx(-0.2 + 0.25 * 0.1 * horizon, abs=1e-6)
         inserted = 0.1 * horizon * (0.25 * 0.1 * horizon)
@@ -87,7 +83,7 @@ def test_shooting_finds_the_optimum() -> None:
     """sum of speeds - u^2: u_t = 0.1 (T - t) / 2, by many small steps."""
     horizon = 6
     controller = AdjointController(
-        Cart(), Speed(price=1.0), horizon=horizon, iterations=200, gain=0.1, noise_decay=None
+        Cart(), Speed(price=1.0), horizon=horizon, iterations=200, gain=0.1
     )
     u, (plan, *_), _ = act(controller)
     wanted = 0.05 * np.arange(horizon, 0, -1)
@@ -96,29 +92,37 @@ def test_shooting_finds_the_optimum() -> None:
 
 
 def test_actions_stay_within_bounds() -> None:
-    """However steep the return."""
-    controller = AdjointController(
-        Cart(), Speed(), Half(), 20, iterations=5, gain=100.0, noise_decay=1.0
-    )
+    """For any slope of the return."""
+    controller = AdjointController(Cart(), Speed(), Half(), 20, iterations=5, gain=100.0)
     assert float(jnp.abs(actions(controller, 20)).max()) <= 1
 
 
 def test_corrections_fade_with_the_decisions_of_the_episode() -> None:
     """W is decay^decisions times itself, however long the run."""
-    controller = AdjointController(Cart(), Speed(), Half(), 1, gain_decay=0.5, noise_decay=None)
+    controller = AdjointController(Cart(), Speed(), Half(), 1, gain_decay=0.5)
     state, params = controller.init(SPEC), Params(decisions=jnp.asarray(1000))
     for decision in range(3):
         u, state, _ = controller.act(params, state, jnp.zeros(2), jax.random.key(0))
         assert float(u[0]) == pytest.approx(-0.2 + 0.5**decision * 0.25 * 0.1, abs=1e-6)
 
 
-def test_noise_fades_with_the_decisions_of_the_run() -> None:
-    """Its deviation is decay^decisions; the greedy controller has none."""
-    controller = AdjointController(Cart(), Speed(), Half(), 1, noise_decay=0.99)
-    quiet = float(act(controller.greedy())[0][0])
-    for decisions in (200, 400):
-        found = actions(controller, 300, decisions) - quiet
-        assert np.std(found) == pytest.approx(0.99**decisions, rel=0.15)
+def test_the_objective_gets_the_action_of_the_decision_before() -> None:
+    """Zero at the first decision."""
+
+    @dataclass(frozen=True)
+    class Before(Speed):
+        def init(self, spec: Spec) -> Array:
+            return jnp.full(1, jnp.nan)
+
+        def prepare(self, params: Any, memory: Any, x: Array, u_before: Array, key: Array) -> tuple:
+            return super().prepare(params, (), x, u_before, key)[0], u_before
+
+    controller = AdjointController(Cart(), Before(), Half(), 2)
+    state, u = controller.init(SPEC), jnp.zeros(1)
+    for _ in range(3):
+        before = u
+        u, state, _ = controller.act(Params(), state, jnp.zeros(2), jax.random.key(0))
+        np.testing.assert_array_equal(state.memory, before)
 
 
 @pytest.mark.parametrize(
@@ -128,7 +132,6 @@ def test_noise_fades_with_the_decisions_of_the_run() -> None:
         ({"iterations": 1.5}, "iterations=1.5"),
         ({"gain": -1.0}, "gain=-1.0"),
         ({"gain_decay": 0.0}, "gain_decay=0.0"),
-        ({"noise_decay": 2.0}, "noise_decay=2.0"),
         ({"policy": None}, "gain=null needs a policy"),
     ],
 )

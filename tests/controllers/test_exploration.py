@@ -11,7 +11,9 @@ from jax import Array
 
 from hybrid_rl.controllers.adjoint import AdjointController
 from hybrid_rl.controllers.goal import GoalController
+from hybrid_rl.controllers.guarded import GuardedController
 from hybrid_rl.core import adjoint
+from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.models.local_linear import LocalLinear
@@ -25,24 +27,22 @@ START = jnp.array([0.3, 0.02, -0.01, 0.0, 0.1, 0.0])
 
 @dataclass(frozen=True)
 class Right:
-    """J = cart position, summed; counts how often it looked."""
+    """J = cart position, summed; its memory counts the decisions."""
 
-    def begin(self, spec: Spec) -> Array:
-        """Not once."""
+    def init(self, spec: Spec) -> Array:
+        """None yet."""
         return jnp.zeros(())
 
-    def look(self, params: Any, memory: Array, x: Array, key: Array) -> Array:
-        """Once more."""
-        return memory + 1
+    def prepare(self, params: Any, memory: Array, x: Array, u_before: Array, key: Array) -> tuple:
+        """J of a path, and the count."""
+        return self.value, memory + 1
 
-    def value(self, params: Any, memory: Array, path: Path) -> Array:
+    def value(self, path: Path) -> Array:
         """J []."""
         return jnp.sum(path.x[:, 0])
 
 
-KLE3 = AdjointController(
-    LocalLinear(WORLD), Right(), PI, 8, gain=5.0, noise_decay=None, lyapunov=PI
-)
+KLE3 = AdjointController(LocalLinear(WORLD), Right(), PI, 8, gain=5.0, lyapunov=PI)
 
 
 def follow(controller: Any, decisions: int, x: Array = START) -> tuple:
@@ -59,7 +59,7 @@ def follow(controller: Any, decisions: int, x: Array = START) -> tuple:
 
 
 def own(x: Array) -> Array:
-    """What the regulator does at x [T, 6]."""
+    """The regulator's actions at x [T, 6]."""
     return jax.vmap(lambda x: PI.mean((), x))(x)
 
 
@@ -71,16 +71,14 @@ def test_correction_is_the_printed_formula() -> None:
         return model.step((), x, u)
 
     path = adjoint.roll(step, lambda x: PI.mean((), x), START, jnp.zeros((8, 1)))
-    found = adjoint.adjoint(
-        step, lambda x: PI.mean((), x), lambda p: Right().value(None, None, p), path
-    )
+    found = adjoint.adjoint(step, lambda x: PI.mean((), x), Right().value, path)
     h = jax.jacfwd(step, argnums=1)(START, path.u[0])
     u = KLE3.act(Params(), KLE3.init(WORLD.spec), START, jax.random.key(0))[0]
     np.testing.assert_allclose(u, path.u[0] + 5.0 * h.T @ found.costate[1], rtol=1e-5)
 
 
 def test_horizon_holds_its_corrections_around_the_measured_state() -> None:
-    """They are planned every 8 decisions, and added to the policy where the world really is."""
+    """They are planned every 8 decisions, and added to the policy at the measured state."""
     x, u, state, _ = follow(replace(KLE3, apply="horizon"), 16)
     np.testing.assert_array_equal(state.count, np.arange(1, 17))
     np.testing.assert_array_equal(state.memory, np.arange(1, 17))
@@ -113,7 +111,7 @@ def test_search_earns_no_less_than_no_correction() -> None:
     class Gentle(Right):
         """J = -sum (u - 0.1)^2."""
 
-        def value(self, params: Any, memory: Array, path: Path) -> Array:
+        def value(self, path: Path) -> Array:
             """J []."""
             return -jnp.sum((path.u - 0.1) ** 2)
 
@@ -160,10 +158,10 @@ def test_value_falls_under_the_regulator() -> None:
 
 
 def test_level_is_never_left() -> None:
-    """With the guard V stays below the level, and corrections still act; without, it does not."""
+    """Guarded, V stays below the level and corrections still act; unguarded it exceeds it."""
     level = 100.0
     free = replace(KLE3, model=Exact(WORLD), gain=10.0, horizon=3)
-    guarded = replace(free, level=level)
+    guarded = GuardedController(free, free.model, PI, level)
     near = 0.2 * START
     x, u, _, metrics = follow(guarded, 300, near)
     handed = np.asarray(metrics["planner/handed_over"]) > 0
@@ -174,28 +172,27 @@ def test_level_is_never_left() -> None:
     assert np.nanmax(follow(free, 300, near)[3]["planner/lyapunov"]) > level
 
 
-def test_acquirer_goes_to_the_greatest_and_stays_for_a_while() -> None:
-    """Without a robot the action is the place; with one it is led there."""
+def test_the_goal_is_the_maximum_for_a_number_of_decisions() -> None:
+    """Without a policy the action is the goal; a policy leads there."""
 
     @dataclass(frozen=True)
     class Peak:
         def log_density(self, params: Any, s: Array) -> Array:
             return -jnp.abs(s[0] - 0.4)
 
-    there = GoalController(Peak(), low=(-1.0,), high=(3.0,))
+    there = GoalController(Peak(), Box(low=(-1.0,), high=(3.0,)))
     u, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
     assert float(goal.s[0]) == pytest.approx(0.4, abs=0.02)
     assert float(u[0]) == pytest.approx((0.4 + 1) / 2 - 1, abs=0.01)
-    x, _, state, _ = follow(GoalController(Peak(), PI, every=50), 1500, 0 * START)
+    x, _, state, _ = follow(GoalController(Peak(), Box(), PI, every=50), 1500, 0 * START)
     assert float(x[-1, 0]) == pytest.approx(0.4, abs=0.03)
-    assert len(np.unique(state.s)) == 30  # drawn anew every 50 decisions
+    assert len(np.unique(state.s)) == 30  # drawn every 50 decisions
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         ({"apply": "later"}, "apply=later: choose first, horizon, search"),
-        ({"level": 1.0, "lyapunov": None}, "level=1.0: needs lyapunov and policy"),
     ],
 )
 def test_bad_fields(change: dict, words: str) -> None:

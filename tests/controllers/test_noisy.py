@@ -1,4 +1,4 @@
-"""Noise beside a policy."""
+"""Noise around a controller."""
 
 from typing import Any
 
@@ -17,13 +17,21 @@ SPEC = Spec(obs=1, act=3, dt=0.02)
 class Still:
     """u = 0.2."""
 
-    def mean(self, params: Any, x: Array) -> Array:
-        """The same everywhere."""
-        return jnp.full(SPEC.act, 0.2)
+    def init(self, spec: Spec) -> Array:
+        """A count of decisions."""
+        return jnp.zeros(())
+
+    def act(self, params: Any, state: Array, obs: Array, key: Array) -> tuple:
+        """The same action everywhere."""
+        return jnp.full(SPEC.act, 0.2), state + 1, {"planner/count": state}
+
+    def greedy(self) -> "Still":
+        """Itself."""
+        return self
 
 
-def noise(controller: NoisyController, count: int = 20_000) -> np.ndarray:
-    """What was added to the policy [count, m]."""
+def noise(controller: Any, count: int = 20_000) -> np.ndarray:
+    """What was added to the inner action [count, m]."""
 
     def decide(state: Any, at: tuple[Array, Array]) -> tuple:
         key, decisions = at
@@ -38,8 +46,8 @@ def noise(controller: NoisyController, count: int = 20_000) -> np.ndarray:
 @pytest.mark.parametrize(
     ("kind", "std", "greatest"), [("normal", 0.1, 0.55), ("uniform", 0.1 / 3**0.5, 0.1)]
 )
-def test_white_noise_has_its_deviation(kind, std, greatest) -> None:
-    """And no memory, and the uniform one its bound."""
+def test_white_noise_has_its_standard_deviation(kind, std, greatest) -> None:
+    """It is uncorrelated in time, and the uniform one is bounded."""
     e = noise(NoisyController(Still(), kind, level=0.1))
     np.testing.assert_allclose(e.std(0), std, rtol=0.03)
     np.testing.assert_allclose(e.mean(0), 0, atol=0.004)
@@ -56,15 +64,36 @@ def test_ou_noise_has_its_variance_and_its_memory() -> None:
 
 
 def test_it_decays_and_is_bounded() -> None:
-    """To nothing after `decay` decisions; actions stay within -1 and 1; greedy has none."""
-    e = noise(NoisyController(Still(), "normal", level=0.1, decay=1000), 2000)
-    assert (e[1000:] == 0).all()
+    """Linearly to zero after `until` decisions, or by `decay`; actions stay within -1 and 1."""
+    e = noise(NoisyController(Still(), "normal", level=0.1, until=1000), 2000)
+    np.testing.assert_allclose(e[1000:], 0, atol=1e-7)
     assert e[400:600].std() == pytest.approx(0.05, rel=0.1)
+    e = noise(NoisyController(Still(), "normal", level=0.1, decay=0.999), 2000)
+    assert e[900:1100].std() == pytest.approx(0.1 * 0.999**1000, rel=0.1)
     assert np.abs(0.2 + noise(NoisyController(Still(), level=9.0), 50)).max() == 1
-    assert (noise(NoisyController(Still(), "ou", decay=7).greedy(), 50) == 0).all()
 
 
-@pytest.mark.parametrize("change", [{"kind": "pink"}, {"level": -1.0}, {"decay": 0}])
+def test_held_noise_is_drawn_every_few_decisions() -> None:
+    """Five equal values in a row, and others after them."""
+    e = noise(NoisyController(Still(), "held", level=0.1, hold=5), 1000)[:, 0].reshape(200, 5)
+    np.testing.assert_array_equal(e, e[:, :1] * np.ones(5))
+    assert e[:, 0].std() == pytest.approx(0.1, rel=0.15)
+    assert len(np.unique(e[:, 0])) == 200
+
+
+def test_it_keeps_the_inner_controller_and_evaluation_has_only_that() -> None:
+    """Its state and metrics come through; `greedy` leaves the noise out."""
+    controller = NoisyController(Still())
+    _, state, metrics = controller.act(
+        Params(), controller.init(SPEC), jnp.zeros(1), jax.random.key(0)
+    )
+    assert (float(state.inner), float(metrics["planner/count"])) == (1, 0)
+    assert isinstance(controller.greedy(), Still)
+
+
+@pytest.mark.parametrize(
+    "change", [{"kind": "pink"}, {"level": -1.0}, {"decay": 0.0}, {"until": 0}, {"hold": 0}]
+)
 def test_bad_fields(change) -> None:
     """One line that names the field."""
     with pytest.raises(ValueError, match=next(iter(change))):

@@ -11,7 +11,8 @@ from jax import Array
 
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core import sampling
-from hybrid_rl.objectives.learned_reward import LearnedReward
+from hybrid_rl.models.reward import RewardNetwork
+from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.types import Params, Path, Spec
 
@@ -25,7 +26,7 @@ class Cart:
     """A mass on a line: x' = [p + 0.1 v, v + 0.1 u]."""
 
     def lift(self, params: Any, obs: Array) -> Array:
-        """As it is."""
+        """The observation."""
         return obs
 
     def step(self, params: Any, x: Array, u: Array) -> Array:
@@ -37,9 +38,9 @@ class Cart:
 class Grid:
     """Candidate k does u = k / K all along."""
 
-    def init(self, spec: Spec, place: Array) -> Array:
+    def init(self, spec: Spec, quantile: Array) -> Array:
         """The action."""
-        return place
+        return quantile
 
     def __call__(self, params: Params, carry: Array, x: Array, plan: Array, noise: Array) -> tuple:
         """The same action again."""
@@ -62,7 +63,8 @@ class Closing:
 @pytest.mark.parametrize("ends", [False, True])
 def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     """The reward network's output at x and u, whatever the chance that the episode ends there."""
-    reward = LearnedReward(hidden=(8,), ends=ends, discount=0.9, critic=Closing(), policy=Closing())
+    reward = RewardNetwork(hidden=(8,), ends=ends)
+    objective = PredictedReturn(reward, discount=0.9, critic=Closing(), policy=Closing())
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
     paths = Path(jnp.zeros((K, T + 1, 2)), jnp.zeros((K, T, 1)))
     for k in range(K):
@@ -71,17 +73,18 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
         for t in range(T):
             x = Cart().step((), x, u)
             paths = paths._replace(x=paths.x.at[k, t + 1].set(x))
-    to_go = jax.vmap(lambda path: reward.reward_to_go(params, path))(paths)
+    to_go = jax.vmap(lambda path: objective.reward_to_go(params, path))(paths)
     w = np.asarray(sampling.weights(to_go[:, :-1], 0.1))[:, 0]
-    first = [float(reward.reward(params.reward, X, jnp.full(1, k / K))) for k in range(K)]
-    controller = SamplingController(Cart(), reward, Grid(), horizon=T, samples=K)
+    first = [float(reward.outcome(params.reward, X, jnp.full(1, k / K))[0]) for k in range(K)]
+    controller = SamplingController(Cart(), objective, Grid(), horizon=T, samples=K)
     metrics = controller.act(params, controller.init(SPEC), X, jax.random.key(1))[2]
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
 
 
-def test_densities_of_several_laws_are_refused() -> None:
+def test_densities_of_several_distributions_are_refused() -> None:
     """They would be compared."""
     mixture = MixtureProposal(Grid(), Grid())
-    SamplingController(Cart(), LearnedReward(), mixture)
-    with pytest.raises(ValueError, match="log_density=True: needs candidates of one law"):
-        SamplingController(Cart(), LearnedReward(), mixture, log_density=True)
+    objective = PredictedReturn(RewardNetwork())
+    SamplingController(Cart(), objective, mixture)
+    with pytest.raises(ValueError, match="log_density=True: needs candidates of one distribution"):
+        SamplingController(Cart(), objective, mixture, log_density=True)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm, logm
 
-from hybrid_rl.core import riccati
+from hybrid_rl.core import analytic, riccati
 from hybrid_rl.envs.analytic.cart_double_pendulum import FORCE, CartDoublePendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.cartpole import Cartpole
@@ -32,7 +32,7 @@ def test_value_is_the_cost_of_the_regulator() -> None:
 
 def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
     """Bogdanov 2004: +4.10 and +10.39 [1/s], and their mirror images."""
-    A = riccati.around_rest(CartDoublePendulum())[0]
+    A = analytic.at_equilibrium(CartDoublePendulum())[0]
     poles = np.sort(np.log(np.linalg.eigvals(A).real) / 0.01)
     np.testing.assert_allclose(poles, [-10.39, -4.10, 0, 0, 4.10, 10.39], atol=0.01)
 
@@ -42,7 +42,7 @@ def test_gains_tend_to_those_of_continuous_time() -> None:
 
     A decision of 0.01 s is 25% away from continuous time: an action then is held.
     """
-    A, B = riccati.around_rest(CartDoublePendulum())
+    A, B = analytic.at_equilibrium(CartDoublePendulum())
     held = np.eye(7)
     held[:6] = np.hstack([A, B / FORCE])
     quick = expm(logm(held).real / 1000)
@@ -54,7 +54,7 @@ def test_gains_tend_to_those_of_continuous_time() -> None:
 def test_gains_are_those_of_value_iteration() -> None:
     """P <- Q + A' P (A - B K), many times, from Q; and they hold the rods upright."""
     policy = Regulator(CartDoublePendulum(), WEIGHTS, (FORCE**2,))
-    A, B = riccati.around_rest(policy.world)
+    A, B = analytic.at_equilibrium(policy.world)
     Q, R = np.diag(WEIGHTS), np.array([[FORCE**2]])
     P = Q
     for _ in range(3000):
@@ -66,15 +66,15 @@ def test_gains_are_those_of_value_iteration() -> None:
 
 def test_point_mass_by_hand() -> None:
     """Its Jacobians are those of two double integrators."""
-    A, B = riccati.around_rest(PointMass())
+    A, B = analytic.at_equilibrium(PointMass())
     block = expm(0.1 * np.array([[0, 1.0, 0], [0, 0, 2.0], [0, 0, 0]]))
     np.testing.assert_allclose(A[np.ix_([0, 2], [0, 2])], block[:2, :2], atol=1e-12)
     np.testing.assert_allclose(B[[0, 2], 0], block[:2, 2], atol=1e-12)
 
 
-def test_a_world_that_is_no_formula_is_named() -> None:
+def test_an_environment_that_is_not_analytic_is_named() -> None:
     """MuJoCo's cart and pole has no Jacobian here."""
-    with pytest.raises(ValueError, match=r"equilibrium\.world=Cartpole: needs a world that is a"):
+    with pytest.raises(ValueError, match=r"equilibrium\.world=Cartpole: needs an analytic env"):
         Regulator(Cartpole("native"))
 
 
@@ -86,7 +86,7 @@ def test_weights_that_do_not_fit_are_named(weights) -> None:
 
 
 def test_solved_inside_a_compiled_program() -> None:
-    """Nothing of it is traced."""
+    """The solution is a constant of the program."""
     policy = Regulator(PointMass(), (2.0,))
     x = np.array([0.9, 0.1, 0.3, 0.0])
     inside = jax.jit(lambda x: policy.mean((), x))(x)
@@ -94,13 +94,13 @@ def test_solved_inside_a_compiled_program() -> None:
 
 
 def test_free_coordinates_are_the_best_for_v() -> None:
-    """V without the cart's place is the least of V over places, found by trying them."""
+    """V without the cart's position is the minimum of V over positions, found by trying them."""
     counted = Regulator(CartDoublePendulum(), (5.0, 50.0, 50.0, 20.0, 700.0, 700.0), (1600.0,))
     free = replace(counted, free=(0,))
     x = np.array([0.5, 0.02, -0.03, 0.1, 0.2, -0.1])
     with jax.enable_x64(True):
-        places = np.tile(x, (4001, 1))
-        places[:, 0] = np.linspace(-2, 2, 4001)
-        values = jax.vmap(counted.lyapunov)(places)
-        found = jax.vmap(free.lyapunov)(places)
+        positions = np.tile(x, (4001, 1))
+        positions[:, 0] = np.linspace(-2, 2, 4001)
+        values = jax.vmap(counted.lyapunov)(positions)
+        found = jax.vmap(free.lyapunov)(positions)
         np.testing.assert_allclose(found, values.min(), rtol=1e-4)

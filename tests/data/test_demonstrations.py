@@ -34,16 +34,16 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "deep" / "file.npz"
 
 
-def recalled(file: Path, /, **fields: object) -> Transition:
+def loaded(file: Path, /, **fields: object) -> Transition:
     """What a task takes from it."""
     return Demonstrations(
         **{"file": str(file), "task": "pendulum", "world": Pendulum()} | fields
-    ).recall()
+    ).load()
 
 
-def test_what_was_saved_is_recalled(file: Path) -> None:
+def test_what_was_saved_is_loaded(file: Path) -> None:
     """In float32, and the episode that ended with neither flag is truncated."""
-    got, put = recalled(file), decisions()
+    got, put = loaded(file), decisions()
     put.truncated[LAST[2]] = 1
     for a, b in zip(got, put, strict=True):
         np.testing.assert_array_equal(a, b.astype(np.float32))
@@ -52,7 +52,7 @@ def test_what_was_saved_is_recalled(file: Path) -> None:
 @pytest.mark.parametrize("episodes", [1, 2, 3])
 def test_the_first_episodes_are_taken(file: Path, episodes: int) -> None:
     """All of their decisions, and no more."""
-    got = recalled(file, episodes=episodes)
+    got = loaded(file, episodes=episodes)
     count = sum(LENGTHS[:episodes])
     np.testing.assert_array_equal(got.obs, decisions().obs[:count].astype(np.float32))
 
@@ -70,7 +70,7 @@ def test_the_first_episodes_are_taken(file: Path, episodes: int) -> None:
 def test_a_file_that_does_not_fit_is_refused(file: Path, fields: dict, words: str) -> None:
     """Another task, rate or number."""
     with pytest.raises(ValueError, match=words):
-        recalled(file, **fields)
+        loaded(file, **fields)
 
 
 def _changed(**arrays: object) -> dict:
@@ -113,7 +113,7 @@ def test_a_file_that_contradicts_itself_is_refused(
     """And its fault is named."""
     np.savez(tmp_path / "bad.npz", **_changed(**arrays))
     with pytest.raises(ValueError, match=words):
-        recalled(tmp_path / "bad.npz")
+        loaded(tmp_path / "bad.npz")
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
@@ -140,9 +140,9 @@ def test_a_memory_begins_with_them(file: Path, worlds: int) -> None:
     shown = Demonstrations(str(file), "pendulum", Pendulum())
     replay, spec = Replay(100, shown), Pendulum().spec
     memory = replay.init(spec, worlds)
-    assert int(memory.count) == replay.given(worlds) == N // worlds
+    assert int(memory.count) == replay.num_demonstrated(worlds) == N // worlds
     batch = replay.sample(memory, spec, 400, jax.random.key(0))
-    put = recalled(file)
+    put = loaded(file)
     row = np.abs(np.asarray(batch.obs)[:, None] - put.obs[None]).sum(-1).argmin(1)
     last = np.arange(1, worlds + 1) * (N // worlds) - 1
     assert set(row) == set(range(N)) - set(last)  # their successors are not known yet
@@ -156,6 +156,6 @@ def test_a_memory_begins_with_them(file: Path, worlds: int) -> None:
 def test_a_memory_smaller_than_them_is_refused(file: Path) -> None:
     """Rather than to forget some of them silently."""
     shown = Demonstrations(str(file), "pendulum", Pendulum())
-    with pytest.raises(ValueError, match=r"replay\.capacity=11: the demonstrations alone are 12"):
+    with pytest.raises(ValueError, match=r"replay\.capacity=11: the demonstrations alone have 12"):
         Replay(11, shown)
-    assert Replay(8, replace(shown, episodes=1)).given(1) == 4
+    assert Replay(8, replace(shown, episodes=1)).num_demonstrated(1) == 4

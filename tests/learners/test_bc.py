@@ -18,11 +18,11 @@ STD = 0.2  # of the expert's hand before the squashing
 
 @dataclass(frozen=True)
 class Shown:
-    """What an expert does who follows u = tanh(GAIN x + noise)."""
+    """Decisions of an expert with u = tanh(GAIN x + noise)."""
 
     count: int = 4000
 
-    def recall(self) -> Transition:
+    def load(self) -> Transition:
         """Its decisions; only states and actions count."""
         rng = np.random.default_rng(0)
         x = rng.normal(size=(self.count, 3)).astype(np.float32)
@@ -66,13 +66,13 @@ def test_actions_at_the_edge_are_bounded() -> None:
 
     @dataclass(frozen=True)
     class Closed(Shown):
-        def recall(self) -> Transition:
-            shown = super().recall()
+        def load(self) -> Transition:
+            shown = super().load()
             return shown._replace(action=np.ones_like(shown.action))
 
     policy = TanhGaussian(hidden=(8,))
     state = train(BehaviourCloning(policy, Closed(50), edge=0.9, learning_rate=0.01), 2000)
-    mean = policy.mean(state.policy, jnp.asarray(Closed(50).recall().obs))
+    mean = policy.mean(state.policy, jnp.asarray(Closed(50).load().obs))
     np.testing.assert_allclose(mean, 0.9, atol=0.05)
 
 

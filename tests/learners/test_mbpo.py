@@ -19,6 +19,10 @@ B = 10
 class Counting:
     """x' = x + 1, whatever is done; a reward of x; the episode ends at 2.5 and beyond."""
 
+    def lift(self, params: Any, obs: Array) -> Array:
+        """The observation."""
+        return obs
+
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """One more."""
         return x + 1
@@ -45,6 +49,7 @@ class Keeping:
 
     batches = 1
     early = False
+    owns = ()
 
     def init(self, key: Array, spec: Spec) -> None:
         """Nothing."""
@@ -58,7 +63,7 @@ class Keeping:
         return batch, {}
 
 
-def dreamt(start: Array, **given: Any) -> Batch:
+def imagined(start: Array, **given: Any) -> Batch:
     """What the learner gets where all that was seen is at `start` [B] with reward -7."""
     known: Any = Counting()
     learner = MBPO(Keeping(), known, known, known, **given)
@@ -69,7 +74,7 @@ def dreamt(start: Array, **given: Any) -> Batch:
 
 def test_a_share_is_imagined_and_the_rest_is_as_it_was() -> None:
     """One step from what was seen: x -> x + 1, with the reward at x."""
-    batch = dreamt(jnp.zeros(B), share=0.6)
+    batch = imagined(jnp.zeros(B), share=0.6)
     assert batch.obs.shape == (B, 1)
     np.testing.assert_array_equal(batch.next_obs[:, 0], [1] * 6 + [0] * 4)
     np.testing.assert_array_equal(batch.reward, [0] * 6 + [-7] * 4)
@@ -78,7 +83,7 @@ def test_a_share_is_imagined_and_the_rest_is_as_it_was() -> None:
 
 def test_branches_have_every_length_and_start_again_after_an_end() -> None:
     """From 1: steps 1 -> 2 -> 3, where it ends, and once more from 1."""
-    batch = dreamt(jnp.ones(B), share=1.0, steps=4)
+    batch = imagined(jnp.ones(B), share=1.0, steps=4)
     at = np.asarray(batch.obs[:, 0])
     assert set(at) == {1.0, 2.0, 3.0}
     np.testing.assert_array_equal(batch.reward, at)
@@ -89,13 +94,13 @@ def test_branches_have_every_length_and_start_again_after_an_end() -> None:
 
 def test_nothing_imagined_is_the_learner_alone() -> None:
     """Share 0 hands the batch through."""
-    np.testing.assert_array_equal(dreamt(jnp.ones(B), share=0.0).reward, -7)
+    np.testing.assert_array_equal(imagined(jnp.ones(B), share=0.0).reward, -7)
 
 
 def test_bad_fields() -> None:
     """One line that names the field."""
     known: Any = Counting()
-    with pytest.raises(ValueError, match=r"imagining\.share=2"):
+    with pytest.raises(ValueError, match=r"mbpo\.share=2"):
         MBPO(Keeping(), known, known, known, share=2)
-    with pytest.raises(ValueError, match=r"imagining\.steps=0"):
+    with pytest.raises(ValueError, match=r"mbpo\.steps=0"):
         MBPO(Keeping(), known, known, known, steps=0)

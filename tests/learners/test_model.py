@@ -8,7 +8,8 @@ from jax import Array
 
 from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.models.gaussian import Gaussian
-from hybrid_rl.objectives.learned_reward import LearnedReward
+from hybrid_rl.models.reward import RewardNetwork
+from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.types import Batch, Params, Path, Spec
 
 SPEC = Spec(obs=2, act=1, dt=0.1)
@@ -36,7 +37,7 @@ def draw(key: Array, size: int = 128) -> Batch:
 
 
 def trained(learner: ModelLearner, steps: int, batch: object = draw) -> Params:
-    """What is known after `steps` updates."""
+    """The parameters after `steps` updates."""
 
     def one(state: object, key: Array) -> tuple:
         return learner.update(state, Params(), batch(key), key)[0], None
@@ -48,14 +49,14 @@ def trained(learner: ModelLearner, steps: int, batch: object = draw) -> Params:
 
 def test_model_and_reward_are_learned() -> None:
     """One-step error far below the change itself, in every unit."""
-    model, reward = Gaussian(hidden=(64,), activation="silu"), LearnedReward(hidden=(64,))
+    model, reward = Gaussian(hidden=(64,), activation="silu"), RewardNetwork(hidden=(64,))
     params = trained(ModelLearner(model, reward), 4000)
     test = draw(jax.random.key(9), 1000)
     ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
     error = jnp.abs(ahead - test.next_obs).mean(0)
     change = jnp.abs(test.next_obs - test.obs).mean(0)
     assert (np.asarray(error) < 0.1 * np.asarray(change)).all()
-    got = jax.vmap(reward.reward, (None, 0, 0))(params.reward, test.obs, test.action)
+    got = jax.vmap(reward.outcome, (None, 0, 0))(params.reward, test.obs, test.action)[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05
 
 
@@ -67,24 +68,24 @@ def test_reward_discount_learns_a_value() -> None:
         one = jnp.ones(128)
         return batch._replace(reward=one, terminated=terminated * one, next_obs=batch.obs)
 
-    reward = LearnedReward(hidden=(32,))
+    reward = RewardNetwork(hidden=(32,))
     learner = ModelLearner(Gaussian(hidden=(8,)), reward, reward_discount=0.8)
     at = (jnp.zeros(2), jnp.zeros(1))
-    assert float(reward.reward(trained(learner, 4000, endless).reward, *at)) == pytest.approx(
-        5, abs=0.4
-    )
+    going = trained(learner, 4000, endless).reward
+    assert float(reward.outcome(going, *at)[0]) == pytest.approx(5, abs=0.4)
     ended = trained(learner, 2000, lambda key: endless(key, 1.0)).reward
-    assert float(reward.reward(ended, *at)) == pytest.approx(1, abs=0.1)
+    assert float(reward.outcome(ended, *at)[0]) == pytest.approx(1, abs=0.1)
 
 
 def test_reward_to_go_is_the_sum_of_what_follows() -> None:
     """S_t = r_t + discount S_{t+1}, with nothing after the end."""
-    reward = LearnedReward(hidden=(8,), discount=0.9)
+    reward = RewardNetwork(hidden=(8,))
+    objective = PredictedReturn(reward, discount=0.9)
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
     path = Path(jax.random.normal(jax.random.key(1), (5, 2)), jnp.ones((4, 1)))
-    rates = [float(reward.reward(params.reward, path.x[t], path.u[t])) for t in range(4)]
+    rates = [float(reward.outcome(params.reward, path.x[t], path.u[t])[0]) for t in range(4)]
     want = [sum(0.9 ** (i - t) * rates[i] for i in range(t, 4)) for t in range(5)]
-    np.testing.assert_allclose(reward.reward_to_go(params, path), want, rtol=1e-4, atol=1e-6)
+    np.testing.assert_allclose(objective.reward_to_go(params, path), want, rtol=1e-4, atol=1e-6)
 
 
 def test_where_episodes_end_is_learned_and_ends_the_return() -> None:
@@ -96,11 +97,56 @@ def test_where_episodes_end_is_learned_and_ends_the_return() -> None:
             reward=jnp.ones(128), terminated=(batch.obs[:, 0] > 0).astype(jnp.float32)
         )
 
-    reward = LearnedReward(hidden=(32,), ends=True)
+    reward = RewardNetwork(hidden=(32,), ends=True)
     params = trained(ModelLearner(Gaussian(hidden=(8,)), reward), 2000, ending)
     still = jnp.zeros(1)
     for x, wanted in ((jnp.array([-1.0, 0.0]), 3), (jnp.array([1.0, 0.0]), 1)):
         path = Path(jnp.tile(x, (4, 1)), jnp.tile(still, (3, 1)))
-        got = reward.reward_to_go(params, path)
+        got = PredictedReturn(reward).reward_to_go(params, path)
         assert float(got[0]) == pytest.approx(wanted, abs=0.1)
         assert float(got[-1]) == 0
+
+
+def noise(x: Array) -> Array:
+    """Standard deviation [B, 2] at x [B, 2]: from 0.02 to 0.2."""
+    return 0.02 + 0.09 * (1 + x[:, :1]) * jnp.ones(2)[None]
+
+
+def draw_noisy(key: Array, size: int = 200) -> Batch:
+    """x' = x + (0.5 x_1, u) + noise(x) e, for x and u U(-1, 1)."""
+    of_x, of_u, of_e = jax.random.split(key, 3)
+    x = jax.random.uniform(of_x, (size, 2), minval=-1)
+    u = jax.random.uniform(of_u, (size, 1), minval=-1)
+    after = x + jnp.concatenate([0.5 * x[:, 1:], u], 1)
+    after += noise(x) * jax.random.normal(of_e, (size, 2))
+    no = jnp.zeros(size)
+    return Batch(x, u, no, no, no, after, u)
+
+
+def test_mean_and_standard_deviation_are_learned() -> None:
+    """Without a reward; both as functions of the state, in its units."""
+    model = Gaussian(hidden=(64,), activation="silu", state_noise=True)
+    learner = ModelLearner(model, updates=1)
+
+    def one(state: object, key: Array) -> tuple:
+        return learner.update(state, Params(), draw_noisy(key), key)
+
+    first = learner.init(jax.random.key(0), SPEC)
+    keys = jax.random.split(jax.random.key(1), 4000)
+    state, metrics = jax.jit(lambda s: jax.lax.scan(one, s, keys))(first)
+    assert (learner.owns, list(learner.params(state))) == (("model",), ["model"])
+    params = learner.params(state)["model"]
+    loss = np.asarray(metrics["model/loss"])
+    assert loss[-100:].mean() < loss[:100].mean() - 0.5
+    test = draw_noisy(jax.random.key(9), 500)
+    ahead = jax.vmap(model.step, (None, 0, 0))(params, test.obs, test.action)
+    wanted = test.obs + jnp.concatenate([0.5 * test.obs[:, 1:], test.action], 1)
+    assert float(jnp.sqrt(jnp.mean((ahead - wanted) ** 2))) < 0.03
+    std = jax.vmap(lambda x: model.std(params, x) * params["change"].std)(test.obs)
+    assert float(jnp.mean(jnp.abs(std / noise(test.obs) - 1))) < 0.15
+
+
+def test_bad_rates_are_named() -> None:
+    """One line."""
+    with pytest.raises(ValueError, match=r"model_learner\.learning_rate"):
+        ModelLearner(Gaussian(), learning_rate=0.0)

@@ -49,7 +49,7 @@ def test_every_member_has_a_batch_of_its_own(params) -> None:
         before(params["weights"]),
     )
     assert np.any(jax.tree.leaves(moved), axis=0).tolist() == [True, False, False, False]
-    with pytest.raises(ValueError, match="7 rows do not divide among 4 members"):
+    with pytest.raises(ValueError, match="7 transitions do not divide among 4 members"):
         MODEL.loss(params, x[:7], u[:7], after[:7])
 
 

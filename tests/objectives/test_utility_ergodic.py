@@ -1,4 +1,4 @@
-"""States and actions before a critic."""
+"""The KL-ergodic measure of states and actions under a critic."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ import pytest
 from jax import Array
 from scipy.stats import multivariate_normal
 
-from hybrid_rl.core import statistics
+from hybrid_rl.core import ergodic, statistics
 from hybrid_rl.objectives.utility_ergodic import UtilityErgodic
 from hybrid_rl.types import Params, Path, Spec
 
@@ -34,9 +34,25 @@ class Known:
 J = UtilityErgodic(None, Known(), Known(), samples=50, variance=0.2, reach=0.4, sharpness=2.0)
 
 
-def test_points_lie_about_the_state_and_its_action() -> None:
-    """In the units of what was seen, even where actions are bounded; weights are exp(c Q)."""
-    points, _ = J.look(KNOWN, J.begin(SPEC), X, jax.random.key(0))
+def points_of(value: Any, monkeypatch) -> Any:
+    """The points in a J, which it hands to `ergodic.divergence`."""
+    seen = []
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            ergodic, "divergence", lambda points, *_: seen.append(points) or jnp.zeros(())
+        )
+        value(Path(jnp.tile(X, (3, 1)), jnp.zeros((2, 1))))
+    return seen[0]
+
+
+def prepare() -> Any:
+    """J of paths that begin at X."""
+    return J.prepare(KNOWN, J.init(SPEC), X, jnp.zeros(1), jax.random.key(0))[0]
+
+
+def test_points_lie_around_the_state_and_its_action(monkeypatch) -> None:
+    """In running standard deviations, also where actions are bounded; weights are exp(c Q)."""
+    points = points_of(prepare(), monkeypatch)
     apart = np.asarray(points.s) - np.array([1 / 0.5, -2 / 4, 0.9])
     assert np.abs(apart[:, :2]).max() == pytest.approx(0.4, abs=0.03)
     assert apart[:, 2].mean() == pytest.approx(-0.15, abs=0.05)  # between 0.5 and 1
@@ -46,18 +62,19 @@ def test_points_lie_about_the_state_and_its_action() -> None:
     np.testing.assert_allclose(np.exp(points.log_p), want, rtol=1e-4)
 
 
-def test_value_is_the_divergence_by_hand() -> None:
+def test_value_is_the_divergence_by_hand(monkeypatch) -> None:
     """A plain double loop with SciPy's Gaussians."""
-    seen = J.look(KNOWN, J.begin(SPEC), X, jax.random.key(0))
+    value = prepare()
+    points = points_of(value, monkeypatch)
     rng = np.random.default_rng(0)
     x = jnp.asarray(np.asarray(X) + 0.2 * rng.normal(size=(4, 2)), jnp.float32)
     path = Path(x, jnp.array([[0.1], [0.5], [0.9]]))
     at = np.concatenate([np.asarray(path.x[:-1]) / np.asarray(UNITS), np.asarray(path.u)], 1)
     total = 0.0
-    for s, log_p in zip(np.asarray(seen.points.s), np.asarray(seen.points.log_p), strict=True):
+    for s, log_p in zip(np.asarray(points.s), np.asarray(points.log_p), strict=True):
         q = np.mean([multivariate_normal.pdf(s, centre, 0.2 * np.eye(3)) for centre in at])
         total += np.exp(log_p) * (log_p + np.log(50) - np.log(q))
-    assert float(J.value(KNOWN, seen, path)) == pytest.approx(-total, rel=1e-4)
+    assert float(value(path)) == pytest.approx(-total, rel=1e-4)
 
 
 def test_bad_fields_are_named() -> None:

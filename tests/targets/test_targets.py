@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.targets.model_uncertainty import ModelUncertainty
@@ -43,18 +44,21 @@ def test_upper_bound_by_hand() -> None:
     assert float(target.log_density(Params(), jnp.zeros(1))) == pytest.approx(4 * 3.5)
 
 
+BOX = Box(coordinates=(12, 17), low=(-1.0, -1.0), high=(1.0, 1.0))
+
+
 @dataclass(frozen=True)
 class Tilted:
     """Deviations |x|."""
 
-    def deviation(self, known: Any, x: Any) -> Any:
+    def std(self, known: Any, x: Any) -> Any:
         """As large as the state."""
         return jnp.abs(x)
 
 
-def test_model_spread_by_hand() -> None:
+def test_model_uncertainty_by_hand() -> None:
     """c mean sigma at s, all else at hover: an upright rotation has three ones."""
-    target = ModelUncertainty(Tilted(), QuadcopterSE3(), (12, 17), sharpness=4.0)
+    target = ModelUncertainty(Tilted(), QuadcopterSE3(), BOX, sharpness=4.0)
     got = target.log_density(Params(), jnp.array([-0.5, 2.0]))
     assert float(got) == pytest.approx(4 * (0.5 + 2.0 + 3) / 18)
 

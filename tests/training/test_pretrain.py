@@ -11,13 +11,14 @@ from tiny import TINY, demonstrate
 
 from hybrid_rl import config
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.types import Params
 
 KEY = jax.random.key(3)
 
 
 @pytest.fixture(scope="module")
 def agent(tmp_path_factory) -> Agent:
-    """Hybrid learning from demonstrations on the pendulum, with 3 steps of head start."""
+    """Hybrid learning from demonstrations on the pendulum, pretrained for 3 steps."""
     line = [*TINY, "algo=hybrid_bc", "pretrain=3", "cloning_learner.batch_size=16"]
     line += ["cloning_learner.updates=1", "random_steps=0"]
     folder = tmp_path_factory.mktemp("demonstrations")
@@ -37,7 +38,7 @@ def paid(agent: Agent, reward: Array | float):
 
 
 def after(agent: Agent, decisions: int):
-    """What is known after so many decisions."""
+    """The parameters after so many decisions."""
 
     def run(key):
         one = lambda state, t: (agent.step(state, t)[0], None)  # noqa: E731
@@ -74,14 +75,16 @@ def test_the_pretrain_is_gradient_steps_on_demonstrations(agent):
     state = still
     for key in jax.random.split(jax.random.split(KEY, 4)[3], 3):
         ((_, updating),) = jax.random.split(key, (1, 2))
-        state = learners["cloning"].update(state, None, None, updating)[0]
+        state = learners["cloning"].update(state, Params(), None, updating)[0]
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
 
 
 def test_no_key_of_the_pretrain_is_used_again(agent, monkeypatch):
     """Its own, and those of its steps, are none of the first state's or the first decision's."""
     given = []
-    monkeypatch.setattr(Agent, "_ahead", lambda _, states, memory, key: given.append(key) or states)
+    monkeypatch.setattr(
+        Agent, "_pretrain", lambda _, states, memory, key: given.append(key) or states
+    )
     state = agent.init(KEY)
     first = jax.random.split(KEY, 2 + len(agent.learners))
     decision = jax.random.split(state.key, 3 + 2 * agent.num_envs)
@@ -92,7 +95,7 @@ def test_no_key_of_the_pretrain_is_used_again(agent, monkeypatch):
 
 def test_a_pretrain_needs_demonstrations(agent):
     bare = replace(agent.replay, demonstrations=None)
-    with pytest.raises(ValueError, match="pretrain=3: there is nothing to learn from"):
+    with pytest.raises(ValueError, match="pretrain=3: the memory has no demonstrations"):
         replace(agent, replay=bare)
 
 

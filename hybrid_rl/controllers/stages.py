@@ -1,0 +1,81 @@
+"""One controller after the other within an episode: warm up, explore, then track."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Controller, Params, Spec
+
+
+class StagesState(NamedTuple):
+    """The stages' own states."""
+
+    each: dict[str, Any]
+    count: Array  # [] decisions of the episode so far
+
+
+@dataclass(frozen=True)
+class StagesController:
+    """Each of `stages` acts for its number of `decisions`; the last one acts to the end.
+
+    A stage that is not acting keeps its state. Metrics that only another stage has are NaN.
+
+    Raises:
+        ValueError: where the stages before the last have no positive number of decisions each.
+    """
+
+    stages: Mapping[str, Controller]  # in order
+    decisions: tuple[int, ...] = ()  # of every stage but the last
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "decisions", tuple(self.decisions))
+        counts = len(self.stages) - 1
+        if len(self.decisions) != counts or not all(n >= 1 for n in self.decisions):
+            raise ValueError(
+                f"stages.decisions={list(self.decisions)}: needs {counts} whole numbers above 0, "
+                "one for each stage but the last"
+            )
+
+    def init(self, spec: Spec) -> StagesState:
+        """The stages' first states."""
+        each = {name: stage.init(spec) for name, stage in self.stages.items()}
+        return StagesState(each, jnp.zeros((), jnp.int32))
+
+    def act(
+        self, params: Params, state: StagesState, obs: Array, key: Array
+    ) -> tuple[Array, StagesState, dict[str, Array]]:
+        """Action [m], next state, metrics. The key is consumed."""
+
+        def by(name: str) -> Any:
+            def act(each: dict[str, Any]) -> tuple[Array, dict[str, Any], dict[str, Array]]:
+                u, after, metrics = self.stages[name].act(params, each[name], obs, key)
+                return u, {**each, name: after}, metrics
+
+            return act
+
+        branches = [by(name) for name in self.stages]
+        known: dict[str, Any] = {}
+        for branch in branches:
+            known |= jax.eval_shape(branch, state.each)[2]
+        nothing = {name: jnp.full(m.shape, jnp.nan, m.dtype) for name, m in known.items()}
+
+        def filled(branch: Any) -> Any:
+            def act(each: dict[str, Any]) -> tuple[Array, dict[str, Any], dict[str, Array]]:
+                u, each, metrics = branch(each)
+                return u, each, {**nothing, **metrics}
+
+            return act
+
+        ends = jnp.cumsum(jnp.array(self.decisions, jnp.int32))
+        stage = jnp.sum(state.count >= ends)
+        u, each, metrics = jax.lax.switch(stage, [filled(b) for b in branches], state.each)
+        return u, StagesState(each, state.count + 1), metrics
+
+    def greedy(self) -> "StagesController":
+        """The stages without exploration."""
+        return replace(self, stages={name: each.greedy() for name, each in self.stages.items()})

@@ -1,0 +1,37 @@
+"""Linearisation, and environments whose dynamics are known."""
+
+from collections.abc import Callable
+from functools import cache
+
+import jax
+import numpy as np
+from jax import Array
+
+from hybrid_rl.types import AnalyticEnv
+
+
+def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tuple[Array, Array]:
+    """A [d, d] and B [d, m] of `step` at e [d], u [m]."""
+    return jax.jacfwd(step, argnums=(0, 1))(e, u)
+
+
+@cache
+def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
+    """A [d, d] and B [d, m] of `world` at its equilibrium, in local coordinates, in float64."""
+    with jax.enable_x64(True), jax.ensure_compile_time_eval():
+        x, u = world.equilibrium()
+
+        def step(e: Array, u: Array) -> Array:
+            return world.to_local(world.dynamics(world.from_local(e), u))
+
+        a, b = linearise(step, world.to_local(x), u)
+        return np.asarray(a), np.asarray(b)
+
+
+def require(name: str, world: AnalyticEnv) -> None:
+    """Raise ValueError unless `world`, a field of the part `name`, is analytic."""
+    try:
+        world.equilibrium()
+    except AttributeError as error:
+        kind = type(world).__name__
+        raise ValueError(f"{name}.world={kind}: needs an analytic environment") from error

@@ -1,0 +1,31 @@
+"""From observations to planning states; without a model they are the same."""
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Batch, Model, PyTree, Spec
+
+
+def lift(model: Model | None, params: PyTree, obs: Array) -> Array:
+    """The planning state x [n] of an observation [o]."""
+    return obs if model is None else model.lift(params, obs)
+
+
+def lifted_batch(model: Model | None, params: PyTree, batch: Batch) -> Batch:
+    """`batch` with planning states [B, n] in place of its observations [B, o]."""
+    if model is None:
+        return batch
+    each = jax.vmap(lambda obs: model.lift(params, obs))
+    return batch._replace(obs=each(batch.obs), next_obs=each(batch.next_obs))
+
+
+def lifted_spec(model: Model | None, spec: Spec) -> Spec:
+    """`spec` with the size n of the model's planning state."""
+    if model is None:
+        return spec
+
+    def state(key: Array) -> Array:
+        return model.lift(model.init(key, spec), jnp.zeros(spec.obs))
+
+    return spec._replace(state=jax.eval_shape(state, jax.random.key(0)).size)

@@ -1,0 +1,70 @@
+"""J(path) = sum_t c_t r(x_t, u_t) [+ c_T min_i Q_i(x_T, pi(x_T))]: the return of a learned reward.
+
+c_t is the discount so far, times the probability that the episode goes on where the reward
+predicts it: without it a planner expects a robot that fell to go on earning.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Critic, Params, Path, Policy, Return, Reward, Spec
+
+
+@dataclass(frozen=True)
+class PredictedReturn:
+    """The discounted sum of `reward` along a path, with the critic's value of the last state.
+
+    Raises:
+        ValueError: for a critic without a policy or the reverse, or a discount outside (0, 1].
+    """
+
+    reward: Reward
+    discount: float = 1.0  # per decision
+    critic: Critic | None = None  # with `policy`: adds the value of the last state
+    policy: Policy | None = None
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if (self.critic is None) != (self.policy is None):
+            raise ValueError("objective.critic and objective.policy: give both or neither")
+        if not 0 < self.discount <= 1:
+            raise ValueError(f"objective.discount={self.discount}: must lie in (0, 1]")
+
+    def init(self, spec: Spec) -> tuple[()]:
+        """No memory: earlier rewards change no decision."""
+        return ()
+
+    def prepare(
+        self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
+    ) -> tuple[Return, tuple[()]]:
+        """J of a path; nothing is drawn."""
+        return lambda path: self.reward_to_go(params, path)[0], memory
+
+    def rewards(self, params: Params, path: Path) -> Array:
+        """r [T] along path, x [T+1, n] and u [T, m]."""
+        return self._outcomes(params, path)[0]
+
+    def _outcomes(self, params: Params, path: Path) -> Any:
+        """Rewards [T] and logits [T] of an end."""
+        each = jax.vmap(self.reward.outcome, (None, 0, 0))
+        return each(params.reward, path.x[:-1], path.u)
+
+    def reward_to_go(self, params: Params, path: Path) -> Array:
+        """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
+        rewards, ends = self._outcomes(params, path)
+        last = jnp.zeros(())
+        if self.critic is not None and self.policy is not None:
+            x = path.x[-1]
+            last = self.critic.value(params.critic, x, self.policy.mean(params.policy, x))
+
+        def back(after: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:
+            r, end = at
+            now = r + self.discount * jax.nn.sigmoid(-end) * after
+            return now, now
+
+        to_go = jax.lax.scan(back, last, (rewards, ends), reverse=True, unroll=True)[1]
+        return jnp.append(to_go, last)

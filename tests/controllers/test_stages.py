@@ -1,0 +1,74 @@
+"""One controller after the other within an episode."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.controllers.stages import StagesController
+from hybrid_rl.training.agent import masked_mean
+from hybrid_rl.types import Params, Spec
+
+SPEC = Spec(obs=1, act=1, dt=0.1)
+
+
+@dataclass(frozen=True)
+class Counts:
+    """The action is the number of its own decisions plus `first`; a metric of its name."""
+
+    name: str
+    first: float
+
+    def init(self, spec: Spec) -> Array:
+        return jnp.float32(self.first)
+
+    def act(self, params: Any, state: Array, obs: Array, key: Array) -> tuple:
+        return state[None], state + 1, {f"planner/{self.name}": state, "planner/both": -state}
+
+    def greedy(self) -> "Counts":
+        return Counts(self.name, -self.first)
+
+
+STAGES = StagesController({"a": Counts("a", 0.0), "b": Counts("b", 10.0)}, (3,))
+
+
+def follow(controller: Any, decisions: int) -> tuple[Array, dict[str, Array]]:
+    """Actions [T] and metrics [T]."""
+
+    def decide(state: Any, key: Array) -> tuple:
+        u, state, metrics = controller.act(Params(), state, jnp.zeros(1), key)
+        return state, (u[0], metrics)
+
+    keys = jax.random.split(jax.random.key(0), decisions)
+    return jax.lax.scan(decide, controller.init(SPEC), keys)[1]
+
+
+def test_each_stage_acts_for_its_decisions_and_the_last_to_the_end() -> None:
+    """Three of a, then b, whose own state begins when it begins to act."""
+    np.testing.assert_array_equal(follow(STAGES, 6)[0], [0, 1, 2, 10, 11, 12])
+    np.testing.assert_array_equal(follow(STAGES.greedy(), 5)[0], [0, 1, 2, -10, -9])
+    alone = StagesController({"a": Counts("a", 4.0)})
+    np.testing.assert_array_equal(follow(alone, 2)[0], [4, 5])
+
+
+def test_a_metric_of_another_stage_does_not_apply() -> None:
+    """It is NaN, which a mean over environments leaves out; what all have is a number."""
+    metrics = follow(STAGES, 4)[1]
+    np.testing.assert_array_equal(metrics["planner/both"], [0, -1, -2, -10])
+    np.testing.assert_array_equal(metrics["planner/a"], [0, 1, 2, np.nan])
+    np.testing.assert_array_equal(metrics["planner/b"], [np.nan, np.nan, np.nan, 10])
+    means = masked_mean(metrics, True, sparse=True)
+    assert (float(means["planner/a"]), float(means["planner/b"])) == (1, 10)
+    broken = masked_mean({"x": jnp.array([1.0, jnp.inf])}, True, sparse=True)
+    assert np.isinf(broken["x"])
+
+
+@pytest.mark.parametrize("decisions", [(), (1, 2), (0,)])
+def test_bad_numbers_of_decisions_are_named(decisions) -> None:
+    """One for each stage but the last."""
+    with pytest.raises(ValueError, match=r"stages.decisions=.* needs 1 whole numbers above 0"):
+        StagesController(STAGES.stages, decisions)

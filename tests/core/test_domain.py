@@ -1,0 +1,41 @@
+"""A box in some coordinates."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.core.domain import Box
+
+BOX = Box(coordinates=(2, 0), low=(-1.0, 0.0), high=(1.0, 4.0))
+
+
+def test_points_and_coordinates_of_a_box() -> None:
+    """Uniform samples fill it; coordinates are picked and put back."""
+    s = np.asarray(BOX.sample(20_000, jax.random.key(0)))
+    np.testing.assert_allclose(s.mean(0), [0, 2], atol=0.05)
+    np.testing.assert_allclose([s.min(0), s.max(0)], [BOX.low, BOX.high], atol=0.01)
+    assert (BOX.volume, BOX.size) == (8, 2)
+    x = jnp.array([[5.0, 6.0, 7.0], [8.0, 9.0, 10.0]])
+    np.testing.assert_array_equal(BOX.of(x), [[7, 5], [10, 8]])
+    np.testing.assert_array_equal(BOX.put(x[0], jnp.array([1.0, 2.0])), [2, 6, 1])
+
+
+def test_distance_outside_is_squared_and_averaged() -> None:
+    """0 inside, (1, 2) and (-2, 0) beyond the sides."""
+    s = jnp.array([[0.5, 1.0], [2.0, 6.0], [-3.0, 0.0]])
+    assert float(BOX.outside(s)) == pytest.approx((0 + 1 + 4 + 4) / 3)
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"low": (-1.0, -1.0)}, "must have one length"),
+        ({"coordinates": (), "low": (), "high": ()}, "must have one length"),
+        ({"low": (2.0,)}, r"domain.low=\[2.0\]: must lie below domain.high=\[1.0\]"),
+    ],
+)
+def test_bad_boxes_are_named(fields, words) -> None:
+    """One line."""
+    with pytest.raises(ValueError, match=words):
+        Box(**fields)
