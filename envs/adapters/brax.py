@@ -47,7 +47,7 @@ class World(BraxEnv):
         return State(kept, now.obs, now.reward, done, dict(now.metrics), {})
 
     def step(self, state: Any, action: Array) -> State:
-        """The state one decision later."""
+        """The state after one decision."""
         data, info = state.pipeline_state
         no = jnp.zeros((), bool)
         before = EnvState(
