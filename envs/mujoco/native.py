@@ -102,9 +102,9 @@ def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
     xla_callback.register(name, advance)
 
     def callback(x: jax.Array) -> np.ndarray:
-        x = np.asarray(x)
-        y = np.empty((*x.shape[:-1], width), np.float32)
-        advance(x.reshape(-1, x.shape[-1]), y.reshape(-1, width))
+        inputs = np.asarray(x)
+        y = np.empty((*inputs.shape[:-1], width), np.float32)
+        advance(inputs.reshape(-1, inputs.shape[-1]), y.reshape(-1, width))
         return y
 
     def on_accelerator(x: jax.Array) -> jax.Array:
