@@ -1,1 +1,1 @@
-"""Worlds: each file is one task, and `physics` steps those that MuJoCo simulates."""
+"""Environments: one file a task; `analytic` in closed form, the others simulated by `mujoco`."""

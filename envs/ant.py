@@ -1,15 +1,14 @@
-"""Ant: run forward on four legs, in space.
+"""Ant: a four-legged robot runs forward.
 
-    pybullet    r as in `locomotion`; alive: z > 0.26 m;              ends when not alive
-    gymnasium   r = 1[healthy] + dx/dt - 0.5 |a|^2;   healthy: 0.2 <= z <= 1 m, all finite;
-                the cost of contact is left out;                      ends when not healthy
+    pybullet    r as in `locomotion`; alive: z > 0.26 m; terminates when not alive
+    gymnasium   r = 1[healthy] + dx/dt - 0.5 |a|^2, without the contact cost;
+                healthy: 0.2 <= z <= 1 m and all finite; terminates when not healthy
 
-o = (qpos without x and y, qvel) [27]; a: eight torques, as fractions of 150 N m;
-start: qpos U(-0.1, 0.1) about the upright pose, qvel 0.1 N(0, 1); a decision is 5 steps
-of 0.01 s.
+o = (qpos without x and y, qvel) [27]; a: eight torques, as fractions of 150 N m; start:
+qpos ~ U(-0.1, 0.1) around the upright pose, qvel ~ 0.1 N(0, 1); a decision is 5 steps of 0.01 s.
 
-Source: Schulman et al. 2015; figures of Gymnasium's Ant-v5; pybullet_envs (the thesis' ant
-has its reward; its body of 182 kg comes of an importer that overlooks the densities).
+Source: Schulman et al. 2015; parameters of Gymnasium's Ant-v5; reward of pybullet_envs, which the
+thesis uses (its body weighs 182 kg there because the importer ignores the densities).
 """
 
 from dataclasses import dataclass
@@ -25,17 +24,17 @@ from hybrid_rl.envs.options import one_of
 from hybrid_rl.types import EnvState, Spec
 
 ASSETS = {"rk4": "ant.xml", "euler": "ant_euler.xml"}  # by integrator
-STEPS = 5  # of physics per decision
+STEPS = 5  # physics steps per decision
 DT = 0.05  # [s] of a decision
 
 
 @dataclass(frozen=True)
 class Ant:
-    """Runs; `physics` is native, mjx, warp or auto."""
+    """Ant; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     reward: str = "pybullet"  # or gymnasium
-    integrator: str = "rk4"  # Gymnasium's; euler, which is Brax's, takes a quarter of the work
+    integrator: str = "rk4"  # as Gymnasium; euler, as Brax, costs a quarter
 
     def __post_init__(self) -> None:
         one_of("integrator", self.integrator, tuple(ASSETS))
@@ -44,7 +43,7 @@ class Ant:
 
     @property
     def spec(self) -> Spec:
-        """Sizes and rate."""
+        """Observation size, action size and decision interval."""
         return Spec(obs=27, act=8, dt=DT)
 
     @property
@@ -52,7 +51,7 @@ class Ant:
         return Physics(ASSETS[self.integrator], self.physics)
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """A random initial state."""
         key_pos, key_vel = jax.random.split(key)
         upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
         qpos = upright + jax.random.uniform(key_pos, (15,), jnp.float32, -0.1, 0.1)
@@ -61,7 +60,7 @@ class Ant:
         return _state(self._body.reset(qpos, qvel), zero, jnp.zeros((), bool), zero)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [8] in [-1, 1]."""
+        """The state after one decision. action: [8] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, STEPS)
         speed = (data.qpos[0] - state.data.qpos[0]) / DT
@@ -75,17 +74,17 @@ class Ant:
 
     def _pybullet(self, data: PhysicsState, action: Array, alive: Array, speed: Array) -> Array:
         model = self._body.model
-        joints = model.actuator_trnid[:, 0]  # motors stand in another order than joints
+        joints = model.actuator_trnid[:, 0]  # motors and joints are in different orders
         angle, velocity = data.qpos[7:][joints - 1], data.qvel[6:][joints - 1]
         limits = jnp.asarray(model.jnt_range[joints], jnp.float32)
         return pybullet_reward(alive, speed, action, angle, velocity, limits)
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text of the scene for rendering."""
         return mjcf.text("ant.xml")
 
     def pose(self, state: EnvState) -> Array:
-        """Positions qpos [15] of the drawn world."""
+        """Joint positions qpos [15] for rendering."""
         return state.data.qpos
 
 

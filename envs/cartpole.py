@@ -1,4 +1,4 @@
-"""Cart and pole: swing the pole up from below and hold it there.
+"""Cart and pole: swing the pole up and balance it.
 
     cos         r = cos theta                                    (the thesis, pybullet)
     dm_control  r = upright * centred * quiet * calm, each in [0, 1]:
@@ -7,9 +7,9 @@
                 quiet   = (4 + (1 - a^2)) / 5
                 calm    = (1 + exp(-w^2 ln 10 / 5^2)) / 2
 
-o = (x, v, cos theta, sin theta, w) [5], theta = 0 upright; a: force on the cart, as a
-fraction of 100 N; start: at rest, theta = pi + U(-0.1, 0.1); a decision is one step of
-0.0165 s; never terminates.
+o = (x, v, cos theta, sin theta, w) [5], theta = 0 is upright; a: force on the cart, as a fraction
+of 100 N; start: at rest, theta ~ pi + U(-0.1, 0.1); a decision is one step of 0.0165 s; never
+terminates.
 
 Source: pybullet_envs, InvertedPendulumSwingupBulletEnv; Tassa et al. 2018,
 DeepMind Control Suite, cartpole swingup.
@@ -33,7 +33,7 @@ DT = 0.0165  # [s] of a decision
 
 @dataclass(frozen=True)
 class Cartpole:
-    """Swings up; `physics` is native, mjx, warp or auto."""
+    """Cartpole swing-up; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     reward: str = "cos"  # or dm_control
@@ -44,7 +44,7 @@ class Cartpole:
 
     @property
     def spec(self) -> Spec:
-        """Sizes and rate."""
+        """Observation size, action size and decision interval."""
         return Spec(obs=5, act=1, dt=DT)
 
     @property
@@ -52,28 +52,30 @@ class Cartpole:
         return Physics(ASSET, self.physics)
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """A random initial state."""
         theta = jnp.pi + jax.random.uniform(key, (), jnp.float32, -0.1, 0.1)
         qpos = jnp.stack((jnp.float32(0.0), theta))
         return _state(self._body.reset(qpos, jnp.zeros(2, jnp.float32)), jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [1] in [-1, 1]."""
+        """The state after one decision. action: [1] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, 1)
-        return _state(data, jnp.cos(data.qpos[1]) if self.reward == "cos" else _dm(data, action))
+        return _state(
+            data, jnp.cos(data.qpos[1]) if self.reward == "cos" else _dm_control(data, action)
+        )
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text of the scene for rendering."""
         return mjcf.text(ASSET)
 
     def pose(self, state: EnvState) -> Array:
-        """Positions qpos [2] of the drawn world."""
+        """Joint positions qpos [2] for rendering."""
         return state.data.qpos
 
 
-def _dm(data: PhysicsState, action: Array) -> Array:
-    """The reward [] of the DeepMind Control Suite."""
+def _dm_control(data: PhysicsState, action: Array) -> Array:
+    """Reward [] of the DeepMind Control Suite."""
     upright = (1 + jnp.cos(data.qpos[1])) / 2
     centred = (1 + jnp.exp(-log(10) * (data.qpos[0] / 2) ** 2)) / 2
     quiet = (4 + (1 - action[0] ** 2)) / 5

@@ -1,13 +1,13 @@
 """Half-cheetah: run forward in the x-z plane.
 
-    gymnasium   r = dx/dt - 0.1 |a|^2                           never terminates
+    gymnasium   r = dx/dt - 0.1 |a|^2
     pybullet    r as in `locomotion`; alive: |pitch| < 1 rad and no shin or thigh
-                touches the floor                               never terminates
+                touches the floor
 
-o = (qpos without x, qvel) [17]; a: six torques, as fractions of the greatest;
-start: qpos U(-0.1, 0.1), qvel 0.1 N(0, 1); a decision is 5 steps of 0.01 s.
+o = (qpos without x, qvel) [17]; a: six torques, as fractions of their limits; start:
+qpos ~ U(-0.1, 0.1), qvel ~ 0.1 N(0, 1); a decision is 5 steps of 0.01 s; never terminates.
 
-Source: P. Wawrzynski 2009; figures of Gymnasium's HalfCheetah-v5; pybullet_envs.
+Source: P. Wawrzynski 2009; parameters of Gymnasium's HalfCheetah-v5; pybullet_envs.
 """
 
 from dataclasses import dataclass
@@ -23,14 +23,14 @@ from hybrid_rl.envs.options import one_of
 from hybrid_rl.types import EnvState, Spec
 
 ASSETS = {"gymnasium": "halfcheetah.xml", "pybullet": "halfcheetah_contact.xml"}  # by reward
-STEPS = 5  # of physics per decision
+STEPS = 5  # physics steps per decision
 DT = 0.05  # [s] of a decision
 LEGS = ("back_thigh", "back_shin", "front_thigh", "front_shin")
 
 
 @dataclass(frozen=True)
 class HalfCheetah:
-    """Runs; `physics` is native, mjx, warp or auto."""
+    """Half-cheetah; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     reward: str = "gymnasium"  # or pybullet
@@ -41,7 +41,7 @@ class HalfCheetah:
 
     @property
     def spec(self) -> Spec:
-        """Sizes and rate."""
+        """Observation size, action size and decision interval."""
         return Spec(obs=17, act=6, dt=DT)
 
     @property
@@ -49,14 +49,14 @@ class HalfCheetah:
         return Physics(ASSETS[self.reward], self.physics)
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """A random initial state."""
         key_pos, key_vel = jax.random.split(key)
         qpos = jax.random.uniform(key_pos, (9,), jnp.float32, -0.1, 0.1)
         qvel = 0.1 * jax.random.normal(key_vel, (9,), jnp.float32)
         return _state(self._body.reset(qpos, qvel), jnp.float32(0.0), jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [6] in [-1, 1]."""
+        """The state after one decision. action: [6] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, STEPS)
         speed = (data.qpos[0] - state.data.qpos[0]) / DT
@@ -74,16 +74,16 @@ class HalfCheetah:
         return pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text of the scene for rendering."""
         return mjcf.text("halfcheetah.xml")
 
     def pose(self, state: EnvState) -> Array:
-        """Positions qpos [9] of the drawn world."""
+        """Joint positions qpos [9] for rendering."""
         return state.data.qpos
 
 
 def _kneels(body: Physics, data: PhysicsState) -> Array:
-    """[] bool: the lowest point of a shin or thigh is below the floor."""
+    """Whether [] the lowest point of any shin or thigh is below the floor."""
     touches = []
     for leg in LEGS:
         radius, half, _ = body.model.geom(leg).size

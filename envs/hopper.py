@@ -1,13 +1,14 @@
 """Hopper: hop forward on one leg in the x-z plane.
 
-    gymnasium   r = 1[healthy] + dx/dt - 0.001 |a|^2;   ends when not healthy
-                healthy: z > 0.7 m, |pitch| < 0.2 rad, all else within +-100
-    pybullet    r as in `locomotion`; alive: z > 0.8 m, |pitch| < 1 rad;   ends when not alive
+    gymnasium   r = 1[healthy] + dx/dt - 0.001 |a|^2; terminates when not healthy;
+                healthy: z > 0.7 m, |pitch| < 0.2 rad, all else in [-100, 100]
+    pybullet    r as in `locomotion`; terminates when not alive;
+                alive: z > 0.8 m and |pitch| < 1 rad
 
-o = (qpos without x, qvel clipped to +-10) [11]; a: three torques, as fractions of 200 N m;
-start: qpos and qvel U(-0.005, 0.005) about the upright pose; a decision is 4 steps of 0.002 s.
+o = (qpos without x, qvel clipped to [-10, 10]) [11]; a: three torques, as fractions of 200 N m;
+start: qpos and qvel ~ U(-0.005, 0.005) around the upright pose; a decision is 4 steps of 0.002 s.
 
-Source: Erez, Tassa, Todorov 2011; figures of Gymnasium's Hopper-v5; pybullet_envs.
+Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium's Hopper-v5; pybullet_envs.
 """
 
 from dataclasses import dataclass
@@ -23,13 +24,13 @@ from hybrid_rl.envs.options import one_of
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "hopper.xml"
-STEPS = 4  # of physics per decision
+STEPS = 4  # physics steps per decision
 DT = 0.008  # [s] of a decision
 
 
 @dataclass(frozen=True)
 class Hopper:
-    """Hops; `physics` is native, mjx, warp or auto."""
+    """Hopper; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     reward: str = "gymnasium"  # or pybullet
@@ -40,7 +41,7 @@ class Hopper:
 
     @property
     def spec(self) -> Spec:
-        """Sizes and rate."""
+        """Observation size, action size and decision interval."""
         return Spec(obs=11, act=3, dt=DT)
 
     @property
@@ -48,7 +49,7 @@ class Hopper:
         return Physics(ASSET, self.physics)
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """A random initial state."""
         key_pos, key_vel = jax.random.split(key)
         upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
         qpos = upright + jax.random.uniform(key_pos, (6,), jnp.float32, -0.005, 0.005)
@@ -57,7 +58,7 @@ class Hopper:
         return _state(self._body.reset(qpos, qvel), zero, jnp.zeros((), bool), zero)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [3] in [-1, 1]."""
+        """The state after one decision. action: [3] in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, STEPS)
         speed = (data.qpos[0] - state.data.qpos[0]) / DT
@@ -71,16 +72,16 @@ class Hopper:
         return _state(data, reward, ~alive, speed)
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text of the scene for rendering."""
         return mjcf.text(ASSET)
 
     def pose(self, state: EnvState) -> Array:
-        """Positions qpos [6] of the drawn world."""
+        """Joint positions qpos [6] for rendering."""
         return state.data.qpos
 
 
 def _healthy(data: PhysicsState) -> Array:
-    """[] bool: upright, and nothing out of bounds."""
+    """Whether [] the hopper is upright and within all bounds."""
     rest = jnp.concatenate((data.qpos[2:], data.qvel))
     return (data.qpos[1] > 0.7) & (jnp.abs(data.qpos[2]) < 0.2) & (jnp.abs(rest) < 100.0).all()
 

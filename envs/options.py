@@ -1,4 +1,4 @@
-"""Options that are named by a string."""
+"""Checks of options that are given as strings."""
 
 
 def one_of(field: str, value: str, allowed: tuple[str, ...]) -> None:

@@ -1,28 +1,27 @@
 """Panda stacks one block on another.
 
-    r = stage - 1e-6 (|F| + |a|);   ends with success
-    stage = -1.25 |e - s| where the block is grasped, else -|e - b|
+    r = stage - 1e-6 (|F| + |a|)
+    thesis   stage = -1.25 |e - s| if the block is grasped, else -|e - b|
+    joined   stage = -1.25 |e - s| if the block is grasped, else -|e - b| - 1.25 |b - s|
 
-Taking the block costs: the reward falls by 1.25 |e - s|, and a planner whose horizon is short
-hovers over the block. With reward=joined it does not fall: stage = -|e - b| - 1.25 |b - s| before.
+With reward=thesis the reward drops by 1.25 |e - s| at the moment of the grasp, so that a planner
+with a short horizon hovers over the block; with reward=joined it does not drop.
 
-e: point between the fingertips, b: block, s: where the block is to stand, one side above the
-base; F: wrench at the wrist [6]. o = (e, b, c, F) [13], c = 1 where the hand was told to close;
-with a base that starts anywhere (base_spread > 0) o has also s [16].
-a: velocity of e along x, y, z, as fractions of 0.15 m/s, low-passed with a lag of 0.2 s and kept
-in the workspace. The hand closes by itself within 1 cm of the block, and opens where the block is
-within 1 cm of s, or lost; with grip=action it closes where a fourth action is positive. Its
-orientation is held. A decision is 0.1 s: 20 steps. Joint velocities follow by damped least squares,
-once a decision, as near as that allows to those that return to the first posture.
+e: point between the fingertips, b: block, s: target position of the block, one side above the base;
+F: wrench at the wrist [6]. o = (e, b, c, F) [13], c = 1 while the hand is commanded to close; with
+base_spread > 0 also s [16]. a: velocity of e along x, y, z, as fractions of 0.15 m/s, low-pass
+filtered with a time constant of 0.2 s and clipped at the workspace's limits. With grip=near the
+hand closes automatically within 1 cm of the block and opens within 1 cm of s, or if it loses the
+block; with grip=action it closes while a fourth action is positive. Its orientation is held. A
+decision is 0.1 s, 20 physics steps. Damped least squares give the joint velocities once a decision;
+the null space returns the arm to its initial posture. Terminates with success.
 
-grasped: told to close, the fingers stand on the block's sides, and e is within the block.
-success: block over base within 0.02 m, at its height within 0.01 m, let go, slower than
-0.05 m/s.
+grasped: commanded to close, both fingers touch the block's sides, and e is inside the block.
+success: block over base within 0.02 m, height within 0.01 m, released, slower than 0.05 m/s.
 
-Source: thesis, section 3.4 and Appendix B (state, action, reward: its action is a velocity alone,
-and by its reward a hand that may choose would hover over the block); the pose of the start is
-Franka's, the rate and workspace are those of the author's franka_interface. Lag, speed, blocks,
-their starts, when the hand closes and the measure of success are ours.
+Source: thesis section 3.4 and Appendix B (state, action, reward; its action is a velocity only);
+initial pose from Franka; rate and workspace from the author's franka_interface. Filter, speed,
+blocks, their initial positions, automatic closing and success are our choice.
 """
 
 from dataclasses import dataclass
@@ -33,20 +32,20 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.kinematics import Chain, damped, hold, within
+from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.options import one_of
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "panda_stack.xml"
-STEPS = 20  # of physics per decision
+STEPS = 20  # physics steps per decision
 DT = 0.1  # [s] of a decision
 READY = (0.0, -pi / 4, 0.0, -3 * pi / 4, 0.0, pi / 2, pi / 4)  # [rad]
 OPEN = 0.04  # [m] of each finger
 SIDE = 0.05  # [m] of a cube
-TOUCH = 0.002  # [m] between finger and the block's side, where it is grasped
-LEVEL = 0.01  # [m] between the block's height and that of a stacked one
-QUIET = 0.05  # [m/s] of a block that stands
+TOUCH = 0.002  # [m] largest gap between a finger and a grasped block
+LEVEL = 0.01  # [m] largest height error of a stacked block
+QUIET = 0.05  # [m/s] largest speed of a stacked block
 TOOL = Chain(ASSET, "tool")
 BLOCK, BASE = slice(9, 12), slice(16, 19)  # positions in qpos
 BLOCK_SPEED = slice(9, 12)  # in qvel
@@ -54,27 +53,27 @@ BLOCK_SPEED = slice(9, 12)  # in qvel
 
 @dataclass(frozen=True)
 class PandaStack:
-    """Stacks; `physics` is native, mjx, warp or auto."""
+    """Panda stacks a block; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     speed: float = 0.15  # [m/s] in each direction at a = 1
-    lag: float = 0.2  # [s] of the filter; 0: none
-    grip: str = "near"  # the hand closes by itself; or action
-    reach: float = 0.01  # [m] within which it does
-    low: tuple[float, ...] = (0.3, -0.3, 0.02)  # [m] workspace of the hand: least x, y, z
-    high: tuple[float, ...] = (0.55, 0.3, 0.5)  # [m] greatest
-    block: tuple[float, ...] = (0.45, -0.12)  # [m] middle of its starts
-    block_spread: float = 0.05  # [m] greatest, along x and y
-    block_turn: float = 0.1  # [rad] greatest
-    base: tuple[float, ...] = (0.45, 0.12)  # [m]
-    base_spread: float = 0.0  # [m] greatest, along x and y
+    lag: float = 0.2  # [s] time constant of the filter; 0: no filter
+    grip: str = "near"  # closes automatically; action: by a fourth action
+    reach: float = 0.01  # [m] at which it closes and opens automatically
+    low: tuple[float, ...] = (0.3, -0.3, 0.02)  # [m] lower limit of the workspace
+    high: tuple[float, ...] = (0.55, 0.3, 0.5)  # [m] upper limit
+    block: tuple[float, ...] = (0.45, -0.12)  # [m] centre of its initial positions
+    block_spread: float = 0.05  # [m] largest offset along x and y
+    block_turn: float = 0.1  # [rad] largest initial rotation
+    base: tuple[float, ...] = (0.45, 0.12)  # [m] centre of its initial positions
+    base_spread: float = 0.0  # [m] largest offset along x and y
     reward: str = "thesis"  # or joined
-    penalty: float = 1e-6  # of wrench and action
-    success_distance: float = 0.02  # [m] block over base
-    terminate: bool = True  # with success
+    penalty: float = 1e-6  # weight of wrench and action
+    success_distance: float = 0.02  # [m] horizontal, block to base
+    terminate: bool = True  # at success
     hold: float = 5.0  # [1/s] gain on orientation
-    posture: float = 0.5  # [1/s] gain on the first posture
-    damping: float = 0.02  # of the least squares [m, 1]
+    posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
+    damping: float = 0.02  # of the least squares, for [m] and [rad]
 
     def __post_init__(self) -> None:
         check(self.physics)
@@ -90,7 +89,7 @@ class PandaStack:
 
     @property
     def spec(self) -> Spec:
-        """Sizes and rate."""
+        """Observation size, action size and decision interval."""
         return Spec(
             obs=16 if self.base_spread else 13, act=4 if self.grip == "action" else 3, dt=DT
         )
@@ -100,7 +99,7 @@ class PandaStack:
         return Physics(ASSET, self.physics)
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """A random initial state."""
         key_block, key_turn, key_base = jax.random.split(key, 3)
         turn = jax.random.uniform(key_turn, (), jnp.float32, -self.block_turn, self.block_turn)
         arm = jnp.asarray((*READY, OPEN, OPEN), jnp.float32)
@@ -112,10 +111,10 @@ class PandaStack:
         return state.replace(reward=jnp.float32(0.0), terminated=jnp.zeros((), bool))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [3], or [4] with grip=action, in [-1, 1]."""
+        """The state after one decision. action: [3], or [4] with grip=action, in [-1, 1]."""
         action = jnp.clip(action, -1.0, 1.0)
-        kept = exp(-DT / self.lag) if self.lag else 0.0
-        velocity = kept * state.info["velocity"] + (1 - kept) * self.speed * action[:3]
+        keep = exp(-DT / self.lag) if self.lag else 0.0
+        velocity = keep * state.info["velocity"] + (1 - keep) * self.speed * action[:3]
         closed = self._closes(state, action).astype(jnp.float32) + 0 * action[-1]
         fingers = OPEN * (1 - closed)
         ctrl = jnp.concatenate((self.servo(state.data, velocity), fingers[None]))
@@ -123,35 +122,35 @@ class PandaStack:
         return self._state(data, action, {**state.info, "velocity": velocity, "closed": closed})
 
     def _closes(self, state: EnvState, action: Array) -> Array:
-        """Whether [] the hand is told to close now."""
+        """Whether [] the hand is commanded to close."""
         if self.grip == "action":
             return action[3] > 0
         tool, block = state.obs[:3], state.obs[3:6]
         away, left = _norm(block - tool), _norm(self._goal(state.data) - block)
-        kept = (away < SIDE / 2) & (left > self.reach)
-        taken = (away < self.reach) & (left > SIDE / 2)
-        return jnp.where(state.info["closed"] > 0, kept, taken)
+        stays = (away < SIDE / 2) & (left > self.reach)
+        closes = (away < self.reach) & (left > SIDE / 2)
+        return jnp.where(state.info["closed"] > 0, stays, closes)
 
     def _goal(self, data: PhysicsState) -> Array:
-        """Where [3] the block is to stand."""
+        """Target position [3] of the block."""
         return data.qpos[BASE] + jnp.asarray((0.0, 0.0, SIDE), jnp.float32)
 
     def servo(self, data: PhysicsState, velocity: Array) -> Array:
         """Joint velocities [7] [rad/s] that move the hand by `velocity` [3] [m/s]."""
-        upright = jnp.asarray(TOOL.at(READY)[1])
+        upright = jnp.asarray(TOOL.constant_pose(READY)[1])
         tool, rotation, jacobian = TOOL.pose(data.qpos)
         low, high = (jnp.asarray(b, jnp.float32) for b in (self.low, self.high))
-        straight = within(velocity, tool, low, high)
-        twist = jnp.concatenate((straight, hold(rotation, upright, self.hold)))
+        linear = stay_within(velocity, tool, low, high)
+        twist = jnp.concatenate((linear, rotate_towards(rotation, upright, self.hold)))
         back = self.posture * (jnp.asarray(READY, jnp.float32) - data.qpos[:7])
-        return damped(jacobian, twist, self.damping, back)
+        return damped_inverse(jacobian, twist, self.damping, back)
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text of the scene for rendering."""
         return mjcf.text(ASSET)
 
     def pose(self, state: EnvState) -> Array:
-        """Positions qpos [23] of the drawn world."""
+        """Joint positions qpos [23] for rendering."""
         return state.data.qpos
 
     def _state(self, data: PhysicsState, action: Array, info: dict[str, Array]) -> EnvState:
@@ -161,11 +160,11 @@ class PandaStack:
         touching = jnp.abs(fingers - SIDE / 2) < TOUCH
         inside = jnp.abs(block - tool) < SIDE / 2
         grasped = (closed > 0) & touching.all() & inside.all()
-        ahead = 1.25 * _norm(block - goal) if self.reward == "joined" else 0.0
-        stage = jnp.where(grasped, -1.25 * _norm(tool - goal), -_norm(tool - block) - ahead)
-        away = jnp.abs(block - goal)
-        there = (_norm(away[:2]) < self.success_distance) & (away[2] < LEVEL)
-        success = there & (closed == 0) & (_norm(data.qvel[BLOCK_SPEED]) < QUIET)
+        remaining = 1.25 * _norm(block - goal) if self.reward == "joined" else 0.0
+        stage = jnp.where(grasped, -1.25 * _norm(tool - goal), -_norm(tool - block) - remaining)
+        error = jnp.abs(block - goal)
+        placed = (_norm(error[:2]) < self.success_distance) & (error[2] < LEVEL)
+        success = placed & (closed == 0) & (_norm(data.qvel[BLOCK_SPEED]) < QUIET)
         obs = jnp.concatenate((tool, block, closed[None], wrench))
         if self.base_spread:
             obs = jnp.concatenate((obs, goal))
@@ -181,8 +180,8 @@ def _norm(x: Array) -> Array:
 
 
 def _cube(middle: tuple[float, ...], spread: float, turn: Array, key: Array) -> Array:
-    """Position and quaternion [7] of a cube on the table, within `spread` of `middle`."""
-    place = jax.random.uniform(key, (2,), jnp.float32, -spread, spread)
+    """Position and quaternion [7] of a cube on the table, up to `spread` from `middle`."""
+    offset = jax.random.uniform(key, (2,), jnp.float32, -spread, spread)
     height, zero = jnp.float32(SIDE / 2), jnp.float32(0.0)
     quat = jnp.stack((jnp.cos(turn / 2), zero, zero, jnp.sin(turn / 2)))
-    return jnp.concatenate((place + jnp.asarray(middle, jnp.float32), height[None], quat))
+    return jnp.concatenate((offset + jnp.asarray(middle, jnp.float32), height[None], quat))

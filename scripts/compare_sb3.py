@@ -54,12 +54,12 @@ def make(world: str, task: str) -> Any:
         import gymnasium
 
         return gymnasium.make(GYMNASIUM[task])
-    from hybrid_rl.envs.adapters.as_gymnasium import World
+    from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
     from hybrid_rl.envs.halfcheetah import HalfCheetah
     from hybrid_rl.envs.hopper import Hopper
 
     env = {"halfcheetah": HalfCheetah, "hopper": Hopper}[task](physics="native")
-    return World(env, steps=STEPS)
+    return GymnasiumEnv(env, steps=STEPS)
 
 
 class Log(BaseCallback):

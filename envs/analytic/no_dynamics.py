@@ -1,9 +1,11 @@
-"""No dynamics: no robot, only the search; an action is a place on the rail, and one is there.
+"""No dynamics: the action is the next position on the rail.
 
-    x' = u,   r = phi(x) of envs/analytic/integrate.py, after the step
+    x' = u,   r = phi(x') of `envs/analytic/hills.py`
 
-o = x [1] in [-1, 1] m; start: x U(-0.8, 0.8); a decision takes as long as a robot's between two
-measurements, 0.2 s; never terminates. Source: thesis section 6.3.1, optimisation without dynamics.
+o = x [1] in [-1, 1] m; start: x ~ U(-0.8, 0.8); a decision is 0.2 s, the interval between two
+measurements of the cart and double pendulum; never terminates.
+
+Source: thesis section 6.3.1, Bayesian optimisation without dynamics.
 """
 
 from dataclasses import dataclass
@@ -12,7 +14,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic import integrate
+from hybrid_rl.envs.analytic.hills import phi
+from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.types import EnvState, Spec
 
@@ -21,43 +24,43 @@ DT = 0.2  # [s] of a decision
 
 @dataclass(frozen=True)
 class NoDynamics:
-    """Is where it wants."""
+    """A point that moves to any position within one decision."""
 
     @property
     def spec(self) -> Spec:
-        """Sizes and rate."""
+        """Observation size, action size and decision interval."""
         return Spec(obs=1, act=1, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """A random initial state."""
         x = jax.random.uniform(key, (1,), jnp.float32, -0.8, 0.8)
-        return integrate.state(x, jnp.float32(0.0))
+        return fully_observed(x, jnp.float32(0.0))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [1] in [-1, 1]."""
+        """The state after one decision. action: [1] in [-1, 1]."""
         x = self.dynamics(state.data, jnp.clip(action, -1.0, 1.0))
-        return integrate.state(x, integrate.hills(x[0]))
+        return fully_observed(x, phi(x[0]))
 
     def dynamics(self, x: Array, u: Array) -> Array:
-        """The observation [1] that follows x [1] under u [1]."""
+        """The next observation [1] after action u [1] at x [1]."""
         return u + 0 * x
 
     def equilibrium(self) -> tuple[Array, Array]:
-        """In the middle."""
+        """The middle of the rail."""
         return jnp.zeros(1), jnp.zeros(1)
 
     def to_local(self, x: Array) -> Array:
-        """Local coordinates e [1] of x [1]."""
+        """Local coordinates e [1] of the observation x [1]."""
         return x
 
     def from_local(self, e: Array) -> Array:
-        """The observation [1] of e [1]."""
+        """The observation [1] at local coordinates e [1]."""
         return e
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text of the scene for rendering."""
         return mjcf.text("no_dynamics.xml")
 
     def pose(self, state: EnvState) -> Array:
-        """Positions qpos [1] of the drawn world."""
+        """Joint positions qpos [1] for rendering."""
         return state.data

@@ -1,16 +1,16 @@
-"""Quadcopter: a rigid body on SE(3) with four rotors that push both ways.
+"""Quadcopter: a rigid body on SE(3) with four bidirectional rotors.
 
     p' = R v,   R' = R hat(w),   J w' = M - w x J w - J D_w w
     v' = F e_3 / m - w x v - g R' e_3 - D_v v,   F = kt sum u
     M = (kt l (u2 - u4), kt l (u3 - u1), km (u1 - u2 + u3 - u4))
     r = -(|p|^2 + 0.1 |v|^2 + 0.1 |w|^2), after the step
 
-o = (p, R by rows, v, w) [18], v and w in the body's frame; u = 6 a; start: p U(-away, away),
-upright, v and w U(-twist, twist): with `away` the origin is a target to go to; a decision is one
-Runge-Kutta step of 0.005 s; terminates upside down. `drag` is in the author's code and not in the
-thesis' equations. Metrics: power_loss |F - m g| [N] and norm_of_u |a|.
+o = (p, R row by row, v, w) [18], v and w in the body frame; a: rotor controls u = 6 a; start:
+p ~ U(-away, away), upright, v and w ~ U(-twist, twist); a decision is one Runge-Kutta step of
+0.005 s; terminates upside down. `drag` (D_v, D_w) is in the author's code but not in the thesis'
+equations. Metrics: power_loss = |F - m g| [N] and norm_of_u = |a|.
 
-Source: thesis appendix D and the author's active-learning-koopman for the figures.
+Source: thesis appendix D; parameters from the author's active-learning-koopman.
 """
 
 from dataclasses import dataclass
@@ -19,11 +19,12 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic import integrate
+from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.types import EnvState, Spec
 
-DT, THRUST, G, MASS = 0.005, 6.0, 9.81, 0.6  # [s], greatest u, [m/s^2], [kg]
+DT, THRUST, G, MASS = 0.005, 6.0, 9.81, 0.6  # [s], u at a = 1, [m/s^2], [kg]
 INERTIA = (0.04, 0.0375, 0.0675)  # [kg m^2]
 ARM, KT, KM = 0.2, 0.6, 0.15  # [m], [N], [N m]
 DRAG_V, DRAG_W = (0.4, 0.4, 2.0), (2.0, 2.0, 0.4)  # [1/s]
@@ -31,11 +32,11 @@ DRAG_V, DRAG_W = (0.4, 0.4, 2.0), (2.0, 2.0, 0.4)  # [1/s]
 
 @dataclass(frozen=True)
 class QuadcopterSE3:
-    """Hovers."""
+    """Quadcopter that hovers at the origin, or flies there from up to `away` metres."""
 
     drag: bool = True
-    twist: float = 0.5  # [m/s], [rad/s] of the start
-    away: float = 0.0  # [m] of the start, in each direction
+    twist: float = 0.5  # [m/s, rad/s] largest initial velocity in each direction
+    away: float = 0.0  # [m] largest initial distance in each direction
 
     def __post_init__(self) -> None:
         for name in ("twist", "away"):
@@ -44,34 +45,34 @@ class QuadcopterSE3:
 
     @property
     def spec(self) -> Spec:
-        """Sizes and rate."""
+        """Observation size, action size and decision interval."""
         return Spec(obs=18, act=4, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
-        """A first state, drawn with `key`."""
+        """A random initial state."""
         twist = jax.random.uniform(key, (6,), jnp.float32, -self.twist, self.twist)
         p = self.away * jax.random.uniform(jax.random.fold_in(key, 1), (3,), minval=-1, maxval=1)
-        state = integrate.state(
+        state = fully_observed(
             self.equilibrium()[0].at[:3].set(p).at[12:].set(twist), jnp.float32(0.0)
         )
-        return state.replace(metrics=_cost(self.equilibrium()[1].astype(jnp.float32)))
+        return state.replace(metrics=_metrics(self.equilibrium()[1].astype(jnp.float32)))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state one decision later. action: [4] in [-1, 1]."""
+        """The state after one decision. action: [4] in [-1, 1]."""
         u = jnp.clip(action, -1.0, 1.0)
         x = self.dynamics(state.data, u)
         reward = -(jnp.sum(x[:3] ** 2) + 0.1 * jnp.sum(x[12:] ** 2))
-        return integrate.state(x, reward, x[11] < 0).replace(metrics=_cost(u))
+        return fully_observed(x, reward, x[11] < 0).replace(metrics=_metrics(u))
 
     def dynamics(self, x: Array, u: Array) -> Array:
-        """The observation [18] that follows x [18] under u [4]."""
+        """The next observation [18] after action u [4] at x [18]."""
         p, R, v, w = x[:3], x[3:12].reshape(3, 3), x[12:15], x[15:]
-        p, R, v, w = integrate.rk4(lambda x: self._rate(x, THRUST * u), (p, R, v, w), DT)
-        R = R @ (1.5 * jnp.eye(3) - 0.5 * R.T @ R)  # back onto the rotations, to first order
+        p, R, v, w = rk4(lambda x: self._rate(x, THRUST * u), (p, R, v, w), DT)
+        R = R @ (1.5 * jnp.eye(3) - 0.5 * R.T @ R)  # re-orthogonalised to first order
         return jnp.concatenate([p, R.reshape(9), v, w])
 
     def _rate(self, x: tuple[Array, ...], u: Array) -> tuple[Array, ...]:
-        """D (p, R, v, w) / dt under rotors u [4]."""
+        """Time derivatives of (p, R, v, w) under rotor controls u [4]."""
         _, R, v, w = x
         turn = jnp.stack([u[1] - u[3], u[2] - u[0], (u[0] - u[1] + u[2] - u[3]) * KM / KT / ARM])
         inertia, up = jnp.array(INERTIA), jnp.array([0.0, 0.0, 1.0])
@@ -82,29 +83,29 @@ class QuadcopterSE3:
         return R @ v, R @ _hat(w), vdot, wdot
 
     def equilibrium(self) -> tuple[Array, Array]:
-        """Hover at the origin."""
+        """Hovering at the origin."""
         upright = jnp.concatenate([jnp.zeros(3), jnp.eye(3).reshape(9), jnp.zeros(6)])
         return upright, jnp.full(4, MASS * G / (4 * KT * THRUST))
 
     def to_local(self, x: Array) -> Array:
-        """(p, s, v, w) [12] with s = sin(angle) axis of the rotation, less than 90 degrees."""
+        """(p, s, v, w) [12], s = sin(angle) axis of the rotation; for angles below 90 degrees."""
         R = x[3:12].reshape(3, 3)
         s = 0.5 * jnp.stack([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
         return jnp.concatenate([x[:3], s, x[12:]])
 
     def from_local(self, e: Array) -> Array:
-        """The observation [18] of e [12]."""
+        """The observation [18] at local coordinates e [12]."""
         s = _hat(e[3:6])
         cos = jnp.sqrt(jnp.maximum(1 - jnp.sum(e[3:6] ** 2), 1e-4))
         R = jnp.eye(3) + s + s @ s / (1 + cos)
         return jnp.concatenate([e[:3], R.reshape(9), e[6:]])
 
     def scene(self) -> str:
-        """MJCF text of the world as it is drawn."""
+        """MJCF text of the scene for rendering."""
         return mjcf.text("quadcopter_se3.xml")
 
     def pose(self, state: EnvState) -> Array:
-        """Positions qpos [7] of the drawn world: place and quaternion."""
+        """Position and quaternion, qpos [7], for rendering."""
         R = state.data[3:12].reshape(3, 3)
         signs = jnp.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
         quat = 0.5 * jnp.sqrt(jnp.maximum(1 + signs @ jnp.diag(R), 0))
@@ -113,10 +114,10 @@ class QuadcopterSE3:
         return jnp.concatenate([state.data[:3], quat / jnp.linalg.norm(quat)])
 
 
-def _cost(u: Array) -> dict[str, Array]:
-    """Of rotors u [4] in [-1, 1]."""
-    off = KT * THRUST * jnp.sum(u) - MASS * G
-    return {"power_loss": jnp.abs(off), "norm_of_u": jnp.linalg.norm(u)}
+def _metrics(u: Array) -> dict[str, Array]:
+    """Metrics of an action u [4] in [-1, 1]."""
+    excess = KT * THRUST * jnp.sum(u) - MASS * G
+    return {"power_loss": jnp.abs(excess), "norm_of_u": jnp.linalg.norm(u)}
 
 
 def _hat(w: Array) -> Array:

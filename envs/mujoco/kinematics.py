@@ -1,11 +1,11 @@
-"""Where a site of an arm is, how its joints move it, and how they shall move.
+"""Forward and inverse kinematics of a site of a robot arm.
 
-    pose       p(q) [3], r(q) [4]: transforms multiplied along the chain, r a quaternion w x y z
-    Jacobian   hinge: (a x (p - c), a),   slide: (a, 0);   a axis, c anchor, in the world
+    pose       p(q) [3], r(q) [4]: product of the transforms along the chain, r a quaternion w x y z
+    Jacobian   hinge: (a x (p - c), a),   slide: (a, 0);   a axis, c anchor, in the world frame
     damped least squares   qd = q0 + J' (J J' + l^2 I)^-1 (V - J q0),   V = (v, w) [6]
 
-A formula of qpos and of the model's tables, hence the same in every implementation of the
-physics.
+Computed from qpos and the constants of the model, so that all implementations of the physics give
+the same result. Quaternions are [4], w x y z, of unit length.
 
 Source: Wampler 1986; Nakamura and Hanafusa 1986 (damped least squares).
 """
@@ -26,48 +26,48 @@ from hybrid_rl.envs.mujoco import mjcf
 HINGE = mujoco.mjtJoint.mjJNT_HINGE
 
 
-def times(r: Array, s: Array) -> Array:
-    """The rotation [4] that does s first, then r."""
+def quat_multiply(r: Array, s: Array) -> Array:
+    """The rotation [4] by s, followed by r."""
     w = r[0] * s[0] - (r[1:] * s[1:]).sum()
     return jnp.concatenate((w[None], r[0] * s[1:] + s[0] * r[1:] + jnp.cross(r[1:], s[1:])))
 
 
-def turn(r: Array, v: Array) -> Array:
-    """v [3] turned by r [4]."""
-    across = 2 * jnp.cross(r[1:], v)
-    return v + r[0] * across + jnp.cross(r[1:], across)
+def rotate(r: Array, v: Array) -> Array:
+    """The vector v [3] rotated by r [4]."""
+    t = 2 * jnp.cross(r[1:], v)
+    return v + r[0] * t + jnp.cross(r[1:], t)
 
 
 def inverse(r: Array) -> Array:
-    """The rotation [4] that undoes r."""
+    """The inverse rotation [4] of r [4]."""
     return jnp.concatenate((r[:1], -r[1:]))
 
 
-def about(axis: Array, angle: Array) -> Array:
-    """The rotation [4] by angle [rad] about axis [3], of length 1."""
+def from_axis_angle(axis: Array, angle: Array) -> Array:
+    """The rotation [4] by angle [rad] about the unit vector axis [3]."""
     return jnp.concatenate((jnp.cos(angle / 2)[None], jnp.sin(angle / 2) * axis))
 
 
-def vector(r: Array) -> Array:
-    """2 sin(angle / 2) axis [3] of r: for small angles the rotation vector [rad]."""
+def rotation_vector(r: Array) -> Array:
+    """2 sin(angle / 2) axis [3] of r [4]; for small angles the rotation vector [rad]."""
     return 2 * jnp.where(r[0] < 0, -1.0, 1.0) * r[1:]
 
 
-class Rows(NamedTuple):
-    """A chain as steps of one kind: shift and turn by a constant, then by the joint, if any."""
+class Links(NamedTuple):
+    """A chain as L links: a constant transform each, then its joint, if it has one."""
 
     pos: np.ndarray  # [L, 3]
     quat: np.ndarray  # [L, 4]
-    axis: np.ndarray  # [L, 3] of the joint, 0 where none
+    axis: np.ndarray  # [L, 3] of the joint, 0 without a joint
     anchor: np.ndarray  # [L, 3]
-    hinge: np.ndarray  # [L] bool
-    address: np.ndarray  # [L] in qpos, -1 where no joint
-    rest: np.ndarray  # [L] qpos at which the joint does nothing
+    hinge: np.ndarray  # [L] bool: hinge, not slide
+    address: np.ndarray  # [L] of the joint in qpos, -1 without a joint
+    reference: np.ndarray  # [L] qpos at which the joint transform is the identity
 
 
 @dataclass(frozen=True)
 class Chain:
-    """The bodies from the world to `site` of the model `asset`: hinges and slides alone."""
+    """The bodies from the world to `site` of the model `asset`; hinge and slide joints only."""
 
     asset: str
     site: str
@@ -75,35 +75,37 @@ class Chain:
     def pose(self, qpos: Array) -> tuple[Array, Array, Array]:
         """Position [3] and rotation [4] of the site and Jacobian [6, joints], at qpos [nq].
 
-        Rows are linear, then angular velocity, in the world; columns run along the chain.
+        The Jacobian's rows are linear, then angular velocity in the world frame; its columns are
+        the joints along the chain.
         """
-        rows = _rows(self.asset, self.site)
-        driven = rows.address >= 0
-        moved = jnp.where(driven, qpos[rows.address] - rows.rest.astype(np.float32), 0.0)
+        links = _links(self.asset, self.site)
+        has_joint = links.address >= 0
+        reference = links.reference.astype(np.float32)
+        angles = jnp.where(has_joint, qpos[links.address] - reference, 0.0)
 
-        def along(carry: tuple, row: tuple) -> tuple:
-            (p, r), (pos, quat, axis, anchor, hinge, angle) = carry, row
-            p, r = p + turn(r, pos), times(r, quat)
-            a, c = turn(r, axis), p + turn(r, anchor)
-            turned = times(r, about(axis, angle))
-            p = jnp.where(hinge, c - turn(turned, anchor), p + a * angle)
-            return (p, jnp.where(hinge, turned, r)), (a, c)
+        def add_link(carry: tuple, link: tuple) -> tuple:
+            (p, r), (pos, quat, axis, anchor, hinge, angle) = carry, link
+            p, r = p + rotate(r, pos), quat_multiply(r, quat)
+            a, c = rotate(r, axis), p + rotate(r, anchor)
+            rotated = quat_multiply(r, from_axis_angle(axis, angle))
+            p = jnp.where(hinge, c - rotate(rotated, anchor), p + a * angle)
+            return (p, jnp.where(hinge, rotated, r)), (a, c)
 
-        tables = [jnp.asarray(table, jnp.float32) for table in rows[:4]]
+        tables = [jnp.asarray(table, jnp.float32) for table in links[:4]]
         start = (jnp.zeros(3), jnp.eye(4, dtype=jnp.float32)[0])
-        (p, r), (a, c) = jax.lax.scan(along, start, (*tables, rows.hinge, moved))
-        hinge = rows.hinge[:, None]
+        (p, r), (a, c) = jax.lax.scan(add_link, start, (*tables, links.hinge, angles))
+        hinge = links.hinge[:, None]
         linear = jnp.where(hinge, jnp.cross(a, p[None] - c), a)
         angular = jnp.where(hinge, a, 0.0)
-        return p, r, jnp.concatenate((linear, angular), 1)[driven].T
+        return p, r, jnp.concatenate((linear, angular), 1)[has_joint].T
 
-    def at(self, qpos: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
-        """Position [3] and rotation [4], constants, where the first coordinates are `qpos`."""
-        return _at(self.asset, self.site, qpos)
+    def constant_pose(self, qpos: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """Position [3] and rotation [4] of the site, in NumPy; qpos: the first coordinates."""
+        return _constant_pose(self.asset, self.site, qpos)
 
 
 @cache
-def _at(asset: str, site: str, qpos: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
+def _constant_pose(asset: str, site: str, qpos: tuple[float, ...]) -> tuple[np.ndarray, np.ndarray]:
     model, quat = mjcf.load(asset), np.empty(4)
     data = mujoco.MjData(model)
     data.qpos[: len(qpos)] = qpos
@@ -113,44 +115,45 @@ def _at(asset: str, site: str, qpos: tuple[float, ...]) -> tuple[np.ndarray, np.
 
 
 @cache
-def _rows(asset: str, site: str) -> Rows:
+def _links(asset: str, site: str) -> Links:
     model = mjcf.load(asset)
     end = model.site(site)
     bodies = [int(end.bodyid[0])]
     while parent := int(model.body_parentid[bodies[0]]):
         bodies.insert(0, parent)
-    none, still = np.zeros(3), np.eye(4)[0]
-    rows = []
+    zero, identity = np.zeros(3), np.eye(4)[0]
+    links = []
     for body in bodies:
         pos, quat = model.body_pos[body], model.body_quat[body]
         first, count = model.body_jntadr[body], model.body_jntnum[body]
         for j in range(first, first + count):
             address, hinge = model.jnt_qposadr[j], model.jnt_type[j] == HINGE
             joint = (model.jnt_axis[j], model.jnt_pos[j], hinge, address, model.qpos0[address])
-            rows.append((pos, quat, *joint))
-            pos, quat = none, still
+            links.append((pos, quat, *joint))
+            pos, quat = zero, identity
         if not count:
-            rows.append((pos, quat, none, none, False, -1, 0.0))
-    rows.append((end.pos, end.quat, none, none, False, -1, 0.0))
-    return Rows(*(np.array(column) for column in zip(*rows, strict=True)))
+            links.append((pos, quat, zero, zero, False, -1, 0.0))
+    links.append((end.pos, end.quat, zero, zero, False, -1, 0.0))
+    return Links(*(np.array(column) for column in zip(*links, strict=True)))
 
 
-def damped(jacobian: Array, velocity: Array, damping: float, wish: Array) -> Array:
-    """Joint velocities [n] by which J [6, n] gives about `velocity` [6], nearest to `wish` [n].
+def damped_inverse(jacobian: Array, velocity: Array, damping: float, desired: Array) -> Array:
+    """Joint velocities [n] that give about `velocity` [6], as close as possible to `desired` [n].
 
-    They are bounded everywhere; near singular poses `damping` counts, and they give less.
+    jacobian: [6, n]. `damping` bounds the result near singular configurations, where the site
+    moves more slowly than `velocity`.
     """
     square = jacobian @ jacobian.T + damping**2 * jnp.eye(6)
-    missing = velocity - jacobian @ wish
-    return wish + jacobian.T @ cho_solve(cho_factor(square), missing)
+    remaining = velocity - jacobian @ desired
+    return desired + jacobian.T @ cho_solve(cho_factor(square), remaining)
 
 
-def hold(now: Array, wanted: Array, gain: float) -> Array:
-    """Angular velocity [3] in the world that turns `now` [4] towards `wanted` [4]; gain [1/s]."""
-    return gain * vector(times(wanted, inverse(now)))
+def rotate_towards(rotation: Array, target: Array, gain: float) -> Array:
+    """Angular velocity [3], world frame, from `rotation` [4] towards `target` [4]; gain [1/s]."""
+    return gain * rotation_vector(quat_multiply(target, inverse(rotation)))
 
 
-def within(velocity: Array, position: Array, low: Array, high: Array) -> Array:
-    """`velocity` without what leaves the box [low, high]; all of one shape."""
+def stay_within(velocity: Array, position: Array, low: Array, high: Array) -> Array:
+    """`velocity`, set to 0 where it would leave the box [low, high]; all of one shape."""
     up, down = jnp.where(position < high, velocity, 0.0), jnp.where(position > low, velocity, 0.0)
     return jnp.where(velocity > 0, up, down)

@@ -1,4 +1,4 @@
-"""MuJoCo models by name: XML text and compiled model, each read once.
+"""MuJoCo models by file name: XML text and compiled model, both cached.
 
 Source: the MJCF reference of MuJoCo, "XML Reference".
 """
@@ -13,7 +13,11 @@ FOLDER = Path(__file__).parents[1] / "assets"
 
 
 def path(asset: str) -> Path:
-    """File of `asset`: a name in `assets`, or an absolute path of your own."""
+    """The file of `asset`: a name in `assets`, or an absolute path.
+
+    Raises:
+        ValueError: for a file that does not exist.
+    """
     file = FOLDER / asset
     if not file.is_file():
         known = ", ".join(sorted(p.name for p in FOLDER.glob("*.xml")))
@@ -23,7 +27,7 @@ def path(asset: str) -> Path:
 
 @cache
 def text(asset: str) -> str:
-    """The MJCF text of `asset`, with what it includes put in."""
+    """The MJCF text of `asset` with its includes expanded."""
     plain = path(asset).read_text(encoding="utf-8")
     if "<include" not in plain:
         return plain
@@ -34,19 +38,23 @@ def text(asset: str) -> str:
 
 @cache
 def load(asset: str) -> mujoco.MjModel:
-    """The compiled model of `asset`. Shared: read it, never write to it."""
+    """The compiled model of `asset`, which is shared: do not modify it.
+
+    Raises:
+        ValueError: for a model with automatic resets.
+    """
     model = mujoco.MjModel.from_xml_path(str(path(asset)))
     if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
         raise ValueError(
             f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '
-            "reset a world that diverged in silence"
+            "silently reset a simulation that diverged"
         )
     return model
 
 
 @cache
-def late(asset: str) -> np.ndarray:
-    """[nsensordata] bool: needs accelerations, and is left by a step as it was within it."""
+def of_acceleration(asset: str) -> np.ndarray:
+    """[nsensordata] bool: sensors of accelerations, which a step leaves at their last value."""
     model = load(asset)
     stage = mujoco.mjtStage.mjSTAGE_ACC.value
     return np.repeat(model.sensor_needstage == stage, model.sensor_dim)

@@ -1,11 +1,11 @@
-"""MuJoCo C on the threads of the CPU, called from inside a compiled JAX program.
+"""MuJoCo C on CPU threads, called from a compiled JAX program.
 
     x = [qpos, qvel, act, warmstart, ctrl] -> n mj_steps in float64
       -> y = [qpos, qvel, act, warmstart, sensors]
 
-Stateless: whatever a step depends on goes in and comes out with the call, so that
-one pool of simulations serves all seeds and worlds, at any thread count, with the
-same bits. A world that is not finite comes out as NaN.
+Stateless: every call passes in and returns everything that a step depends on, so that one pool of
+simulations serves all seeds and environments, and the results are the same bit for bit with any
+number of threads. A state that is not finite gives NaN.
 
 Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 """
@@ -26,16 +26,16 @@ _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their se
 
 
 class _Pool(NamedTuple):
-    """N simulations of one model, and live views into them."""
+    """N simulations of one model, and views of their memory."""
 
     batch: Batch
     inputs: np.ndarray  # [N, D] float64: qpos, qvel, act, warmstart, ctrl
     sensors: np.ndarray  # [N, nsensordata] float64
-    late: np.ndarray  # [nsensordata] bool: needs accelerations
+    late: np.ndarray  # [nsensordata] bool: sensors of accelerations
 
 
 def cores() -> int:
-    """Processors that this process may run on, which a cluster's scheduler may have made fewer."""
+    """Number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -43,12 +43,16 @@ def cores() -> int:
 
 @cache
 def _idle(asset: str, worlds: int, threads: int) -> list[_Pool]:
-    """Pools that nobody uses now: several devices may call at once, each takes its own."""
+    """Pools that are not in use; calls of several devices at the same time need one each."""
     return []
 
 
 def _pool(asset: str, worlds: int, threads: int) -> _Pool:
-    """A new pool; by default the devices of the host share its processors."""
+    """A new pool; with threads=0 the host's devices divide its processors among them.
+
+    Raises:
+        ValueError: for a model with delays.
+    """
     model = mjcf.load(asset)
     shared = max(cores() // jax.local_device_count(), 1)
     batch = Batch(model, worlds, min(worlds, threads or shared))
@@ -56,13 +60,13 @@ def _pool(asset: str, worlds: int, threads: int) -> _Pool:
     first = 1  # column 0 is the time
     inputs = batch.state[:, first : first + sum(sizes)]
     if model.nhistory:
-        raise ValueError(f"{asset}: actuators or sensors with delay have no place in the state")
+        raise ValueError(f"{asset}: actuators or sensors with a delay are not supported")
     sensors = batch.bind("sensordata")
-    return _Pool(batch, inputs, sensors, mjcf.late(asset))
+    return _Pool(batch, inputs, sensors, mjcf.of_acceleration(asset))
 
 
 def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> None:
-    """Fill y [N, D'] with what becomes of x [N, D] after `n` steps of physics."""
+    """Write the result of `n` physics steps from x [N, D] into y [N, D']."""
     idle = _idle(asset, len(x), threads)
     try:
         pool = idle.pop()
@@ -89,7 +93,7 @@ def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> 
 
 @cache
 def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
-    """Step x [D] to y [D'], on the CPU by a foreign call, elsewhere by a JAX callback."""
+    """The function x [D] -> y [D']: a foreign call on the CPU, a JAX callback on other devices."""
     model = mjcf.load(asset)
     width = model.nq + 2 * model.nv + model.na + model.nsensordata
     out = jax.ShapeDtypeStruct((width,), np.float32)
@@ -98,23 +102,24 @@ def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
     xla_callback.register(name, advance)
 
     def callback(x: jax.Array) -> np.ndarray:
-        rows = np.asarray(x)
-        y = np.empty((*rows.shape[:-1], width), np.float32)
-        advance(rows.reshape(-1, rows.shape[-1]), y.reshape(-1, width))
+        inputs = np.asarray(x)
+        y = np.empty((*inputs.shape[:-1], width), np.float32)
+        advance(inputs.reshape(-1, inputs.shape[-1]), y.reshape(-1, width))
         return y
 
-    def elsewhere(x: jax.Array) -> jax.Array:
+    def on_accelerator(x: jax.Array) -> jax.Array:
         return jax.pure_callback(callback, out, x, vmap_method="broadcast_all")
 
-    def here(x: jax.Array) -> jax.Array:
+    def on_cpu(x: jax.Array) -> jax.Array:
         return jax.ffi.ffi_call(name, out, vmap_method="broadcast_all")(x)
 
-    return lambda x: jax.lax.platform_dependent(x, cpu=here, default=elsewhere)
+    return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
 
 
 def step(asset: str, threads: int, n: int, x: jax.Array) -> jax.Array:
-    """What x = [qpos, qvel, act, warmstart, ctrl] becomes in `n` steps, with the sensors.
+    """y = [qpos, qvel, act, warmstart, sensors] after `n` steps from x.
 
-    n = 0 moves nothing and reads the sensors of positions and velocities.
+    x: [qpos, qvel, act, warmstart, ctrl]. n = 0 only evaluates the sensors of positions and
+    velocities.
     """
     return _call(asset, threads, n)(x)

@@ -1,10 +1,10 @@
-"""Pictures of a MuJoCo scene, drawn without a display.
+"""Rendering of a MuJoCo scene without a display.
 
-The backend is chosen at the first drawing, by a trial in a process of its own: EGL
-(graphics cards, and software rendering by Mesa), else OSMesa. MUJOCO_GL=egl or
-osmesa in the environment decides instead. MuJoCo's own Renderer is not used, since
-it is bound to whatever MUJOCO_GL was when mujoco was first imported, and without a
-display a failure of its default backend ends the process.
+The first rendering chooses the backend by a trial in a separate process: EGL (graphics cards, and
+software rendering by Mesa), else OSMesa. The environment variable MUJOCO_GL=egl or osmesa
+overrides the choice. MuJoCo's own Renderer is not used because it is bound to the value of
+MUJOCO_GL at the first import of mujoco, and because without a display a failure of its default
+backend ends the process.
 """
 
 import atexit
@@ -21,10 +21,10 @@ import mujoco
 import numpy as np
 
 BACKENDS = ("egl", "osmesa")
-CAMERA = "track"  # taken where a scene has one of this name
-SHADOWS = 1024  # [pixels] of the shadow map; 4096 triples the time without a graphics card
-SURE = 1024  # [pixels] a side that OpenGL guarantees; a larger one is tried first
-DRAWN = ("scene", "pose")  # what a world that can be drawn has
+CAMERA = "track"  # used if the scene has a camera of this name
+SHADOWS = 1024  # [pixels] of the shadow map; 4096 takes three times as long in software
+GUARANTEED = 1024  # [pixels] per side in any OpenGL; larger sizes are tested first
+METHODS = ("scene", "pose")  # of an environment that can be rendered
 TRIAL = """
 import mujoco
 from mujoco.{backend} import GLContext
@@ -44,20 +44,20 @@ window.free()
 
 
 class NoGraphicsError(OSError):
-    """Nothing here can draw without a display; one line says what to install."""
+    """No backend can render without a display; the message names what to install."""
 
 
 @cache
 def backend() -> str:
-    """The first of BACKENDS that draws here, or what MUJOCO_GL names.
+    """The first of BACKENDS that works on this machine, or the one that MUJOCO_GL names.
 
     Raises:
-        NoGraphicsError: where none does.
+        NoGraphicsError: if none works.
     """
     if sys.platform == "darwin":
         return "cgl"
-    wish = os.environ.get("MUJOCO_GL", "").strip().lower()
-    tried = (wish,) if wish in BACKENDS else BACKENDS
+    requested = os.environ.get("MUJOCO_GL", "").strip().lower()
+    tried = (requested,) if requested in BACKENDS else BACKENDS
     for name in tried:
         if _trial(name, 8, 8).returncode == 0:
             return name
@@ -68,11 +68,11 @@ def backend() -> str:
 
 
 def check_size(width: int, height: int) -> None:
-    """Raise ValueError for a picture that the backend has no framebuffer for.
+    """Raise ValueError for an image larger than the backend's largest framebuffer.
 
     width, height: [pixels].
     """
-    if max(width, height) <= SURE:
+    if max(width, height) <= GUARANTEED:
         return
     done = _trial(backend(), width, height)
     if done.returncode == 0:
@@ -85,29 +85,29 @@ def check_size(width: int, height: int) -> None:
 
 
 def _trial(name: str, width: int, height: int) -> Any:
-    """The process that drew, or failed to draw, with one backend; it prints the longest side."""
+    """The finished process of a trial with one backend; it prints the largest side [pixels]."""
     clean = {key: value for key, value in os.environ.items() if key != "PYOPENGL_PLATFORM"}
     code = TRIAL.format(backend=name, width=width, height=height)
     run = [sys.executable, "-c", code]
     return subprocess.run(run, env={**clean, "MUJOCO_GL": name}, capture_output=True, text=True)
 
 
-def check_drawable(world: Any) -> None:
-    """Raise ValueError for a world without `scene` and `pose`, which a picture needs."""
-    missing = [f"`{name}`" for name in DRAWN if not hasattr(world, name)]
+def check_drawable(env: Any) -> None:
+    """Raise ValueError for an environment without `scene` and `pose`, which rendering needs."""
+    missing = [f"`{name}`" for name in METHODS if not hasattr(env, name)]
     if missing:
         raise ValueError(
-            f"{type(world).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
+            f"{type(env).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
         )
 
 
 class Canvas:
-    """A scene, drawn one picture at a time; `close()` frees it, as does the end of the process.
+    """Renders images of one scene; `close()`, or the end of the process, frees its resources.
 
     scene: MJCF text. width, height: [pixels].
 
     Raises:
-        NoGraphicsError: where nothing here can draw.
+        NoGraphicsError: if no backend works on this machine.
     """
 
     def __init__(self, scene: str, width: int = 640, height: int = 480) -> None:
@@ -129,14 +129,14 @@ class Canvas:
             parts.callback(self._context.free)
             parts.callback(self._window.make_current)  # OpenGL frees in the current window
             self.close = weakref.finalize(self, parts.pop_all().close)
-        self.close.atexit = False  # but before EGL, which registered earlier, ends
+        self.close.atexit = False  # but before EGL ends, which registered earlier
         atexit.register(self.close)
 
     def draw(self, qpos: np.ndarray) -> np.ndarray:
-        """The picture [height, width, 3] (uint8) of positions qpos [nq].
+        """The image [height, width, 3] (uint8) at joint positions qpos [nq].
 
         Raises:
-            ValueError: for positions of another size.
+            ValueError: for a qpos of another size.
         """
         if np.shape(qpos) != (self.model.nq,):
             raise ValueError(f"qpos is {np.shape(qpos)}; the scene takes [{self.model.nq}]")
@@ -155,7 +155,7 @@ class Canvas:
 
 
 def _camera(model: mujoco.MjModel) -> mujoco.MjvCamera:
-    """The scene's own that follows the robot, else a free one that follows its first body."""
+    """The scene's camera that follows the robot, else a free one that follows the first body."""
     camera = mujoco.MjvCamera()
     number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, CAMERA)
     if number >= 0:

@@ -1,19 +1,19 @@
-"""One MuJoCo stepper, three implementations of the same step.
+"""MuJoCo's step in three implementations.
 
     s' = step^n(s, ctrl),   s = (qpos, qvel, act, warmstart)
 
-    native   MuJoCo C on CPU threads, float64 inside      one world or few, any CPU
-    mjx      MuJoCo XLA, pure JAX, float32                many worlds on an accelerator
-    warp     MuJoCo Warp through MJX, float32             many worlds on an NVIDIA GPU
-    auto     native on a CPU, and for a few worlds anywhere; else warp on an NVIDIA GPU where
-             warp-lang is installed; else mjx
+    native   MuJoCo C on CPU threads, float64 internally  any CPU; few environments on a GPU
+    mjx      MuJoCo XLA, pure JAX, float32                many environments on an accelerator
+    warp     MuJoCo Warp through MJX, float32             many environments on an NVIDIA GPU
+    auto     native on a CPU and for at most 40 environments per core of the host; else warp on an
+             NVIDIA GPU if warp-lang is installed; else mjx
 
-"A few" are 40 worlds a core of the host: on an H200 and 12 cores, 64 learners on the half-cheetah
-made 31,400 decisions a second with MuJoCo C and 15,700 with Warp, 512 learners 58,400 and 56,700,
-4,096 learners 69,900 and 96,600.
+The limit of 40: on an H200 with 12 cores, 64 learners on the half-cheetah made 31,400 decisions/s
+with MuJoCo C and 15,700 with Warp, 512 learners 58,400 and 56,700, 4,096 learners 69,900 and
+96,600.
 
-The state is the same few numbers for all three: a checkpoint is small, a reset is a
-`where`, and a run that continues continues bit for bit.
+All three share one small state, so that checkpoints are small, a reset is a `where`, and a resumed
+run continues bit for bit.
 
 Source: MuJoCo's documentation, "Computation: the state" (mjSTATE_INTEGRATION).
 """
@@ -31,27 +31,28 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf, native
 from hybrid_rl.envs.options import one_of
 
-FEW = 40  # worlds a core of the host
+NATIVE_PER_CORE = 40  # environments per core of the host up to which auto is native
 IMPLEMENTATIONS = ("auto", "native", "mjx", "warp")
 
 
 @struct.dataclass
 class PhysicsState:
-    """All that a step depends on, float32, and the sensors it left; None what a model has none of.
+    """Everything that a step depends on, and the sensors after it; float32.
 
-    (Shardy of jax 0.11 ends the process where it is given an array without entries.)
+    A field that the model lacks is None, not empty: Shardy of jax 0.11 ends the process when it
+    shards an array without entries.
     """
 
     qpos: Array  # [nq] positions [m, rad]
     qvel: Array  # [nv] velocities [m/s, rad/s]
     act: Array | None  # [na] actuator activations
-    warmstart: Array  # [nv] accelerations, where the solver starts [m/s^2, rad/s^2]
-    ctrl: Array | None  # [nu] controls held during the last step
-    sensors: Array | None  # [nsensordata] of this state; accelerations: of the last step
+    warmstart: Array  # [nv] accelerations from which the solver starts [m/s^2, rad/s^2]
+    ctrl: Array | None  # [nu] controls of the last step
+    sensors: Array | None  # [nsensordata] of this state; of accelerations: of the last step
 
 
 def check(implementation: str) -> None:
-    """Raise ValueError if `implementation` is unknown, or cannot run here."""
+    """Raise ValueError if `implementation` is unknown or cannot run on this machine."""
     one_of("physics", implementation, IMPLEMENTATIONS)
     if implementation != "warp":
         return
@@ -65,14 +66,14 @@ def check(implementation: str) -> None:
 
 
 def resolve(implementation: str, worlds: int | None = None) -> str:
-    """What `implementation` means on this machine, for `worlds` at once: native, mjx or warp.
+    """The implementation for `worlds` parallel environments on this machine: native, mjx or warp.
 
-    On an accelerator an unknown number counts as many.
+    On an accelerator, None counts as many.
     """
     if implementation != "auto":
         return implementation
     backend = jax.default_backend()
-    few = worlds is not None and worlds <= FEW * native.cores()
+    few = worlds is not None and worlds <= NATIVE_PER_CORE * native.cores()
     if few or backend == "cpu":
         return "native"
     return "warp" if backend == "gpu" and find_spec("warp") else "mjx"
@@ -80,34 +81,34 @@ def resolve(implementation: str, worlds: int | None = None) -> str:
 
 @dataclass(frozen=True)
 class Physics:
-    """Steps the model `asset`. Hashable, equal by value; models are cached elsewhere."""
+    """Steps the model `asset`. Hashable and compared by value; `mjcf` caches the models."""
 
     asset: str  # file in assets/, or an absolute path
     implementation: str = "auto"
-    threads: int = 0  # of native; 0 = one per core
+    threads: int = 0  # of native; 0: one per core
 
     def __post_init__(self) -> None:
         check(self.implementation)
 
     @property
     def model(self) -> mujoco.MjModel:
-        """The compiled model; read it, never write to it."""
+        """The compiled model, which is shared: do not modify it."""
         return mjcf.load(self.asset)
 
     def reset(self, qpos: Array, qvel: Array) -> PhysicsState:
-        """The state at qpos [nq], qvel [nv], at rest otherwise."""
+        """The state at qpos [nq], qvel [nv]; all else is zero."""
         model = self.model
         sizes = (model.na, model.nv, model.nu, model.nsensordata)
-        zeros = [_some(jnp.zeros(size, jnp.float32)) for size in sizes]
+        zeros = [_or_none(jnp.zeros(size, jnp.float32)) for size in sizes]
         state = PhysicsState(*(jnp.asarray(q, jnp.float32) for q in (qpos, qvel)), *zeros)
-        return state if mjcf.late(self.asset).all() else self._advance(state, 0)
+        return state if mjcf.of_acceleration(self.asset).all() else self._advance(state, 0)
 
     def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:
-        """The state `n` steps of physics later, with ctrl [nu] held."""
-        return self._advance(state.replace(ctrl=_some(jnp.asarray(ctrl, jnp.float32))), n)
+        """The state after `n` physics steps with constant ctrl [nu]."""
+        return self._advance(state.replace(ctrl=_or_none(jnp.asarray(ctrl, jnp.float32))), n)
 
     def sensor(self, state: PhysicsState, name: str) -> Array:
-        """[dim] what sensor `name` reads at `state`."""
+        """The reading [dim] of sensor `name` at `state`."""
         sensor = self.model.sensor(name)
         assert state.sensors is not None
         return state.sensors[sensor.adr[0] : sensor.adr[0] + sensor.dim[0]]
@@ -126,7 +127,7 @@ class Physics:
         ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
         qpos, qvel, act, rest = jnp.split(out, ends)
         warmstart, sensors = jnp.split(rest, (model.nv,))
-        return PhysicsState(qpos, qvel, _some(act), warmstart, state.ctrl, _some(sensors))
+        return PhysicsState(qpos, qvel, _or_none(act), warmstart, state.ctrl, _or_none(sensors))
 
     def _accelerated(self, state: PhysicsState, n: int, impl: str) -> PhysicsState:
         from hybrid_rl.envs.mujoco import mjx_warp
@@ -139,11 +140,11 @@ class Physics:
             "ctrl": state.ctrl,
         }
         fields = {name: x for name, x in fields.items() if x is not None}
-        left = mjx_warp.step(self.asset, impl, n, fields)
-        *moved, sensors = (_some(left[name]) for name in mjx_warp.LEFT)
+        out = mjx_warp.step(self.asset, impl, n, fields)
+        *moved, sensors = (_or_none(out[name]) for name in mjx_warp.OUTPUTS)
         return PhysicsState(*moved, ctrl=state.ctrl, sensors=sensors)
 
 
-def _some(x: Array) -> Any:
-    """`x`, or None where it has no entries."""
+def _or_none(x: Array) -> Any:
+    """`x`, or None if it has no entries."""
     return x if x.size else None

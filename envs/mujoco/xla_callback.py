@@ -1,12 +1,12 @@
 """A Python function as a custom call of XLA on the CPU.
 
-`jax.pure_callback` copies its arguments into new JAX arrays, which costs 100 to
-300 us a call and can wait for ever for the very threads that run it. Here XLA hands
-over the addresses of its own buffers: about 6 us a call, no JAX array is made,
-and a compiled program may be kept in JAX's persistent cache.
+`jax.pure_callback` copies its arguments into new JAX arrays, which costs 100 to 300 us a call and
+can deadlock when it waits for the threads that run it. Here XLA passes the addresses of its own
+buffers: about 6 us a call, without JAX arrays, and JAX's persistent cache can store the compiled
+program.
 
-Source: XLA's foreign function interface, `xla/ffi/api/c_api.h`, as shipped in
-jaxlib; the structures below are the head of those declared there.
+Source: XLA's foreign function interface, `xla/ffi/api/c_api.h` of jaxlib; the structures below are
+the first fields of those declared there.
 """
 
 import ctypes
@@ -89,33 +89,32 @@ class _Frame(ctypes.Structure):
 
 
 _Handler = ctypes.CFUNCTYPE(c_void_p, POINTER(_Frame))
-_KEPT = []  # handlers live as long as the process: XLA holds their addresses
+_HANDLERS = []  # never freed: XLA holds their addresses
 
 
-def _rows(buffers: _Buffers) -> np.ndarray:
-    """The one float32 buffer of `buffers` as rows [N, D], in place."""
+def _view(buffers: _Buffers) -> np.ndarray:
+    """A view [N, D] of the first buffer of `buffers`, which is float32."""
     buffer = buffers.items[0].contents
     shape = buffer.dims[: buffer.rank]
-    wide = shape[-1]
     flat = (ctypes.c_float * prod(shape)).from_address(buffer.data)
-    return np.ctypeslib.as_array(flat).reshape(-1, wide)
+    return np.ctypeslib.as_array(flat).reshape(-1, shape[-1])
 
 
 def register(name: str, function: Callable[[np.ndarray, np.ndarray], None]) -> None:
-    """Make `function(x [N, D], y [N, D'])`, which fills y, XLA's CPU target `name`.
+    """Register `function(x [N, D], y [N, D'])`, which writes y, as XLA's CPU target `name`.
 
-    Call it with `jax.ffi.ffi_call(name, ..., vmap_method="broadcast_all")` on one
-    float32 array; every leading axis becomes rows.
+    Call it by `jax.ffi.ffi_call(name, ..., vmap_method="broadcast_all")` on one float32 array; all
+    leading axes are flattened into N.
     """
 
     def handle(pointer: "ctypes._Pointer[_Frame]") -> int | None:
         frame = pointer.contents
-        if frame.extension:  # XLA asks which version this handler was built for
+        if frame.extension:  # XLA queries the API version of this handler
             version, own = frame.extension.contents.metadata.contents.version, frame.api.contents
             version.major, version.minor = own.version.major, own.version.minor
             return None
         try:
-            function(_rows(frame.args), _rows(frame.results))
+            function(_view(frame.args), _view(frame.results))
         except Exception:
             message = traceback.format_exc().encode()
             args = _ErrorArgs(ctypes.sizeof(_ErrorArgs), None, message, _INTERNAL)
@@ -123,5 +122,5 @@ def register(name: str, function: Callable[[np.ndarray, np.ndarray], None]) -> N
         return None
 
     handler = _Handler(handle)
-    _KEPT.append(handler)
+    _HANDLERS.append(handler)
     jax.ffi.register_ffi_target(name, jax.ffi.pycapsule(handler), platform="cpu")

@@ -1,11 +1,11 @@
-"""Tests that run the same MJX program share a process: it is compiled once."""
+"""Tests that run the same MJX program run in one process, which compiles it once."""
 
 import pytest
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """One group for each "task-mjx" between a test's brackets."""
+    """One xdist group for each "task-mjx" in a test's brackets."""
     for item in items:
         case = item.name.partition("[")[2].rstrip("]")
         if case.endswith("-mjx"):

@@ -1,4 +1,4 @@
-"""Worlds against MuJoCo C: the same states, the same actions, mj_step alone."""
+"""Environments against MuJoCo C: the same states and actions, stepped by mj_step."""
 
 import jax
 import mujoco
@@ -12,6 +12,7 @@ from worlds import (
     SIMULATED,
     TOUCHING,
     actions,
+    jitted,
     make,
     reference,
     rollout,
@@ -20,10 +21,9 @@ from worlds import (
 
 from hybrid_rl.envs.mujoco import mjcf
 
-# Greatest difference of an observation over 20 decisions in contact. Measured: cheetah 5e-6
-# native, 4e-4 mjx; hopper 4e-6, 5e-6; cart and pole 2e-6, 2e-6 (it has no contact); ant 2e-5,
-# 3e-4; quadcopter 8e-7, 9e-7 (no contact); Sawyer, in 0.1 m, 3e-6, 9e-3; Panda 3e-6, 1e-2 [N],
-# 3e-5 [m].
+# Largest difference of an observation over 20 decisions in contact. Measured: cheetah 5e-6
+# native, 4e-4 mjx; hopper 4e-6, 5e-6; cart and pole 2e-6, 2e-6 (no contact); ant 2e-5, 3e-4;
+# quadcopter 8e-7, 9e-7 (no contact); Sawyer, in 0.1 m, 3e-6, 9e-3; Panda 3e-6, 1e-2 [N], 3e-5 [m].
 TOUCHING_BOUND = {
     ("halfcheetah", "native"): 1e-4,
     ("halfcheetah", "mjx"): 3e-3,
@@ -40,7 +40,7 @@ TOUCHING_BOUND = {
     ("panda_stack", "native"): 1e-4,
     ("panda_stack", "mjx"): 1e-1,
 }
-TOUCH = {  # geoms that meet
+TOUCH = {  # geoms in contact
     "halfcheetah": ("floor",),
     "hopper": ("floor",),
     "ant": ("floor",),
@@ -67,28 +67,28 @@ def test_in_contact(task, implementation):
 
 @pytest.mark.parametrize("task", TOUCH)
 def test_contact_is_made(task):
-    """Or the bounds above would say nothing about contact."""
+    """Otherwise the bounds above would not test contact."""
     model = mjcf.load(REFERENCE[task].asset)
-    data, meet = mujoco.MjData(model), {model.geom(name).id for name in TOUCH[task]}
+    data, touching = mujoco.MjData(model), {model.geom(name).id for name in TOUCH[task]}
     path = np.asarray(rollout(make(task, "native")).data.qpos)
     counts = {TOUCHING: 0, LIFTED: 0}
     for lane in counts:
         for qpos in path[lane]:
             data.qpos[:] = qpos
             mujoco.mj_forward(model, data)
-            counts[lane] += any(meet <= set(pair) for pair in data.contact.geom.tolist())
+            counts[lane] += any(touching <= set(pair) for pair in data.contact.geom.tolist())
     assert counts[TOUCHING] >= 5
     assert counts[LIFTED] == 0
 
 
 @pytest.mark.parametrize("task", [task for task in SIMULATED if task not in ARMS])
-def test_one_world_alone_has_the_same_bits(task):
+def test_a_single_environment_gives_the_same_bits_as_a_batch(task):
     env = make(task, "native")
     state = jax.tree.map(lambda a: a[TOUCHING], start(env))
-    step = jax.jit(env.step)
+    step = jitted(env, "step")
     for t, action in enumerate(actions(env)[TOUCHING]):
         state = step(state, action)
-        for alone, among in zip(
+        for single, batch in zip(
             jax.tree.leaves(state.data), jax.tree.leaves(rollout(env).data), strict=True
         ):
-            np.testing.assert_array_equal(alone, among[TOUCHING][t])
+            np.testing.assert_array_equal(single, batch[TOUCHING][t])

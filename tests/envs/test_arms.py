@@ -1,4 +1,4 @@
-"""Arms against the tables of their makers, and their kinematics against MuJoCo C."""
+"""Arms against their makers' tables, and their kinematics against MuJoCo C."""
 
 from math import pi
 
@@ -9,12 +9,20 @@ import numpy as np
 import pytest
 
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.kinematics import Chain, damped, hold, inverse, times, turn, within
+from hybrid_rl.envs.mujoco.kinematics import (
+    Chain,
+    damped_inverse,
+    inverse,
+    quat_multiply,
+    rotate,
+    rotate_towards,
+    stay_within,
+)
 from hybrid_rl.envs.panda_stack import READY
 from hybrid_rl.envs.sawyer_push import HOME
 
 SAWYER, PANDA = "sawyer_push.xml", "panda_stack.xml"
-POSES = [  # asset, site, joints [rad], where the site is [m]: computed from the makers' tables
+POSES = [  # asset, site, joints [rad], position of the site [m]; from the makers' tables
     (SAWYER, "hand", (0, -1.18, 0, 2.18, 0, 0.57, 3.3161), (0.4496, 0.1603, 0.2158)),
     (SAWYER, "hand", HOME, (0.5595, 0.0307, -0.0530)),
     (SAWYER, "hand", (-0.2, -0.6, 0, 1.9, 0, 0.3, 1.571), (0.5358, 0.0550, 0.0230)),
@@ -37,7 +45,7 @@ MASSES = {  # [kg]: names, then masses
         ),
     ),
 }
-LIMITS = {  # least, greatest [rad]; velocity [rad/s]; torque [N m]
+LIMITS = {  # lower, upper [rad]; velocity [rad/s]; torque [N m]
     SAWYER: [
         (-3.0503, 3.0503, 1.74, 80),
         (-3.8095, 2.2736, 1.328, 80),
@@ -57,7 +65,7 @@ LIMITS = {  # least, greatest [rad]; velocity [rad/s]; torque [N m]
         (-2.8973, 2.8973, 2.61, 12),
     ],
 }
-PRINCIPAL = {  # moments of inertia [kg m^2], greatest first
+PRINCIPAL = {  # moments of inertia [kg m^2], descending
     "l0": (0.06516, 0.05109, 0.01862),
     "l1": (0.02243, 0.02216, 0.00971),
     "l2": (0.02579, 0.02551, 0.00293),
@@ -66,14 +74,14 @@ PRINCIPAL = {  # moments of inertia [kg m^2], greatest first
     "l5": (0.00474, 0.00423, 0.00191),
     "l6": (0.00036, 0.00031, 0.00021),
 }
-SINGULAR = {  # values of the Jacobian at the first pose
+SINGULAR = {  # singular values of the Jacobian at the initial pose
     (SAWYER, "hand", HOME): (1.88, 1.81, 1.07, 0.357, 0.345, 0.243),
     (PANDA, "tool", READY): (1.81, 1.68, 1.15, 0.342, 0.305, 0.221),
 }
 
 
 def _at(asset, joints):
-    """MuJoCo's data of `asset` at these joints."""
+    """MuJoCo's model and data of `asset` at these joint positions."""
     model = mjcf.load(asset)
     data = mujoco.MjData(model)
     data.qpos[: len(joints)] = joints
@@ -85,24 +93,24 @@ def _pose(asset, site, qpos):
     return jax.jit(Chain(asset, site).pose)(jnp.asarray(qpos, jnp.float32))
 
 
-@pytest.mark.parametrize(("asset", "site", "joints", "place"), POSES)
-def test_poses_are_the_makers(asset, site, joints, place):
+@pytest.mark.parametrize(("asset", "site", "joints", "expected"), POSES)
+def test_poses_are_those_of_the_makers(asset, site, joints, expected):
     _, data = _at(asset, joints)
-    np.testing.assert_allclose(data.site(site).xpos, place, atol=6e-5)
+    np.testing.assert_allclose(data.site(site).xpos, expected, atol=6e-5)
 
 
-@pytest.mark.parametrize(("asset", "site", "joints", "place"), POSES)
-def test_chain_is_mujocos(asset, site, joints, place):
-    """Position, rotation and Jacobian, at this pose and at one that is nothing special."""
+@pytest.mark.parametrize(("asset", "site", "joints", "expected"), POSES)
+def test_chain_agrees_with_mujoco(asset, site, joints, expected):
+    """Position, rotation and Jacobian at this pose and at one nearby."""
     for shift in (0.0, 0.1):
         model, data = _at(asset, np.add(joints, shift))
         position, rotation, jacobian = _pose(asset, site, data.qpos)
-        expected = np.zeros((2, 3, model.nv))
-        mujoco.mj_jacSite(model, data, *expected, model.site(site).id)
-        matrix = jax.vmap(turn, (None, 0), 1)(rotation, jnp.eye(3))
+        jac = np.zeros((2, 3, model.nv))
+        mujoco.mj_jacSite(model, data, *jac, model.site(site).id)
+        matrix = jax.vmap(rotate, (None, 0), 1)(rotation, jnp.eye(3))
         np.testing.assert_allclose(position, data.site(site).xpos, atol=2e-6)
         np.testing.assert_allclose(matrix, data.site(site).xmat.reshape(3, 3), atol=2e-6)
-        np.testing.assert_allclose(jacobian, expected.reshape(6, -1)[:, :7], atol=2e-6)
+        np.testing.assert_allclose(jacobian, jac.reshape(6, -1)[:, :7], atol=2e-6)
 
 
 def test_chain_of_slides_and_shifted_hinges(tmp_path):
@@ -120,8 +128,8 @@ def test_chain_of_slides_and_shifted_hinges(tmp_path):
     mujoco.mj_jacSite(model, data, *expected, 0)
     np.testing.assert_allclose(position, data.site("end").xpos, atol=1e-6)
     np.testing.assert_allclose(jacobian, expected.reshape(6, -1), atol=1e-6)
-    place, quat = Chain(str(file), "end").at((0.4, 0.7, -0.2))
-    np.testing.assert_allclose(place, position, atol=1e-6)
+    constant, quat = Chain(str(file), "end").constant_pose((0.4, 0.7, -0.2))
+    np.testing.assert_allclose(constant, position, atol=1e-6)
     np.testing.assert_allclose(np.abs(quat @ rotation), 1.0, atol=1e-6)
 
 
@@ -162,35 +170,35 @@ def test_damped_least_squares(asset, site, joints):
     values = np.linalg.svd(jacobian, compute_uv=False)
     np.testing.assert_allclose(values, SINGULAR[asset, site, joints], atol=6e-3)
     twist = np.array([0.1, -0.05, 0.02, 0.0, 0.1, 0.0])
-    wish = np.array([0.3, -0.2, 0.5, 0.1, -0.4, 0.2, 0.3])
+    desired = np.array([0.3, -0.2, 0.5, 0.1, -0.4, 0.2, 0.3])
     inverted = np.linalg.pinv(jacobian)
-    exact = damped(jacobian, twist, 1e-4, jnp.zeros(7))
+    exact = damped_inverse(jacobian, twist, 1e-4, jnp.zeros(7))
     np.testing.assert_allclose(exact, inverted @ twist, atol=2e-4)
-    near = damped(jacobian, twist, 1e-4, wish)
-    free = wish - inverted @ (jacobian @ wish)  # what of the wish moves no site
+    near = damped_inverse(jacobian, twist, 1e-4, desired)
+    free = desired - inverted @ (jacobian @ desired)  # its part in the null space
     np.testing.assert_allclose(near, inverted @ twist + free, atol=1e-3)
     assert np.linalg.norm(free) > 0.1
     straight = np.array([0.1, -0.05, 0.02, 0.0, 0.0, 0.0])
-    given = jacobian @ damped(jacobian, straight, 0.02, jnp.zeros(7))
-    assert np.linalg.norm(given - straight) < 0.01 * np.linalg.norm(straight)
+    moved = jacobian @ damped_inverse(jacobian, straight, 0.02, jnp.zeros(7))
+    assert np.linalg.norm(moved - straight) < 0.01 * np.linalg.norm(straight)
 
 
 def test_rotations():
     rng = np.random.default_rng(0)
     r, s = (jnp.asarray(q / np.linalg.norm(q), jnp.float32) for q in rng.normal(size=(2, 4)))
     v = jnp.asarray(rng.normal(size=3), jnp.float32)
-    product, turned = np.empty(4), np.empty(3)
+    product, rotated = np.empty(4), np.empty(3)
     mujoco.mju_mulQuat(product, np.asarray(r, float), np.asarray(s, float))
-    mujoco.mju_rotVecQuat(turned, np.asarray(v, float), np.asarray(r, float))
-    np.testing.assert_allclose(times(r, s), product, atol=1e-6)
-    np.testing.assert_allclose(turn(r, v), turned, atol=1e-6)
-    np.testing.assert_allclose(turn(inverse(r), turn(r, v)), v, atol=1e-6)
+    mujoco.mju_rotVecQuat(rotated, np.asarray(v, float), np.asarray(r, float))
+    np.testing.assert_allclose(quat_multiply(r, s), product, atol=1e-6)
+    np.testing.assert_allclose(rotate(r, v), rotated, atol=1e-6)
+    np.testing.assert_allclose(rotate(inverse(r), rotate(r, v)), v, atol=1e-6)
     small = jnp.array([1.0, 0.005, -0.01, 0.002])  # 0.01, -0.02, 0.004 rad
-    wanted = times(small / jnp.linalg.norm(small), r)
-    np.testing.assert_allclose(hold(r, -wanted, 5.0), [0.05, -0.1, 0.02], atol=1e-4)
+    target = quat_multiply(small / jnp.linalg.norm(small), r)
+    np.testing.assert_allclose(rotate_towards(r, -target, 5.0), [0.05, -0.1, 0.02], atol=1e-4)
 
 
-def test_within_stops_only_what_leaves():
+def test_stay_within_stops_only_outward_motion():
     low, high = jnp.zeros(4), jnp.ones(4)
-    velocity, place = jnp.array([1.0, -1.0, 1.0, -1.0]), jnp.array([1.5, 1.5, -0.5, -0.5])
-    np.testing.assert_array_equal(within(velocity, place, low, high), [0.0, -1.0, 1.0, 0.0])
+    velocity, position = jnp.array([1.0, -1.0, 1.0, -1.0]), jnp.array([1.5, 1.5, -0.5, -0.5])
+    np.testing.assert_array_equal(stay_within(velocity, position, low, high), [0.0, -1.0, 1.0, 0.0])

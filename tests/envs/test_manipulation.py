@@ -1,79 +1,85 @@
-"""What a hand does with a block: commands, rewards, starts, and experts that succeed."""
+"""Manipulation: commands, rewards, initial states, and experts that succeed."""
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from worlds import IMPLEMENTATIONS, make
+from experts import EXPERTS, play
+from worlds import IMPLEMENTATIONS, jitted, make
 
 from hybrid_rl.envs.experts.stack import StackController
-from hybrid_rl.envs.mujoco.kinematics import hold
+from hybrid_rl.envs.mujoco.kinematics import rotate_towards
 from hybrid_rl.envs.panda_stack import TOOL, PandaStack
 from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
-from scripts import EXPERTS, play
 
 
-def test_the_rod_goes_where_it_is_told():
-    """2 s along y at 0.1 m/s: straight, level and upright."""
+def over_implementations(task):
+    """Ids as of the other tests of the task, which share its compiled program."""
+    ids = [f"{task}-{implementation}" for implementation in IMPLEMENTATIONS]
+    return pytest.mark.parametrize("implementation", IMPLEMENTATIONS, ids=ids)
+
+
+def test_the_rod_follows_its_velocity_command():
+    """2 s along y at 0.1 m/s, at constant height and orientation."""
     env = SawyerPush("native", smoothing=0.0)
-    state = env.reset(jax.random.key(0))
+    state = jitted(env, "reset")(jax.random.key(0))
     aside = state.data.qpos.at[7:9].set(jnp.array([0.7, 0.4]))
     state = state.replace(data=state.data.replace(qpos=aside))
-    begin, upright = TIP.at(HOME)
-    step = jax.jit(env.step)
+    begin, upright = TIP.constant_pose(HOME)
+    step = jitted(env, "step")
     for _ in range(20):
         state = step(state, jnp.array([0.0, 0.1 / 0.15]))
     tip, rotation, _ = TIP.pose(state.data.qpos)
     np.testing.assert_allclose(tip - begin, [0.0, 0.2, 0.0], atol=0.01)
     assert abs(tip[2] - begin[2]) < 1e-3
-    assert jnp.abs(hold(rotation, jnp.asarray(upright), 1.0)).max() < np.radians(0.5)
+    assert jnp.abs(rotate_towards(rotation, jnp.asarray(upright), 1.0)).max() < np.radians(0.5)
     for _ in range(40):
         state = step(state, jnp.array([1.0, 1.0]))
     tip = TIP.pose(state.data.qpos)[0]
     np.testing.assert_allclose(tip[:2], env.high, atol=0.02)
 
 
-def test_the_filter_keeps_what_it_says():
+def test_the_velocity_filter():
     sawyer, panda = SawyerPush("native"), PandaStack("native", grip="action")
-    state = jax.jit(sawyer.reset)(jax.random.key(0))
-    state = jax.jit(sawyer.step)(state, jnp.array([1.0, -1.0]))
+    state = jitted(sawyer, "reset")(jax.random.key(0))
+    state = jitted(sawyer, "step")(state, jnp.array([1.0, -1.0]))
     np.testing.assert_allclose(state.info["velocity"], [0.03, -0.03], rtol=1e-5)
-    state = jax.jit(sawyer.step)(state, jnp.zeros(2))
+    state = jitted(sawyer, "step")(state, jnp.zeros(2))
     np.testing.assert_allclose(state.info["velocity"], [0.024, -0.024], rtol=1e-5)
-    state = jax.jit(panda.reset)(jax.random.key(0))
-    state = jax.jit(panda.step)(state, jnp.array([1.0, 0.0, 0.0, 1.0]))
+    state = jitted(panda, "reset")(jax.random.key(0))
+    state = jitted(panda, "step")(state, jnp.array([1.0, 0.0, 0.0, 1.0]))
     np.testing.assert_allclose(state.info["velocity"][0], 0.15 * (1 - np.exp(-0.5)), rtol=1e-5)
     assert state.info["closed"] == 1.0
 
 
 def _sawyer(tip_to_block, block_to_target, action, **fields):
-    """One decision that moves nothing, from a block and target so placed."""
+    """The state after one decision with the block and the target at these offsets."""
     env = SawyerPush("native", **fields)
-    state = env.reset(jax.random.key(0))
+    state = jitted(env, "reset")(jax.random.key(0))
     block = TIP.pose(state.data.qpos)[0][:2] + jnp.asarray(tip_to_block)
     qpos = state.data.qpos.at[7:9].set(block)
     info = {**state.info, "target": block + jnp.asarray(block_to_target)}
-    return env.step(state.replace(data=state.data.replace(qpos=qpos), info=info), action)
+    return jitted(env, "step")(state.replace(data=state.data.replace(qpos=qpos), info=info), action)
 
 
-def test_push_reward_by_hand():
+def test_push_reward():
     state = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.zeros(2))
     np.testing.assert_allclose(state.reward, -5 * 0.1 - 10 * 0.5, atol=2e-3)
     np.testing.assert_allclose(state.obs, [3.0, 4.0, 0.0, -1.0], atol=2e-3)
-    rollout_with_actions = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]), speed=0.0)
-    np.testing.assert_allclose(rollout_with_actions.reward - state.reward, -0.01, atol=1e-4)
+    moving = _sawyer((0.3, 0.4), (0.0, 0.1), jnp.array([0.0, 1.0]), speed=0.0)
+    np.testing.assert_allclose(moving.reward - state.reward, -0.01, atol=1e-4)
     assert not state.terminated
     assert _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2)).terminated
-    going_on = _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2), terminate=False)
-    assert going_on.metrics["success"] == 1.0
-    assert not going_on.terminated
+    continued = _sawyer((0.3, 0.4), (0.0, 0.049), jnp.zeros(2), terminate=False)
+    assert continued.metrics["success"] == 1.0
+    assert not continued.terminated
 
 
-def test_push_starts_are_apart():
+def test_push_starts_keep_their_distances():
     env = SawyerPush("native")
     states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 500))
     block, target = np.asarray(states.data.qpos[:, 7:9]), np.asarray(states.info["target"])
-    tip = TIP.at(HOME)[0][:2]
+    tip = TIP.constant_pose(HOME)[0][:2]
     assert (np.linalg.norm(block - tip, axis=1) > 0.06).all()
     assert (np.linalg.norm(block - env.block, axis=1) <= 0.08 + 1e-6).all()
     assert (np.linalg.norm(block - target, axis=1) > 0.12).all()
@@ -85,16 +91,16 @@ def test_push_starts_are_apart():
 
 
 def _panda(env, block, closed, fingers):
-    """The state that the task sees with the block so far from the hand [3]."""
-    state = env.reset(jax.random.key(0))
+    """The state with the block at this offset from the hand [3], and the hand's position [3]."""
+    state = jitted(env, "reset")(jax.random.key(0))
     tool = TOOL.pose(state.data.qpos)[0]
     held = jnp.concatenate([jnp.full(2, fingers), tool + jnp.asarray(block)])
     data = state.data.replace(qpos=state.data.qpos.at[7:12].set(held))
     info = {**state.info, "closed": jnp.float32(closed)}
-    return env._state(data, jnp.zeros(4), info), tool
+    return jitted(env, "_state")(data, jnp.zeros(4), info), tool
 
 
-def test_stack_reward_by_hand():
+def test_stack_reward():
     env = PandaStack("native")
     free, tool = _panda(env, (0.3, 0.0, -0.4), 0.0, 0.04)
     np.testing.assert_allclose(free.reward, -0.5, rtol=1e-5)
@@ -106,14 +112,14 @@ def test_stack_reward_by_hand():
     left = np.linalg.norm(np.asarray(tool) + np.array([0.3, 0.0, -0.4]) - goal)
     np.testing.assert_allclose(joined.reward, -0.5 - 1.25 * left, rtol=1e-5)
     for block, closed, fingers in [
-        ((0.0, 0.005, 0.01), 0.0, 0.0255),  # told to open
+        ((0.0, 0.005, 0.01), 0.0, 0.0255),  # commanded to open
         ((0.0, 0.005, 0.01), 1.0, 0.03),  # not closed
-        ((0.0, 0.0, -0.03), 1.0, 0.025),  # beside the block
+        ((0.0, 0.0, -0.03), 1.0, 0.025),  # next to the block
     ]:
         assert _panda(env, block, closed, fingers)[0].metrics["grasped"] == 0.0
 
 
-def test_stack_success_by_hand():
+def test_stack_success():
     env = PandaStack("native")
     _, tool = _panda(env, (0.0, 0.0, 0.0), 0.0, 0.04)
     there = np.array([0.45, 0.12, 0.075]) - np.asarray(tool)
@@ -132,30 +138,30 @@ def test_stack_success_by_hand():
         ((0.0, 0.0, 0.03), 1.0, 0.0),  # lost
     ],
 )
-def test_the_hand_closes_by_itself(tool_to_block, closed, then):
+def test_the_hand_closes_automatically(tool_to_block, closed, then):
     env = PandaStack("native")
     state, _ = _panda(env, tool_to_block, closed, 0.04)
     assert env._closes(state, jnp.zeros(3)) == then
 
 
-def test_the_hand_opens_by_itself():
+def test_the_hand_opens_automatically():
     env = PandaStack("native")
     _, tool = _panda(env, (0.0, 0.0, 0.0), 1.0, 0.025)
-    there = np.array([0.45, 0.12, 0.075]) - np.asarray(tool)  # from hand to place
+    there = np.array([0.45, 0.12, 0.075]) - np.asarray(tool)  # from hand to target
     state, _ = _panda(env, there, 1.0, 0.025)
     at = state.data.qpos[9:12]
-    for off, kept in [((0.0, 0.0, 0.009), False), ((0.011, 0.0, 0.0), True)]:
-        obs = state.obs.at[:3].set(at + jnp.array(off)).at[3:6].set(at + jnp.array(off))
-        assert env._closes(state.replace(obs=obs), jnp.zeros(3)) == kept
+    for offset, closed in [((0.0, 0.0, 0.009), False), ((0.011, 0.0, 0.0), True)]:
+        obs = state.obs.at[:3].set(at + jnp.array(offset)).at[3:6].set(at + jnp.array(offset))
+        assert env._closes(state.replace(obs=obs), jnp.zeros(3)) == closed
 
 
-def test_the_expert_stacks_as_the_task_stands():
-    _, actions, states = play(PandaStack("native"), StackController(), 100, 4)
+def test_the_expert_stacks_with_default_settings():
+    actions, states = play(PandaStack("native"), StackController(), 100)
     assert actions.shape == (4, 100, 3)
     assert states.metrics["success"].any(1).all()
 
 
-def test_a_base_anywhere_is_seen():
+def test_a_random_base_is_observed():
     env = PandaStack("native", base_spread=0.03)
     states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 50))
     goal = np.asarray(states.data.qpos[:, 16:19]) + np.array([0, 0, 0.05])
@@ -166,26 +172,26 @@ def test_a_base_anywhere_is_seen():
 
 @pytest.mark.parametrize("fields", [{"low": (0.0,)}, {"block": (1.0, 2.0, 3.0)}])
 @pytest.mark.parametrize("task", [SawyerPush, PandaStack])
-def test_wrong_sizes_are_named(task, fields):
+def test_a_wrong_size_raises(task, fields):
     (name,) = fields
     with pytest.raises(ValueError, match=rf"{name}=\[.*must be \w+ numbers"):
         task(**fields)
 
 
-@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
-def test_the_expert_pushes_the_block_home(implementation):
-    path = play(make("sawyer_push", implementation), EXPERTS["sawyer_push"], 100, 4)[2]
+@over_implementations("sawyer_push")
+def test_the_expert_pushes_the_block_to_the_target(implementation):
+    path = play(make("sawyer_push", implementation), EXPERTS["sawyer_push"], 100)[1]
     assert path.metrics["success"].any(1).all()
     height = path.data.qpos[..., 9]
     assert jnp.abs(height - HEIGHT).max() < 2e-3  # the block neither tips nor jumps
     assert jnp.abs(path.data.qvel).max() < 5.0
 
 
-@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+@over_implementations("panda_stack")
 def test_the_expert_stacks_the_block(implementation):
-    path = play(make("panda_stack", implementation), EXPERTS["panda_stack"], 120, 4)[2]
+    path = play(make("panda_stack", implementation), EXPERTS["panda_stack"], 120)[1]
     assert path.metrics["success"].any(1).all()
     np.testing.assert_array_equal(path.metrics["success"][:, -1], 1.0)
     assert (path.metrics["grasped"].sum(1) > 20).all()
     moved = path.data.qpos[..., 16:19] - jnp.array([0.45, 0.12, 0.025])[None, None]
-    assert jnp.abs(moved).max() < 5e-3  # the base stays
+    assert jnp.abs(moved).max() < 5e-3  # the base does not move

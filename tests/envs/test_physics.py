@@ -1,6 +1,7 @@
-"""The stepper itself: many worlds, threads, sensors, errors."""
+"""The physics: batches, threads, sensors, errors."""
 
 import threading
+from functools import cache
 
 import jax
 import jax.numpy as jnp
@@ -44,8 +45,9 @@ def _states(physics, count):
     return jax.vmap(physics.reset)(qpos, qvel), jnp.asarray(ctrl)
 
 
+@cache
 def _many(physics, decisions):
-    """`decisions` in one scan, for any number of worlds."""
+    """`decisions` in one loop, for any number of environments; compiled once."""
 
     def run(state, ctrl):
         return jax.lax.fori_loop(0, decisions, lambda _, s: physics.step(s, ctrl, 5), state)
@@ -54,26 +56,26 @@ def _many(physics, decisions):
 
 
 def _finishes(work, seconds=120.0):
-    """Run `work` on a thread of its own, so that a deadlock fails instead of hanging."""
+    """The result of `work`, run on another thread so that a deadlock fails instead of hanging."""
     out = []
     thread = threading.Thread(target=lambda: out.append(jax.block_until_ready(work())), daemon=True)
     thread.start()
     thread.join(seconds)
-    assert out, f"not finished after {seconds} s, or failed"
+    assert out, f"unfinished after {seconds} s, or failed"
     return out[0]
 
 
 @pytest.mark.parametrize(("count", "decisions"), [(1, 300), (5, 200), (64, 40), (1024, 4)])
-def test_batch_is_its_rows(count, decisions):
+def test_a_batch_equals_single_environments(count, decisions):
     state, ctrl = _states(CHEETAH, count)
     many = _finishes(lambda: _many(CHEETAH, decisions)(state, ctrl))
-    row = jax.tree.map(lambda a: a[-1:], state)
-    one = _finishes(lambda: _many(CHEETAH, decisions)(row, ctrl[-1:]))
+    last = jax.tree.map(lambda a: a[-1:], state)
+    one = _finishes(lambda: _many(CHEETAH, decisions)(last, ctrl[-1:]))
     for a, b in zip(jax.tree.leaves(many), jax.tree.leaves(one), strict=True):
         np.testing.assert_array_equal(a[-1:], b)
 
 
-def test_two_programs_at_once():
+def test_programs_run_at_the_same_time():
     state, ctrl = _states(CHEETAH, 64)
     run = _many(CHEETAH, 20)
     alone = jax.block_until_ready(run(state, ctrl))
@@ -91,7 +93,7 @@ def test_two_programs_at_once():
         np.testing.assert_array_equal(_finishes(lambda r=result: r).qpos, alone.qpos)
 
 
-def test_threads_do_not_matter():
+def test_the_number_of_threads_changes_nothing():
     state, ctrl = _states(CHEETAH, 64)
     one, two = (
         _many(Physics("halfcheetah.xml", "native", threads=n), 5)(state, ctrl) for n in (1, 2)
@@ -99,25 +101,24 @@ def test_threads_do_not_matter():
     np.testing.assert_array_equal(one.qpos, two.qpos)
 
 
-def test_where_jax_is_not_on_a_cpu_a_callback_does_the_same(monkeypatch):
+def test_the_callback_of_other_devices_gives_the_same(monkeypatch):
     state, ctrl = _states(CHEETAH, 3)
-    here = _many(CHEETAH, 4)(state, ctrl)
+    on_cpu = _many(CHEETAH, 4)(state, ctrl)
     monkeypatch.setattr(jax.lax, "platform_dependent", lambda x, cpu, default: default(x))
-    lowered = _many(CHEETAH, 4).lower(state, ctrl)
+    lowered = _many.__wrapped__(CHEETAH, 4).lower(state, ctrl)
     assert "hybrid_rl.native" not in lowered.as_text()
-    np.testing.assert_array_equal(lowered.compile()(state, ctrl).qpos, here.qpos)
+    np.testing.assert_array_equal(lowered.compile()(state, ctrl).qpos, on_cpu.qpos)
 
 
-def test_continuing_is_not_stopping():
-    """A state that was saved and read back goes on with the same bits."""
+def test_a_saved_state_continues_with_the_same_bits():
     state, ctrl = _states(CHEETAH, 2)
     half = _many(CHEETAH, 10)
-    through = _many(CHEETAH, 20)(state, ctrl)
+    whole = _many(CHEETAH, 20)(state, ctrl)
     saved = jax.tree.map(np.asarray, half(state, ctrl))
-    np.testing.assert_array_equal(half(jax.tree.map(jnp.asarray, saved), ctrl).qpos, through.qpos)
+    np.testing.assert_array_equal(half(jax.tree.map(jnp.asarray, saved), ctrl).qpos, whole.qpos)
 
 
-def test_a_diverged_world_is_nan_and_alone():
+def test_only_a_diverged_environment_is_nan():
     state, ctrl = _states(CHEETAH, 3)
     state = state.replace(qpos=jnp.asarray(state.qpos).at[1, 2].set(jnp.inf))
     after = _many(CHEETAH, 1)(state, ctrl)
@@ -125,28 +126,28 @@ def test_a_diverged_world_is_nan_and_alone():
     assert np.isfinite(after.qpos[jnp.array([0, 2])]).all()
 
 
-def test_without_sensors_a_reset_is_pure():
+def test_a_reset_without_sensors_calls_no_mujoco():
     text = str(jax.make_jaxpr(CHEETAH.reset)(jnp.zeros(9), jnp.zeros(9)))
     assert "ffi_call" not in text
     assert "callback" not in text
 
 
-def test_sensors_of_forces_alone_leave_a_reset_pure():
+def test_a_reset_with_force_sensors_only_calls_no_mujoco():
     panda = Physics("panda_stack.xml", "native")
     text = str(jax.make_jaxpr(panda.reset)(panda.model.qpos0, jnp.zeros(21)))
     assert "ffi_call" not in text
     np.testing.assert_array_equal(panda.reset(panda.model.qpos0, np.zeros(21)).sensors, 0.0)
 
 
-def test_compiled_programs_can_be_kept():
-    """JAX's persistent cache refuses programs that call Python by its own callbacks."""
+def test_the_persistent_cache_accepts_compiled_programs():
+    """It refuses programs with JAX's own Python callbacks."""
     state, ctrl = _states(CHEETAH, 2)
     text = _many(CHEETAH, 1).lower(state, ctrl).compile().as_text()
     assert "hybrid_rl.native" in text
     assert "xla_ffi_python" not in text
 
 
-def _sensed(model, qpos, qvel):
+def _sensors(model, qpos, qvel):
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = qpos, qvel
     mujoco.mj_forward(model, data)
@@ -161,7 +162,7 @@ def test_sensors_belong_to_the_state(implementation, tmp_path):
     state = jax.jit(physics.reset)(jnp.array([0.5, 1.0]), jnp.array([2.0, -3.0]))
     after = jax.jit(lambda s: physics.step(s, jnp.ones(1), 5))(state)
     for now in (state, after):
-        expected = _sensed(mjcf.load(str(file)), now.qpos, now.qvel)
+        expected = _sensors(mjcf.load(str(file)), now.qpos, now.qvel)
         np.testing.assert_allclose(now.sensors, expected, atol=1e-5)
         np.testing.assert_array_equal(physics.sensor(now, "tip"), now.sensors[1:4])
     assert (np.abs(after.sensors - state.sensors) > 1e-3).sum() >= 5
@@ -179,25 +180,25 @@ def test_auto_is_native_on_a_cpu():
     assert resolve("mjx") == "mjx"
 
 
-def test_auto_takes_what_is_fastest_for_so_many_worlds(monkeypatch):
-    """Beside a GPU: MuJoCo C for a few worlds, Warp or else MJX for many or an unknown number."""
+def test_auto_depends_on_the_number_of_environments(monkeypatch):
+    """With a GPU: MuJoCo C for few; for many or an unknown number Warp, or MJX without it."""
     installed = [True]
     monkeypatch.setattr("hybrid_rl.envs.mujoco.physics.find_spec", lambda _: installed[0] or None)
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
     monkeypatch.setattr("hybrid_rl.envs.mujoco.native.cores", lambda: 16)
-    found = [resolve("auto", worlds) for worlds in (1, 640, 641, None)]
-    assert found == ["native", "native", "warp", "warp"]
+    names = [resolve("auto", count) for count in (1, 640, 641, None)]
+    assert names == ["native", "native", "warp", "warp"]
     installed[0] = False
     assert resolve("auto", 641) == "mjx"
     assert resolve("mjx", 1) == "mjx"
 
 
-def test_unknown_asset_is_named():
+def test_an_unknown_asset_raises():
     with pytest.raises(ValueError, match=r"no model .*unicorn\.xml.*halfcheetah\.xml"):
         Physics("unicorn.xml").reset(jnp.zeros(1), jnp.zeros(1))
 
 
-def test_a_model_of_your_own(tmp_path):
+def test_a_model_outside_the_repository(tmp_path):
     file = tmp_path / "own.xml"
     ball = "<worldbody><body><freejoint/><geom size='1'/></body></worldbody>"
     file.write_text(f"<mujoco>{ball}</mujoco>")
@@ -209,19 +210,19 @@ def test_a_model_of_your_own(tmp_path):
     np.testing.assert_allclose(state.qvel[2], -9.81 * 0.02, rtol=1e-5)
 
 
-def test_an_error_inside_a_foreign_call_comes_out():
+def test_an_error_in_a_foreign_call_is_raised():
     def fail(x, y):
-        raise ArithmeticError("no luck today")
+        raise ArithmeticError("out of range")
 
     xla_callback.register("hybrid_rl.test.fails", fail)
     out = jax.ShapeDtypeStruct((3,), np.float32)
     call = jax.ffi.ffi_call("hybrid_rl.test.fails", out)
-    with pytest.raises(Exception, match="no luck today"):
+    with pytest.raises(Exception, match="out of range"):
         jax.block_until_ready(jax.jit(call)(jnp.zeros(3)))
 
 
 def test_a_state_has_no_empty_arrays():
-    """Shardy of jax 0.11 ends the process over one that is dealt out over devices."""
+    """Shardy of jax 0.11 ends the process when it shards one."""
     for asset in ("halfcheetah.xml", "halfcheetah_contact.xml", "pendulum.xml"):
         body = Physics(asset, "native")
         state = body.reset(jnp.asarray(body.model.qpos0), jnp.zeros(body.model.nv))

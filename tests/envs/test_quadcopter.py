@@ -1,10 +1,11 @@
-"""The quadcopter against the equations of the thesis, integrated apart."""
+"""The quadcopter against the thesis' equations, integrated independently."""
 
 import jax
 import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
+from worlds import jitted
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.quadcopter import Quadcopter
@@ -17,33 +18,33 @@ MASS, INERTIA, ARM, THRUST, MOMENT, GRAVITY = (
     0.15,
     9.81,
 )
-SLOWS = np.array([0.4, 0.4, 2.0]), np.array([2.0, 2.0, 0.4])  # [1/s] v, w
+DRAG = np.array([0.4, 0.4, 2.0]), np.array([2.0, 2.0, 0.4])  # [1/s] of v, w
 
 
 def _rates(x, u, damping):
-    """Thesis, Appendix D: rates of R [9], p, w, v (both in the body's frame)."""
-    turned, w, v = x[:9].reshape(3, 3), x[12:15], x[15:]
+    """Thesis, Appendix D: time derivatives of R [9], p, w, v (w, v in the body frame)."""
+    R, w, v = x[:9].reshape(3, 3), x[12:15], x[15:]
     moment = THRUST * ARM * np.array([u[1] - u[3], u[2] - u[0], 0])
     moment[2] = MOMENT * (u[0] - u[1] + u[2] - u[3])
     thrust = np.array([0, 0, THRUST * u.sum() / MASS])
-    down = GRAVITY * turned.T @ [0, 0, 1]
-    w_t = (moment + np.cross(INERTIA * w, w)) / INERTIA - damping * SLOWS[1] * w
-    v_t = thrust - np.cross(w, v) - down - damping * SLOWS[0] * v
+    down = GRAVITY * R.T @ [0, 0, 1]
+    w_t = (moment + np.cross(INERTIA * w, w)) / INERTIA - damping * DRAG[1] * w
+    v_t = thrust - np.cross(w, v) - down - damping * DRAG[0] * v
     cross = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
-    return np.concatenate([(turned @ cross).ravel(), turned @ v, w_t, v_t])
+    return np.concatenate([(R @ cross).ravel(), R @ v, w_t, v_t])
 
 
 def _integrated(w, v, controls, damping, substeps=20):
-    """[T, 9] of gravity, w and v in the body's frame, by small steps of Runge and Kutta."""
-    x, seen, dt = np.concatenate([np.eye(3).ravel(), np.zeros(3), w, v]), [], 0.005 / substeps
+    """Gravity, w and v in the body frame [T, 9], by small Runge-Kutta steps."""
+    x, observed, dt = np.concatenate([np.eye(3).ravel(), np.zeros(3), w, v]), [], 0.005 / substeps
     for u in controls:
         for _ in range(substeps):
             a = _rates(x, u, damping)
             b = _rates(x + dt / 2 * a, u, damping)
             c = _rates(x + dt / 2 * b, u, damping)
             x = x + dt / 6 * (a + 2 * b + 2 * c + _rates(x + dt * c, u, damping))
-        seen.append(np.concatenate([-GRAVITY * x[:9].reshape(3, 3)[2], x[12:]]))
-    return np.array(seen)
+        observed.append(np.concatenate([-GRAVITY * x[:9].reshape(3, 3)[2], x[12:]]))
+    return np.array(observed)
 
 
 def _fly(env, state, actions):
@@ -57,9 +58,9 @@ def _fly(env, state, actions):
 
 
 @pytest.mark.parametrize("damping", [False, True])
-def test_it_flies_as_the_thesis_says(damping):
+def test_it_follows_the_equations_of_the_thesis(damping):
     env = Quadcopter("native", damping=damping)
-    state = env.reset(jax.random.key(3))
+    state = jitted(env, "reset")(jax.random.key(3))
     actions = np.random.default_rng(0).uniform(-1, 1, (200, 4)).astype(np.float32)
     w, v = np.asarray(state.obs[3:6], float), np.asarray(state.obs[6:], float)
     expected = _integrated(w, v, 6.0 * actions.astype(float), damping)
@@ -73,14 +74,14 @@ def test_mass_and_inertia():
     body = model.body("quadcopter")
     assert body.mass[0] == MASS
     np.testing.assert_allclose(np.sort(body.inertia), np.sort(INERTIA))
-    reach = [np.linalg.norm(model.site(name).pos) for name in ("front", "left", "back", "right")]
-    np.testing.assert_allclose(reach, ARM)
+    arms = [np.linalg.norm(model.site(name).pos) for name in ("front", "left", "back", "right")]
+    np.testing.assert_allclose(arms, ARM)
 
 
 def test_hover_thrust_hovers():
     env = Quadcopter("native", task="track", start_speed=0.0, target_distance=0.0)
     assert env.hovering == pytest.approx(2.4525)
-    state = jax.jit(env.reset)(jax.random.key(0))
+    state = jitted(env, "reset")(jax.random.key(0))
     path = _fly(env, state, np.full((200, 4), env.hovering / 6))
     assert np.abs(path.obs[-1] - np.array([0, 0, -GRAVITY] + [0] * 9)).max() < 1e-4
     np.testing.assert_allclose(path.reward, 0.0, atol=1e-6)
@@ -88,34 +89,34 @@ def test_hover_thrust_hovers():
     assert not path.terminated.any()
 
 
-def test_motors_that_only_push():
+def test_unidirectional_motors():
     env = Quadcopter("native", bidirectional=False)
-    state = env.reset(jax.random.key(0))
+    state = jitted(env, "reset")(jax.random.key(0))
     for a, u in ((-1.0, 0.0), (0.0, 3.0), (1.0, 6.0)):
-        np.testing.assert_allclose(env.step(state, jnp.full(4, a)).data.ctrl[:4], u)
-    both = Quadcopter("native").step(state, jnp.full(4, -1.0))
+        np.testing.assert_allclose(jitted(env, "step")(state, jnp.full(4, a)).data.ctrl[:4], u)
+    both = jitted(Quadcopter("native"), "step")(state, jnp.full(4, -1.0))
     np.testing.assert_allclose(both.data.ctrl[:4], -6.0)
 
 
-def test_reward_by_hand():
+def test_reward():
     env = Quadcopter("native", task="track")
-    state = env.reset(jax.random.key(0))
-    after = env.step(state, jnp.array([0.5, -0.5, 1.0, 0.0]))
+    state = jitted(env, "reset")(jax.random.key(0))
+    after = jitted(env, "step")(state, jnp.array([0.5, -0.5, 1.0, 0.0]))
     g, w, v, away = np.asarray(after.obs, float).reshape(4, 3)
     u = np.array([3.0, -3.0, 6.0, 0.0]) - 2.4525
     cost = ((g - [0, 0, -GRAVITY]) ** 2).sum() + (w**2).sum() + 5 * (v**2).sum()
     cost += 5 * (away**2).sum() + (u**2).sum()
     np.testing.assert_allclose(after.reward, -0.005 * cost, rtol=1e-4)
-    hover = Quadcopter("native").step(state, jnp.array([0.5, -0.5, 1.0, 0.0]))
+    hover = jitted(Quadcopter("native"), "step")(state, jnp.array([0.5, -0.5, 1.0, 0.0]))
     np.testing.assert_array_equal(hover.obs, after.obs[:9])
     np.testing.assert_allclose(
         hover.reward, after.reward + 0.005 * 5 * (away**2).sum(), rtol=1e-4, atol=1e-5
     )
 
 
-def test_a_target_moves_on():
+def test_the_target_moves():
     env = Quadcopter("native", task="track", target_speed=1.0)
-    state = env.reset(jax.random.key(0))
+    state = jitted(env, "reset")(jax.random.key(0))
     assert (np.abs(state.info["target"]) <= 2.0).all()
     assert (np.abs(state.info["target_velocity"]) > 0).all()
     path = _fly(env, state, np.zeros((40, 4)))
@@ -123,10 +124,10 @@ def test_a_target_moves_on():
     np.testing.assert_allclose(path.info["target"][-1], expected, atol=1e-5)
     np.testing.assert_allclose(env.pose(state)[7:], state.info["target"])
     relative = state.data.qvel[:3] - state.info["target_velocity"]
-    np.testing.assert_allclose(state.obs[6:9], relative, atol=1e-6)  # it starts level
+    np.testing.assert_allclose(state.obs[6:9], relative, atol=1e-6)  # level at the start
 
 
-def test_a_heavier_one_of_your_own(tmp_path):
+def test_another_asset(tmp_path):
     file = tmp_path / "heavy.xml"
     file.write_text(mjcf.text("quadcopter.xml").replace('mass="0.6"', 'mass="1.2"'))
     env = Quadcopter("native", asset=str(file))
@@ -137,6 +138,6 @@ def test_a_heavier_one_of_your_own(tmp_path):
     )
 
 
-def test_unknown_task_is_named():
+def test_an_unknown_task_raises():
     with pytest.raises(ValueError, match="task='loop': choose one of hover, track"):
         Quadcopter(task="loop")

@@ -1,4 +1,4 @@
-"""Worlds against where they come from: Gymnasium's models and environments, formulas."""
+"""Environments against their sources: Gymnasium's models and environments, closed forms."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
-from worlds import TASKS
+from worlds import TASKS, jitted, make
 
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import LEGS, HalfCheetah, _kneels
@@ -23,7 +23,7 @@ NAMES = {
     "pendulum": "Pendulum-v1",
     "ant": "Ant-v5",
 }
-POINTS = 12  # geoms of our ant beyond theirs, where a capsule ends and may touch the floor
+POINTS = 12  # additional geoms of our ant: the spheres at the ends of capsules
 FIELDS = (
     "body_mass",
     "body_inertia",
@@ -88,8 +88,8 @@ OPTIONS = (
 
 
 @pytest.fixture(autouse=True)
-def elsewhere(tmp_path, monkeypatch):
-    """MuJoCo logs to the working directory that an old model's settotalmass is deprecated."""
+def temporary_folder(tmp_path, monkeypatch):
+    """MuJoCo writes a log of deprecated attributes to the working directory."""
     monkeypatch.chdir(tmp_path)
 
 
@@ -104,11 +104,11 @@ def models(request):
 def test_model_field(models, field):
     ours, theirs = (getattr(m, field) for m in models)
     if field.startswith("geom_") and len(ours) == len(theirs) + POINTS:
-        drawn = models[0].geom_group == 0
-        if field in TOUCHING:  # the pairs of test_ant.py
+        common = models[0].geom_group == 0
+        if field in TOUCHING:  # tested in test_ant.py
             assert not models[0].geom_contype.any() | models[0].geom_conaffinity.any()
             return
-        ours = ours[drawn]
+        ours = ours[common]
     np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-12)
 
 
@@ -118,8 +118,8 @@ def test_model_option(models, field):
     np.testing.assert_array_equal(ours, theirs)
 
 
-def test_capsules_are_as_large(models):
-    ours, theirs = (m.geom_size[m.geom_group == 0][1:] for m in models)  # 0 is the floor
+def test_capsule_sizes(models):
+    ours, theirs = (m.geom_size[m.geom_group == 0][1:] for m in models)  # without the floor
     np.testing.assert_allclose(ours, theirs, rtol=1e-12)
 
 
@@ -129,7 +129,7 @@ def test_only_autoreset_differs(models):
 
 
 def _set(task, env, state, qpos, qvel):
-    """`state` at qpos, qvel, with what follows from them."""
+    """`state` at qpos, qvel."""
     if task == "pendulum":
         return state.replace(data=jnp.array([qpos[0], qvel[0]], jnp.float32))
     data = env._body.reset(jnp.asarray(qpos), jnp.asarray(qvel))
@@ -148,9 +148,9 @@ def test_trajectory_and_reward(task):
     else:
         qpos, qvel = theirs.data.qpos, theirs.data.qvel
         scale = 1.0
-    ours = TASKS[task](physics="native")
+    ours = make(task, "native")
     state = _set(task, ours, ours.reset(jax.random.key(0)), qpos, qvel)
-    step = jax.jit(ours.step)
+    step = jitted(ours, "step")
     for _ in range(20):
         action = rng.uniform(-1, 1, ours.spec.act).astype(np.float32)
         obs, reward, terminated, _, _ = theirs.step(scale * action)
@@ -161,24 +161,24 @@ def test_trajectory_and_reward(task):
     theirs.close()
 
 
-def test_hopper_falls_when_theirs_does():
+def test_hopper_terminates_with_that_of_gymnasium():
     theirs = gymnasium.make("Hopper-v5").unwrapped
     theirs.reset(seed=1)
-    ours = TASKS["hopper"](physics="native")
+    ours = make("hopper", "native")
     state = _set("hopper", ours, ours.reset(jax.random.key(0)), theirs.data.qpos, theirs.data.qvel)
-    step = jax.jit(ours.step)
+    step = jitted(ours, "step")
     action = np.array([0.5, -0.5, 0.3], np.float32)
-    lasted = 0
+    decisions = 0
     while not state.terminated:
         terminated = theirs.step(action)[2]
         state = step(state, action)
         assert bool(state.terminated) == terminated
-        lasted += 1
-    assert 5 < lasted < 200
+        decisions += 1
+    assert 5 < decisions < 200
 
 
 @pytest.mark.parametrize("task", ["halfcheetah", "hopper", "ant"])
-def test_starts_are_spread_as_theirs(task):
+def test_initial_states_are_distributed_as_in_gymnasium(task):
     theirs = gymnasium.make(NAMES[task]).unwrapped
     size = TASKS[task](physics="native").spec.obs
     a = np.array([theirs.reset(seed=i)[0][:size] for i in range(300)])
@@ -189,7 +189,7 @@ def test_starts_are_spread_as_theirs(task):
     theirs.close()
 
 
-def test_walker_reward_by_hand():
+def test_walker_reward():
     limits = jnp.array([[-1.0, 1.0], [0.0, 2.0]])
     reward = pybullet_reward(
         jnp.array(True),
@@ -203,27 +203,27 @@ def test_walker_reward_by_hand():
     np.testing.assert_allclose(reward, 1 + 2 - 2 * 0.2 - 0.0625 - 0.1, rtol=1e-6)
 
 
-def test_cheetah_kneels_when_mujoco_says_contact():
+def test_cheetah_kneels_where_mujoco_has_a_contact():
     body = Physics("halfcheetah_contact.xml", "native")
     model, rng = body.model, np.random.default_rng(0)
     data = mujoco.MjData(model)
     qpos = rng.uniform(-0.5, 0.5, (300, 9)).astype(np.float32)
     qpos[:, 1] -= 0.1
-    seen = jax.vmap(lambda q: _kneels(body, body.reset(q, jnp.zeros(9))))(qpos)
+    kneels = jax.vmap(lambda q: _kneels(body, body.reset(q, jnp.zeros(9))))(qpos)
     legs, truth = {model.geom(name).id for name in LEGS}, []
     for q in qpos:
         data.qpos[:] = q
         mujoco.mj_forward(model, data)
         truth.append(bool(legs & set(data.contact.geom2.tolist())))
     assert 30 < sum(truth) < 270
-    np.testing.assert_array_equal(seen, truth)
+    np.testing.assert_array_equal(kneels, truth)
 
 
-def test_cheetah_pybullet_never_ends_hopper_does():
+def test_pybullet_rewards_terminate_the_hopper_only():
     cheetah = HalfCheetah("native", "pybullet")
     state = cheetah.reset(jax.random.key(0))
     over = state.data.replace(qpos=jnp.array([0, 0, 3, 0, 0, 0, 0, 0, 0], jnp.float32))
-    step = jax.jit(cheetah.step)
+    step = jitted(cheetah, "step")
     stand, fall = step(state, jnp.zeros(6)), step(state.replace(data=over), jnp.zeros(6))
     assert stand.reward - stand.metrics["speed"] > 0.5
     assert fall.reward - fall.metrics["speed"] < -0.9
@@ -231,11 +231,11 @@ def test_cheetah_pybullet_never_ends_hopper_does():
     hopper = TASKS["hopper"]("native", "pybullet")
     state = hopper.reset(jax.random.key(0))
     leaning = state.data.qpos.at[2].set(0.9)
-    assert not jax.jit(hopper.step)(state, jnp.zeros(3)).terminated
+    assert not jitted(hopper, "step")(state, jnp.zeros(3)).terminated
     tipped = state.replace(data=state.data.replace(qpos=leaning.at[2].set(1.1)))
     leaning = state.replace(data=state.data.replace(qpos=leaning))
-    assert not jax.jit(hopper.step)(leaning, jnp.zeros(3)).terminated
-    after = jax.jit(hopper.step)(tipped, jnp.zeros(3))
+    assert not jitted(hopper, "step")(leaning, jnp.zeros(3)).terminated
+    after = jitted(hopper, "step")(tipped, jnp.zeros(3))
     assert after.terminated
     assert after.reward - after.metrics["speed"] < -0.9
 
@@ -252,12 +252,12 @@ def test_cartpole_rewards():
     for qpos, qvel, a in zip(*rng.uniform(-1, 1, (2, 5, 2)), range(5), strict=True):
         now = state.replace(data=cos._body.reset(jnp.array(qpos), jnp.array(qvel)))
         action = jnp.array([a / 4], jnp.float32)
-        after = cos.step(now, action)
+        after = jitted(cos, "step")(now, action)
         x, _, c, _, w = np.asarray(after.obs)
         np.testing.assert_allclose(after.reward, c, rtol=1e-6)
         expected = (1 + c) / 2 * (1 + _tolerance(x, 2)) / 2 * (4 + 1 - (a / 4) ** 2) / 5
         expected *= (1 + _tolerance(w, 5)) / 2
-        np.testing.assert_allclose(dm.step(now, action).reward, expected, rtol=1e-5)
-        assert dm.step(now, action).reward <= 1.0
+        np.testing.assert_allclose(jitted(dm, "step")(now, action).reward, expected, rtol=1e-5)
+        assert jitted(dm, "step")(now, action).reward <= 1.0
     top = state.replace(data=dm._body.reset(jnp.zeros(2), jnp.zeros(2)))
-    np.testing.assert_allclose(dm.step(top, jnp.zeros(1)).reward, 1.0, atol=1e-6)
+    np.testing.assert_allclose(jitted(dm, "step")(top, jnp.zeros(1)).reward, 1.0, atol=1e-6)

@@ -1,4 +1,4 @@
-"""MuJoCo Warp, on the CPU: slow, and the same kernels as on a GPU."""
+"""MuJoCo Warp on the CPU: slow, with the same kernels as on a GPU."""
 
 import jax
 import jax.numpy as jnp
@@ -11,7 +11,7 @@ from hybrid_rl.envs.mujoco import mjx_warp
 
 @pytest.fixture(scope="module")
 def env():
-    """A hopper, for which a CPU counts as a GPU."""
+    """A hopper that takes the CPU for a GPU."""
     config = pytest.importorskip("warp").config
     config.quiet, config.optimization_level = True, 0  # a third less to compile
     with pytest.MonkeyPatch.context() as patch:
@@ -25,23 +25,23 @@ def test_agrees_with_mujoco(env, lane):
     assert np.abs(obs - reference("hopper", "warp", lane)).max() < 1e-4  # measured: 4e-6
 
 
-def test_nan_stays_in_its_world(env):
+def test_nan_stays_in_its_lane(env):
     obs = np.asarray(rollout(env).obs)
     assert np.isnan(obs[BROKEN][5:]).all()
     np.testing.assert_array_equal(obs[TOUCHING], obs[OTHER])
 
 
 @pytest.fixture
-def cramped(monkeypatch):
-    """Room for two constraint rows."""
+def small_lists(monkeypatch):
+    """Lists of two constraint rows."""
     monkeypatch.setattr(mjx_warp, "capacities", lambda asset: (11, 2))
     mjx_warp.template.cache_clear()
     yield
     mjx_warp.template.cache_clear()
 
 
-def test_too_little_room_is_nan(env, cramped):
-    """MuJoCo Warp alone would leave contacts out, and go on."""
+def test_an_overflow_gives_nan(env, small_lists):
+    """MuJoCo Warp itself would drop contacts and continue."""
     state = env.reset(jax.random.key(0))
     fields = {
         "qpos": state.data.qpos.at[1].add(-0.05),  # into the floor
@@ -55,9 +55,9 @@ def test_too_little_room_is_nan(env, cramped):
 @pytest.mark.parametrize(
     ("asset", "contacts", "rows"),
     [
-        ("cartpole.xml", 0, 1),  # the rail's ends
+        ("cartpole.xml", 0, 1),  # the ends of the rail
         ("hopper.xml", 11, 38),
-        ("halfcheetah.xml", 16, 70),  # 8 capsules on a floor, 6 joints' ends
+        ("halfcheetah.xml", 16, 70),  # 8 capsules on a floor, 6 joint limits
     ],
 )
 def test_capacities(asset, contacts, rows):

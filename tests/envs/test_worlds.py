@@ -1,22 +1,27 @@
-"""Every world, in every implementation: what all may rely on."""
+"""Properties of every environment in every implementation."""
 
 import jax
 import mujoco
 import numpy as np
 import pytest
 from worlds import (
+    ANALYTIC,
     BROKEN,
     DECISIONS,
-    FORMULAS,
     IMPLEMENTATIONS,
     OTHER,
+    SIMULATED,
     TASKS,
     TOUCHING,
+    jitted,
     make,
     rollout,
 )
 
-CASES = [(t, i) for t in TASKS for i in IMPLEMENTATIONS if t not in FORMULAS or i == "native"]
+CASES = [
+    *((t, i) for t in SIMULATED for i in IMPLEMENTATIONS),
+    *((t, "analytic") for t in ANALYTIC),
+]
 
 
 @pytest.fixture(params=CASES, ids="-".join)
@@ -42,7 +47,7 @@ def test_finite_and_never_truncated(env):
 
 @pytest.mark.parametrize("task", ["ant", "quadcopter", "sawyer_push", "panda_stack"])
 def test_finite_for_long(task):
-    """Random decisions, and no end of an episode heeded."""
+    """Random decisions beyond the end of episodes."""
     env = TASKS[task](physics="native")
 
     def one(state, key):
@@ -67,7 +72,7 @@ def test_same_start_same_path(env):
         np.testing.assert_array_equal(leaf[TOUCHING], leaf[OTHER])
 
 
-def test_nan_surfaces_and_stays_in_its_world(env):
+def test_nan_propagates_within_its_lane_only(env):
     path = rollout(env)
     obs, reward = np.asarray(path.obs), np.asarray(path.reward)
     assert np.isfinite(obs[BROKEN][:5]).all()
@@ -82,7 +87,7 @@ def test_equal_by_value(env):
     assert hash(env) == hash(again)
 
 
-def test_scene_shows_pose(env):
+def test_pose_has_the_size_of_the_scene(env):
     model = mujoco.MjModel.from_xml_string(env.scene())
     pose = jax.eval_shape(lambda key: env.pose(env.reset(key)), jax.random.key(0))
     assert pose.shape == (model.nq,)
@@ -92,12 +97,12 @@ def test_scene_shows_pose(env):
 @pytest.mark.parametrize("task", TASKS)
 def test_resets_differ_by_key_and_repeat(task):
     env = make(task, "native")
-    first, again, other = (env.reset(jax.random.key(k)).obs for k in (1, 1, 2))
+    first, again, other = (jitted(env, "reset")(jax.random.key(k)).obs for k in (1, 1, 2))
     np.testing.assert_array_equal(first, again)
     assert (np.asarray(first) != np.asarray(other)).any()
 
 
-@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("task", SIMULATED)
 def test_unknown_physics_is_named(task):
     with pytest.raises(ValueError, match=r"physics='bullet'.*native, mjx, warp"):
         make(task, "bullet")
@@ -110,6 +115,6 @@ def test_unknown_reward_is_named(task):
 
 
 @pytest.mark.parametrize("task", ["halfcheetah", "hopper", "cartpole"])
-def test_warp_without_gpu_says_so(task):
+def test_warp_without_a_gpu_raises(task):
     with pytest.raises(ValueError, match=r"physics='warp' needs"):
         make(task, "warp")

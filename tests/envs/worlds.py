@@ -1,4 +1,4 @@
-"""The worlds under test, and one compiled program of each, shared by all tests."""
+"""The environments under test, and one compiled program of each, shared by all tests."""
 
 from functools import cache
 from typing import NamedTuple
@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
+from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
@@ -22,7 +23,8 @@ from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 
 DECISIONS = 20
-FORMULAS = {
+ANALYTIC = {
+    "no_dynamics": NoDynamics,
     "pendulum": Pendulum,
     "point_mass": PointMass,
     "cart_double_pendulum": CartDoublePendulum,
@@ -36,26 +38,26 @@ TASKS = {
     "quadcopter": Quadcopter,
     "sawyer_push": SawyerPush,
     "panda_stack": PandaStack,
-    **FORMULAS,
+    **ANALYTIC,
 }
 FIELDS = {
     "ant": {"integrator": "euler"},
     "quadcopter": {"task": "track", "damping": True},
     "panda_stack": {"grip": "action"},
 }
-SIMULATED = tuple(task for task in TASKS if task not in FORMULAS)
-ARMS = ("sawyer_push", "panda_stack")  # controls follow from states
-TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, world]
+SIMULATED = tuple(task for task in TASKS if task not in ANALYTIC)
+ARMS = ("sawyer_push", "panda_stack")  # controls depend on states
+TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, env]
 IMPLEMENTATIONS = ("native", "mjx")
 
 
 class Reference(NamedTuple):
-    """What MuJoCo C needs to know of a task."""
+    """How MuJoCo C simulates a task."""
 
     asset: str
     steps: int  # per decision
-    heights: tuple[int, ...] = ()  # in qpos: what is lifted
-    lift: float = 10.0  # [m]; more where a decision takes longer
+    heights: tuple[int, ...] = ()  # indices in qpos that the lifted lane raises
+    lift: float = 10.0  # [m]; more for longer decisions
 
 
 REFERENCE = {
@@ -69,8 +71,10 @@ REFERENCE = {
 }
 
 
-def make(task, implementation):
-    return TASKS[task](physics=implementation, **FIELDS.get(task, {}))
+def make(task, implementation="analytic"):
+    """The environment of a task; its physics, for those that MuJoCo simulates."""
+    physics = {} if task in ANALYTIC else {"physics": implementation}
+    return TASKS[task](**physics, **FIELDS.get(task, {}))
 
 
 def task_of(env):
@@ -78,7 +82,7 @@ def task_of(env):
 
 
 def observe(task, data, state):
-    """The observation that the task's source defines, of MuJoCo's `data`."""
+    """The observation that the task's source defines, from MuJoCo's `data`."""
     qpos, qvel = data.qpos, data.qvel
     match task:
         case "cartpole":
@@ -86,9 +90,9 @@ def observe(task, data, state):
         case "ant":
             return np.concatenate([qpos[2:], qvel])
         case "quadcopter":
-            turned = data.body("quadcopter").xmat.reshape(3, 3)  # of this qpos: see `reference`
+            rotation = data.body("quadcopter").xmat.reshape(3, 3)  # updated in `reference`
             away = np.asarray(state.info["target"]) - qpos[:3]
-            parts = turned.T @ [0, 0, -9.81], qvel[3:], turned.T @ qvel[:3], turned.T @ away
+            parts = rotation.T @ [0, 0, -9.81], qvel[3:], rotation.T @ qvel[:3], rotation.T @ away
             return np.concatenate(parts)
         case "sawyer_push":
             tip, target = data.site("tip").xpos[:2], np.asarray(state.info["target"])
@@ -100,10 +104,10 @@ def observe(task, data, state):
 
 
 def actions(env):
-    """[2, 2, DECISIONS, m], the same for each lane; NaN in lane BROKEN from decision 5 on."""
+    """[2, 2, DECISIONS, m], the same for all lanes; NaN in lane BROKEN from decision 5 on."""
     one = np.random.default_rng(0).uniform(-1, 1, (DECISIONS, env.spec.act))
     if isinstance(env, SawyerPush):
-        one[:, 0] = np.abs(one[:, 0])  # the rod pushes ahead, at the block
+        one[:, 0] = np.abs(one[:, 0])  # the rod moves forward, to the block
     if isinstance(env, PandaStack):
         one[:, 3] = np.abs(one[:, 3])  # the hand holds the block
     every = np.tile(one, (2, 2, 1, 1)).astype(np.float32)
@@ -117,9 +121,9 @@ def _first(task):
 
 
 def start(env):
-    """EnvState [2, 2]: 2 seeds x 2 worlds. Lanes start alike, LIFTED high above the floor.
+    """EnvState [2, 2], the same state in all lanes; LIFTED is high above the floor.
 
-    Sawyer's block stands before the rod, Panda's hangs between the fingers.
+    Sawyer's block is in front of the rod, Panda's between the fingers.
     """
     first = _first(task_of(env))
     qpos = first.data.qpos if task_of(env) in SIMULATED else None
@@ -140,32 +144,31 @@ def start(env):
 
 
 @cache
-def program(env):
-    """States [2, 2], actions [2, 2, DECISIONS, m] -> states [2, 2, DECISIONS], compiled once.
+def step_grid(env):
+    """`step` of states [2, 2] and actions [2, 2, m], by vmap of vmap; compiled once."""
+    return jax.jit(jax.vmap(jax.vmap(env.step)))
 
-    A scan inside vmap inside vmap inside jit.
-    """
 
-    def run(state, plan):
-        def one(state, action):
-            state = env.step(state, action)
-            return state, state
-
-        return jax.lax.scan(one, state, plan)[1]
-
-    return jax.jit(jax.vmap(jax.vmap(run)))
+@cache
+def jitted(env, method):
+    """A method of `env`, compiled once for all tests."""
+    return jax.jit(getattr(env, method))
 
 
 @cache
 def rollout(env):
-    """EnvState [2, 2, DECISIONS] from `start` under `actions`."""
-    return program(env)(start(env), actions(env))
+    """EnvState [2, 2, DECISIONS] from `start` with `actions`."""
+    state, path = start(env), []
+    for t in range(DECISIONS):
+        state = step_grid(env)(state, actions(env)[:, :, t])
+        path.append(state)
+    return jax.tree.map(lambda *leaves: np.stack(leaves, 2), *path)
 
 
 def reference(task, implementation, lane):
     """Observations [DECISIONS, o] of MuJoCo C in float64, stepped by mj_step alone.
 
-    Controls are the actions, or what the arm or vehicle made of them.
+    Controls are the actions, or those that the arm or vehicle computed from them.
     """
     env = make(task, implementation)
     asset, steps, *_ = REFERENCE[task]
@@ -173,10 +176,10 @@ def reference(task, implementation, lane):
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = state.data.qpos[lane], state.data.qvel[lane]
     controls = path.data.ctrl if task in (*ARMS, "quadcopter") else actions(env)
-    seen = []
+    observed = []
     for t, ctrl in enumerate(np.asarray(controls)[lane]):
         data.ctrl[:] = ctrl
         mujoco.mj_step(model, data, steps)
         mujoco.mj_kinematics(model, data)
-        seen.append(observe(task, data, jax.tree.map(lambda a, t=t: a[(*lane, t)], path)))
-    return np.array(seen)
+        observed.append(observe(task, data, jax.tree.map(lambda a, t=t: a[(*lane, t)], path)))
+    return np.array(observed)

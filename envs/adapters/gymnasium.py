@@ -1,18 +1,16 @@
-"""A world of ours as a Gymnasium environment, single or vector.
+"""An environment of this library as a Gymnasium environment, single or vectorised.
 
-    World(env)          gymnasium.Env, for Stable-Baselines3 and alike
-    Worlds(env, 64)     gymnasium.vector.VectorEnv, all worlds in one compiled step
+    GymnasiumEnv(env)             gymnasium.Env, for Stable-Baselines3 for example
+    GymnasiumVectorEnv(env, 64)   gymnasium.vector.VectorEnv, all 64 in one compiled step
 
-`steps` is the time limit in decisions, 0 for none; it truncates. `Worlds` resets in the
-step that ends an episode (AutoresetMode.SAME_STEP): the true last observation is
-`infos["final_obs"]` where `infos["_final_obs"]`.
+`steps` is the time limit in decisions, at which an episode is truncated; 0 for none. The vector
+environment resets in the step that ends an episode (AutoresetMode.SAME_STEP): the true last
+observation is `infos["final_obs"]` where `infos["_final_obs"]`.
 
-Stable-Baselines3 on a CPU: `torch.set_num_threads(1)` first. Its small networks gain nothing
-from more threads, and on busy cores they wait for each other: on two of them 300 steps of SAC
-took 4 s with one thread and 70 s with two.
+With Stable-Baselines3 on a CPU call `torch.set_num_threads(1)` first: on two busy cores 300 steps
+of its SAC took 4 s with one thread and 70 s with two.
 
-Source: Gymnasium's documentation, "Env", "VectorEnv"; here, and in `as_brax`, classes
-inherit because the other library asks for it.
+Source: Gymnasium's documentation, "Env", "VectorEnv".
 """
 
 from collections.abc import Sequence
@@ -33,15 +31,15 @@ from hybrid_rl.types import Env, EnvState
 
 
 def _spaces(env: Env) -> tuple[Box, Box]:
-    """Observation and action space of one world."""
+    """Observation and action space of one environment."""
     return (
         Box(-np.inf, np.inf, (env.spec.obs,), np.float32),
         Box(-1.0, 1.0, (env.spec.act,), np.float32),
     )
 
 
-class World(gymnasium.Env):
-    """One world. reset and step cost one compiled call each."""
+class GymnasiumEnv(gymnasium.Env):
+    """One environment; reset and step are one compiled call each."""
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"]}
 
@@ -49,13 +47,13 @@ class World(gymnasium.Env):
         self.env, self.steps, self.render_mode = env, steps, render_mode
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
-        self._reset, self._step = jax.jit(env.reset), jax.jit(partial(_brief_step, env))
+        self._reset, self._step = jax.jit(env.reset), jax.jit(partial(_packed_step, env))
         self._canvas: Canvas | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """First observation [o] of an episode."""
+        """Initial observation [o] of an episode."""
         super().reset(seed=seed)
         key = jax.random.key(int(self.np_random.integers(2**31)))
         self._state, self._count = self._reset(key), 0
@@ -70,11 +68,11 @@ class World(gymnasium.Env):
         return out[:-2], float(out[-2]), bool(out[-1]), truncated, {}
 
     def render(self) -> np.ndarray:
-        """Picture [480, 640, 3] (uint8) of the present state; no display is needed.
+        """Image [480, 640, 3] (uint8) of the current state; needs no display.
 
         Raises:
-            NoGraphicsError: where neither EGL nor OSMesa can draw.
-            ValueError: for a world without `scene` and `pose`.
+            NoGraphicsError: if neither EGL nor OSMesa works.
+            ValueError: for an environment without `scene` and `pose`.
         """
         if self._canvas is None:
             check_drawable(self.env)
@@ -82,20 +80,20 @@ class World(gymnasium.Env):
         return self._canvas.draw(np.asarray(self.env.pose(self._state)))
 
     def close(self) -> None:
-        """Free what `render` draws with."""
+        """Free the resources of `render`."""
         if self._canvas is not None:
             self._canvas.close()
             self._canvas = None
 
 
-def _brief_step(env: Env, state: EnvState, action: Array) -> tuple[EnvState, Array]:
-    """The next state, and [obs, reward, terminated] as one array: one copy to the host."""
+def _packed_step(env: Env, state: EnvState, action: Array) -> tuple[EnvState, Array]:
+    """The next state, and [obs, reward, terminated] [o + 2] packed for one copy to the host."""
     state = env.step(state, action)
     return state, jnp.concatenate((state.obs, jnp.stack((state.reward, state.terminated))))
 
 
-class Worlds(VectorEnv):
-    """`num_envs` worlds, stepped together."""
+class GymnasiumVectorEnv(VectorEnv):
+    """`num_envs` environments, stepped together."""
 
     metadata: ClassVar[dict[str, Any]] = {"autoreset_mode": AutoresetMode.SAME_STEP}
 
@@ -113,7 +111,7 @@ class Worlds(VectorEnv):
         seed: int | Sequence[int] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """First observations [E, o]. Of one seed, world i gets seed + i."""
+        """Initial observations [E, o]. With one seed, environment i gets seed + i."""
         first = seed if seed is None or isinstance(seed, int) else int(seed[0])
         super().reset(seed=first)
         if seed is None:
@@ -135,9 +133,9 @@ class Worlds(VectorEnv):
         carry, last, truncated = self._step(carry, np.asarray(actions, np.float32))
         self._state, self._keys, self._count = carry
         terminated, truncated = np.array(last.terminated), np.array(truncated)
-        done, every = terminated | truncated, np.ones(self.num_envs, bool)
+        done, everywhere = terminated | truncated, np.ones(self.num_envs, bool)
         infos = {k: np.array(v) for k, v in last.metrics.items()}
-        infos |= {f"_{k}": every for k in last.metrics}
+        infos |= {f"_{k}": everywhere for k in last.metrics}
         if done.any():
             infos |= {"final_obs": np.array(last.obs), "_final_obs": done}
         obs, reward = np.array(self._state.obs), np.array(last.reward)
@@ -147,7 +145,7 @@ class Worlds(VectorEnv):
 def _autoreset_step(
     env: Env, steps: int, carry: tuple[EnvState, Array, Array], actions: Array
 ) -> tuple[tuple[EnvState, Array, Array], EnvState, Array]:
-    """(states, keys, counts) with done worlds reset; the states before that; truncated [E]."""
+    """(states, keys, counts) after resets; the states before them; truncated [E]."""
     state, keys, count = carry
     last = jax.vmap(env.step)(state, actions)
     count = count + 1
@@ -155,11 +153,11 @@ def _autoreset_step(
     done = last.terminated | truncated
 
     def auto_reset() -> EnvState:
-        fresh = jax.vmap(env.reset)(split[:, 0])
+        first = jax.vmap(env.reset)(split[:, 0])
         pick = jax.vmap(lambda d, a, b: jax.tree.map(lambda x, y: jnp.where(d, x, y), a, b))
-        return pick(done, fresh, last)
+        return pick(done, first, last)
 
     split = jax.vmap(jax.random.split)(keys)
-    now = jax.lax.cond(done.any(), auto_reset, lambda: last)
+    state = jax.lax.cond(done.any(), auto_reset, lambda: last)
     keys = jnp.where(done, split[:, 1], keys)
-    return (now, keys, jnp.where(done, 0, count)), last, truncated
+    return (state, keys, jnp.where(done, 0, count)), last, truncated
