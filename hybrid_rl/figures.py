@@ -20,6 +20,7 @@ import json
 import math
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
@@ -147,7 +148,8 @@ def main() -> None:
     if set(HELP) & set(line) and not any(text.startswith("study=") for text in line):
         doc = f"{inspect.cleandoc(__doc__ or '')}\n\nStudies (study=NAME):\n{_listing(known)}"
         doc += f"\n\nThe arguments below are those of study={DEFAULT}."
-    values, _ = read(doc, (*ARGUMENTS, *arguments(study)))
+    of_all = replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]
+    values, _ = read(doc, (*of_all, *arguments(study)))
     out = output("out", values.pop("out"), SUFFIXES, ".json")
     del values["study"]
     command.prepare(load([]))

@@ -65,7 +65,7 @@ PANEL = (4.4, 3.1)  # [in] of a panel, without its legend
 MOST_ACROSS = 4
 MARGIN = 1.02  # of the last step, so that the marker there is whole
 TIMES = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))  # [s]
-ARRAYS = ("x", "iqm", "low", "high", "each")  # of a curve, in the JSON
+ARRAYS = ("x", "each", "iqm", "low", "high")  # of a curve
 WIDTH = number(0, " of steps (or seconds), 0 or more")
 VALUE = number(what=" in the metric's unit")
 
@@ -142,16 +142,13 @@ def to_numbers(curve: Curve) -> dict[str, Any]:
 
 def from_numbers(numbers: dict[str, Any]) -> list[Curve]:
     """The curves of a JSON; null becomes NaN."""
-    return [
-        Curve(
-            one["task"],
-            one.get("metric", numbers["metric"]),
-            one["label"],
-            *(tuple(one[name]) for name in ("seeds", "runs", "notes")),
-            **{name: np.array(one[name], float) for name in ARRAYS},
-        )
-        for one in numbers["curves"]
-    ]
+    drawn = []
+    for one in numbers["curves"]:
+        metric = one.get("metric", numbers["metric"])
+        seeds, runs, notes = (tuple(one[name]) for name in ("seeds", "runs", "notes"))
+        arrays = [np.array(one[name], float) for name in ARRAYS]
+        drawn.append(Curve(one["task"], metric, one["label"], seeds, runs, *arrays, notes))
+    return drawn
 
 
 def _read(file: str) -> dict[str, Any]:
