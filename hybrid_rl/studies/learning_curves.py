@@ -147,7 +147,7 @@ def from_numbers(numbers: dict[str, Any]) -> list[Curve]:
         metric = one.get("metric", numbers["metric"])
         seeds, runs, notes = (tuple(one[name]) for name in ("seeds", "runs", "notes"))
         arrays = [np.array(one[name], float) for name in ARRAYS]
-        drawn.append(Curve(one["task"], metric, one["label"], seeds, runs, *arrays, notes))
+        drawn.append(Curve(one["task"], metric, one["label"], seeds, runs, *arrays, notes=notes))
     return drawn
 
 
