@@ -56,17 +56,15 @@ def curves(
 ) -> list[Curve]:
     """A curve for each task, each value of `group`, and each set of settings.
 
-    Runs that differ in more than `group` and `x` are different curves, labelled by their
-    differences (hybrid_rl.run.results.differences); runs of equal settings are one curve, whatever
-    their seeds. If the seeds logged at the same steps, these are the points; else each seed is
-    averaged in bins, with linear interpolation over empty ones. A curve is as long as its longest
-    seed, averaged over the seeds that have a value.
+    Runs of equal settings, whatever their seeds, are one curve; others are labelled by their
+    differences (hybrid_rl.run.results). If the seeds logged at the same steps, these are the
+    points; else each seed is averaged in bins, with linear interpolation over empty ones. A curve
+    is as long as its longest seed, averaged over the seeds that have a value.
 
     Args:
         runs: a glob, or folders; every folder in them that has metrics.jsonl is a run.
-        metric: its key in metrics.jsonl.
-        x: "step" [decisions], "wall_s" [s], or a number in the runs' configuration that was swept,
-            such as num_demonstrations: a run is then one point, with its last value.
+        x: "step" [decisions], "wall_s" [s], or a number in the runs' configuration that was swept:
+            a run is then one point, with its last value.
         group: a key of the runs' configuration.
         smooth: width of a moving mean over each seed, in units of x.
 
