@@ -63,6 +63,7 @@ def curves(
 
     Args:
         runs: a glob, or folders; every folder in them that has metrics.jsonl is a run.
+        metric: a key of metrics.jsonl.
         x: "step" [decisions], "wall_s" [s], or a number in the runs' configuration that was swept:
             a run is then one point, with its last value.
         group: a key of the runs' configuration.
@@ -81,7 +82,7 @@ def curves(
         notes[key] = [*settings, *_without_metric(metric, every), *_truncated(members)]
     if not any(len(each.x) for members in groups.values() for each in members):
         raise _no_metric(folders, metric)
-    for task in {task for task, _ in groups}:
+    for task in {task for (task, _), members in groups.items() if members}:
         panel = {key: members for key, members in groups.items() if key[0] == task and members}
         for key, (members, lines) in count_failures(metric, panel).items():
             groups[key] = members
@@ -94,9 +95,7 @@ def curves(
     drawn = sorted(
         key for key, members in groups.items() if any(np.isfinite(each.y).any() for each in members)
     )
-    lines = {key: [f"{', '.join(key)}: {line}" for line in notes[key]] for key in sorted(notes)}
-    lines[drawn[0]] += [line for key in lines if key not in drawn for line in lines[key]]
-    lines[drawn[0]] += [f"{run.path}: no rows yet; left out" for run in folders if not run.rows]
+    lines = _lines(notes, drawn, folders)
     return [_curve(key, metric, groups[key], smooth, lines[key]) for key in drawn]
 
 
@@ -162,6 +161,16 @@ def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     draws = [rate(rng.choice(x, len(x)), rng.choice(y, len(y))) for _ in range(RESAMPLES)]
     low, high = np.percentile(draws, [2.5, 97.5])
     return rate(x, y), float(low), float(high)
+
+
+def _lines(
+    notes: dict[Key, list[str]], drawn: list[Key], folders: list[RunFolder]
+) -> dict[Key, list[str]]:
+    """The notes of each curve that is drawn; those of no curve are with the first one."""
+    lines = {key: [f"{', '.join(key)}: {note}" for note in notes[key]] for key in sorted(notes)}
+    lines[drawn[0]] += [line for key in lines if key not in drawn for line in lines[key]]
+    lines[drawn[0]] += [f"{run.path}: no rows yet; left out" for run in folders if not run.rows]
+    return lines
 
 
 def _time(x: str) -> str:

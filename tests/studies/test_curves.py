@@ -138,6 +138,13 @@ def test_a_run_without_the_metric_yet_is_left_out_with_a_note(tmp_path):
     }
 
 
+def test_a_task_without_the_metric_is_left_out_with_a_note(tmp_path):
+    run(tmp_path / "a", [1.0], metric="planner/lyapunov")
+    run(tmp_path / "b", [1.0], metric="belief/best", task="no_dynamics", algo="bayesopt")
+    (curve,) = curves(tmp_path, "planner/lyapunov")
+    assert (curve.task, curve.notes) == ("hopper", ("no_dynamics, bayesopt: no planner/lyapunov",))
+
+
 def test_failed_evaluations_count_and_cut_nothing(tmp_path):
     """As the lowest value of any learner of the task up to there, including other methods."""
     for seed in range(3):

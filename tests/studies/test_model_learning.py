@@ -81,12 +81,8 @@ def test_error_of_the_exact_model_and_of_its_linearisation() -> None:
     data = Batch(obs, u, no, no, no, after, u)
     errors = {}
     for name in ("exact", "local_linear"):
-        over = [
-            *model_learning.TRACKING,
-            f"model@known_model={name}",
-            "likelihood.model=${known_model}",
-        ]
-        run = config.build(config.load(over))
+        model = f"model@known_model={name}", "likelihood.model=${known_model}"
+        run = config.build(config.load([*model_learning.TRACKING, *model]))
         errors[name] = float(model_learning.error(run, Params(), data))
     assert errors["exact"] == 0
     assert 0.01 < errors["local_linear"] < 0.5
@@ -118,13 +114,12 @@ def test_runs_become_a_picture_and_its_numbers(tmp_path, capsys) -> None:
     assert "kept the hover in 100%, error " in lines[-3]
     numbers = json.loads(out.with_suffix(".json").read_text())
     assert set(numbers) == {"normal_noise 0", "ou_noise 0.1", "exact model"}
-    assert (
-        numbers["normal_noise 0"]["power_loss"][0] < 1e-3 < numbers["ou_noise 0.1"]["power_loss"][0]
-    )
-    assert numbers["ou_noise 0.1"]["kept_hover"] == 1
+    hover, noise = numbers["normal_noise 0"], numbers["ou_noise 0.1"]
+    assert hover["power_loss"][0] < 1e-3 < noise["power_loss"][0]
+    assert noise["kept_hover"] == 1
     rows = map(json.loads, (tmp_path / "runs" / "ou" / "metrics.jsonl").read_text().splitlines())
     logged = [row["world/power_loss"] for row in rows if "world/power_loss" in row]
-    assert numbers["ou_noise 0.1"]["power_loss"][0] == pytest.approx(np.mean(logged), rel=1e-3)
+    assert noise["power_loss"][0] == pytest.approx(np.mean(logged), rel=1e-3)
     assert out.stat().st_size > 1000
     assert draw(*arguments[:2], "updates=0") == 0
     assert "tracking" not in json.loads(out.with_suffix(".json").read_text())["ou_noise 0.1"]
