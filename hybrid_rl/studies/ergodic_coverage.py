@@ -56,13 +56,16 @@ def figure(
     steps: Annotated[int, "decisions of each trajectory", whole()] = 400,
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers of one view."""
+    import matplotlib
+
     views: dict[str, Callable[[], tuple[Any, dict[str, Any]]]] = {
         "control": lambda: control(seeds, steps),
         "average": lambda: average(steps),
         "marginals": lambda: marginals(task, seeds, steps),
         "cost": cost,
     }
-    figure, numbers = views[view]()
+    with matplotlib.rc_context(STYLE):
+        figure, numbers = views[view]()
     return figure, {"view": view, **_rounded(numbers)}
 
 
@@ -223,12 +226,10 @@ def _seconds(run: Run, repeats: int) -> float:
 
 def _subplots(down: int, across: int) -> tuple[Any, Any]:
     """A figure, and its panels [down, across]."""
-    import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(3.4 * across, 3.1 * down), layout="constrained")
-        return figure, figure.subplots(down, across, squeeze=False)
+    figure = Figure(figsize=(3.4 * across, 3.1 * down), layout="constrained")
+    return figure, figure.subplots(down, across, squeeze=False)
 
 
 def _show(panel: Any, density: np.ndarray, title: str) -> None:
