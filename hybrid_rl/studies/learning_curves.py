@@ -71,7 +71,9 @@ VALUE = number(what=" in the metric's unit")
 
 
 def figure(
-    runs: Annotated[str, 'run folders, such as "runs/*/*/*" (in quotes); or a JSON to redraw'],
+    runs: Annotated[
+        str | Path, 'run folders, such as "runs/*/*/*" (in quotes); or a JSON to redraw'
+    ],
     metric: Annotated[str, "metrics of metrics.jsonl, with commas between them"] = "train/return",
     x: Annotated[str, "step, wall_s, or a key that was swept"] = "step",
     group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
@@ -79,7 +81,7 @@ def figure(
     threshold: Annotated[float | None, "value of the metric to reach", VALUE] = None,
 ) -> tuple["Figure", dict[str, Any]]:
     """The learning curves of `runs`, and their numbers."""
-    if runs.endswith(".json"):
+    if str(runs).endswith(".json"):
         numbers = _read(runs)
     else:
         metrics = [name.strip() for name in metric.split(",")]
@@ -151,7 +153,7 @@ def from_numbers(numbers: dict[str, Any]) -> list[Curve]:
     return drawn
 
 
-def _read(file: str) -> dict[str, Any]:
+def _read(file: str | Path) -> dict[str, Any]:
     """The numbers of a learning-curve figure.
 
     Raises:

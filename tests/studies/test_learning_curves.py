@@ -156,7 +156,7 @@ def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
     save(plot(drawn), numbers_of(drawn, "train/return,sac/alpha"), tmp_path / "a.png")
     source.write_text(source.read_text().replace("\n", ""))  # another layout
     before = source.read_bytes()
-    again = from_numbers(figure(str(source))[1])
+    again = from_numbers(figure(source)[1])
     for name in ("label", "metric", "seeds", "notes"):
         assert [getattr(c, name) for c in again] == [getattr(c, name) for c in drawn]
     for name in ("x", "each", "iqm", "low", "high"):
