@@ -1,15 +1,11 @@
-"""Learning curves as a picture.
+"""The figure of a study, with its numbers as JSON next to it.
 
     python -m hybrid_rl.figures runs="runs/halfcheetah/*/*" metric=train/return out=figure.png
+    python -m hybrid_rl.figures study=model_learning runs="runs/quadcopter_se3/*/*"
+    python -m hybrid_rl.figures study=model_learning --help
 
-A panel for each task; a line for each algorithm and, where runs of it differ in their settings,
-for each of these: the interquartile mean over seeds with its 95% bootstrap band (see
-hybrid_rl.studies.curves). Several metrics, such as metric=train/return,planner/mode_insertion_gradient, are
-one row of panels each. x=wall_s draws over time, x=KEY over a number that a sweep went through,
-such as num_demonstrations. The numbers drawn are written beside the picture, as JSON;
-runs=FILE.json draws them again. What they come to is printed: last value, mean over the run (the
-area under the curve), decisions to threshold=, and who is ahead of whom. What is missing, and
-which seeds failed, is written under the picture and in its JSON.
+study=NAME --help shows what a study measures and its arguments; study=list lists the studies. A
+summary of the numbers is printed.
 """
 
 if __name__ == "__main__":
@@ -17,157 +13,149 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-import itertools
+import ast
+import difflib
+import inspect
 import json
-from collections.abc import Sequence
+import math
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 
+import hybrid_rl.studies
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, number, output, read
+from hybrid_rl.cli.arguments import HELP, Argument, output, read
+from hybrid_rl.config import load
 from hybrid_rl.errors import UsageError
-from hybrid_rl.studies.curves import (
-    Curve,
-    area,
-    curves,
-    from_json,
-    improvement,
-    iqm,
-    spread,
-    steps_to,
-)
-from hybrid_rl.studies.style import STYLE, plot
+from hybrid_rl.studies.style import STYLE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SUFFIXES = (".png", ".pdf", ".svg")
-OF_X, OF_Y = " of steps (or seconds), 0 or more", " in the metric's unit"
-RUNS = 'runs="GLOB", such as runs="runs/*/*/*"'
-ARGUMENTS = (
-    Argument("runs", "", "pattern of the run folders, in quotes; or a .json to draw", needed=RUNS),
-    Argument("metric", "train/return", "metrics of metrics.jsonl, with commas between them"),
-    Argument("out", "figure.png", f"the picture: {', '.join(SUFFIXES)}; numbers beside it"),
-    Argument("x", "step", "step, wall_s, or a key that a sweep went through"),
-    Argument("group", "algo", "key of the configuration with a curve for each of its values"),
-    Argument("smooth", 0.0, "width of a moving mean, in units of x", number(0, OF_X)),
-    Argument("threshold", None, "value of the metric: when is it reached?", number(what=OF_Y)),
+DPI = 200
+DEFAULT = "learning_curves"
+ARGUMENTS = (  # of every study
+    Argument("study", DEFAULT, "name of the study, or list"),
+    Argument("out", "figure.png", f"the picture: {', '.join(SUFFIXES)}; JSON next to it"),
 )
 
 
-def save(
-    figure: "Figure",
-    drawn: Sequence[Curve],
-    out: str | Path,
-    source: str | Path = "",
-    **about: str,
-) -> Path:
-    """Writes the picture, and the numbers in it as JSON beside it.
+class Study(Protocol):
+    """A module in hybrid_rl/studies with these two functions.
 
-    source: the JSON that `drawn` was read from; it is not written over.
-    about: more to write into the JSON, such as metric="train/return".
+    The first line of its docstring is its entry in the list; the rest is its help.
+    """
+
+    figure: Callable[..., "tuple[Figure, dict[str, Any]]"]
+    """The picture and its numbers. A keyword `name: Annotated[type, "help", kind] = default` is an
+    argument of the command; `kind` (hybrid_rl.cli.arguments) parses and checks it."""
+    summary: Callable[[dict[str, Any]], list[str]]
+    """Lines to print about the numbers."""
+
+
+def studies() -> dict[str, str]:
+    """Name of every study -> first line of its docstring; no study is imported."""
+    lines = {}
+    for path in (
+        path for folder in hybrid_rl.studies.__path__ for path in Path(folder).glob("*.py")
+    ):
+        module = ast.parse(path.read_text(encoding="utf-8"))
+        functions = {node.name for node in module.body if isinstance(node, ast.FunctionDef)}
+        if "figure" in functions:
+            lines[path.stem] = (ast.get_docstring(module) or "").partition("\n")[0]
+    return dict(sorted(lines.items()))
+
+
+def arguments(study: Study) -> tuple[Argument, ...]:
+    """The arguments of a study's `figure`; one without a default is required."""
+    declared = []
+    for name, parameter in inspect.signature(study.figure).parameters.items():
+        about, *kind = parameter.annotation.__metadata__
+        if parameter.default is parameter.empty:
+            declared.append(Argument(name, "", about, *kind, needed=f"{name}=VALUE: {about}"))
+        else:
+            declared.append(Argument(name, parameter.default, about, *kind))
+    return tuple(declared)
+
+
+def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
+    """Write the picture, and its numbers as JSON next to it.
+
+    A JSON file that has these numbers already, such as the one that was redrawn, is left untouched.
     """
     import matplotlib
 
-    out = Path(out)
-    if out.suffix not in SUFFIXES:
-        raise UsageError(f"out={out}: must end in {', '.join(SUFFIXES)}")
     out.parent.mkdir(parents=True, exist_ok=True)
     undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
     with matplotlib.rc_context(STYLE):
-        figure.savefig(out, dpi=200, metadata=undated)
-    if out.with_suffix(".json").resolve() == Path(source).resolve():
-        return out
-    numbers = {
-        **about,
-        "line": "interquartile mean over seeds",
-        "band": "95% percentile bootstrap over seeds",
-        "curves": [_numbers(curve) for curve in drawn],
-    }
-    out.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n", encoding="utf-8")
-    return out
+        figure.savefig(out, dpi=DPI, metadata=undated)
+    file, values = out.with_suffix(".json"), _plain(numbers)
+    if not (file.exists() and _content(file) == values):
+        file.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
 
 
-def _seeds(curve: Curve) -> str:
-    return f"{len(curve.seeds)} seed{'s' * (len(curve.seeds) != 1)}"
+def _plain(value: Any) -> Any:
+    """A value as JSON holds it: arrays are lists, numbers that are not finite are null."""
+    if isinstance(value, dict):
+        return {str(name): _plain(each) for name, each in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _numbers(curve: Curve) -> dict:
-    """What is drawn of a curve, as JSON holds it."""
-    arrays = {name: getattr(curve, name) for name in ("x", "iqm", "low", "high", "each")}
-    return {
-        "task": curve.task,
-        "metric": curve.metric,
-        "label": curve.label,
-        "seeds": curve.seeds,
-        "runs": curve.runs,
-        "notes": curve.notes,
-        **{name: _plain(array) for name, array in arrays.items()},
-        "area": _plain(area(curve)),
-    }
+def _content(file: Path) -> Any:
+    """The content of a JSON file; None if it has none."""
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except ValueError:
+        return None
 
 
-def _plain(array: np.ndarray) -> list:
-    """Numbers as JSON holds them: in the digits of float32, null for what is not finite."""
-    single = array.astype("float32").astype(object)
-    single[~np.isfinite(array)] = None
-    return single.tolist()
+def _listing(known: dict[str, str]) -> str:
+    """The studies as text, one line each."""
+    width = max(map(len, known))
+    return "\n".join(f"  {name:{width}}  {about}" for name, about in known.items())
 
 
-def summarise(drawn: Sequence[Curve], threshold: float | None = None) -> list[str]:
-    """What the curves come to, a line each; then how often a method is ahead of another in area.
-
-    Of each curve up to the last point that all its seeds have.
-    """
-    lines = []
-    for curve in drawn:
-        if not curve.shared.any():
-            lines.append(f"{curve.task}, {curve.label}: no point that all its seeds have")
-            continue
-        last = np.flatnonzero(curve.shared)[-1]
-        ends = spread(curve.each[:, last])
-        if last < len(curve.x) - 1:
-            ends += f" at {curve.x[last]:,.10g}"
-        line = (
-            f"{curve.task}, {curve.label}: {_seeds(curve)}, last {curve.metric} {ends}, "
-            f"mean {spread(area(curve))}"
-        )
-        if threshold is not None:
-            steps = steps_to(curve, threshold)
-            line += f", {threshold:,.10g} reached by {np.isfinite(steps).sum()} of {len(steps)}"
-            if np.isfinite(steps).all():
-                line += f" at {iqm(steps):,.0f}"
-        lines.append(line)
-    for one, other in itertools.combinations(drawn, 2):
-        both = one.shared.any() and other.shared.any()
-        if both and (one.task, one.metric) == (other.task, other.metric):
-            rate, low, high = improvement(area(one), area(other))
-            lines.append(
-                f"{one.task}, {one.metric}: {one.label} ahead of {other.label} "
-                f"in {rate:.0%} [{low:.0%}, {high:.0%}] of pairs"
-            )
-    return lines
+def _name(line: list[str], known: dict[str, str]) -> str:
+    """The study that the command line names, or the default."""
+    names = [text.removeprefix("study=") for text in line if text.startswith("study=")]
+    name = names[-1] if names else DEFAULT
+    if name not in known:
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f" (did you mean {close[0]}?)" if close else ""
+        raise UsageError(f"study={name}: unknown; choose one of {', '.join(known)}{hint}")
+    return name
 
 
 def main() -> None:
     """The command."""
-    given, _ = read(__doc__, ARGUMENTS)
-    output("out", given["out"], SUFFIXES, ".json")
-    x, group, smooth = (given[name] for name in ("x", "group", "smooth"))
-    about = {"metric": given["metric"], "x": x, "group": group}
-    if given["runs"].endswith(".json"):
-        drawn, about = from_json(given["runs"])
-    else:
-        metrics = [metric.strip() for metric in given["metric"].split(",")]
-        each = [curves(given["runs"], metric, x, group, smooth) for metric in metrics]
-        drawn = list(itertools.chain(*each))
-    out = save(plot(drawn, about["x"]), drawn, given["out"], given["runs"], **about)
-    print("\n".join(summarise(drawn, given["threshold"])))
-    for note in (note for curve in drawn for note in curve.notes):
-        print(f"note: {note}")
-    print(f"{out} and {out.with_suffix('.json')}")
+    line, known = sys.argv[1:], studies()
+    if not line or "study=list" in line:
+        print(f"Studies (study=NAME; with --help, the arguments of one):\n{_listing(known)}")
+        return
+    name = _name(line, known)
+    study = cast(Study, import_module(f"hybrid_rl.studies.{name}"))
+    doc = inspect.getdoc(study)
+    if set(HELP) & set(line) and not any(text.startswith("study=") for text in line):
+        doc = f"{inspect.cleandoc(__doc__ or '')}\n\nStudies (study=NAME):\n{_listing(known)}"
+        doc += f"\n\nThe arguments below are those of study={DEFAULT}."
+    of_all = replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]
+    values, _ = read(doc, (*of_all, *arguments(study)))
+    out = output("out", values.pop("out"), SUFFIXES, ".json")
+    del values["study"]
+    command.prepare(load([]))
+    figure, numbers = study.figure(**values)
+    save(figure, numbers, out)
+    print(*study.summary(numbers), f"{out} and {out.with_suffix('.json')}", sep="\n")
 
 
 if __name__ == "__main__":

@@ -1,222 +1,143 @@
-"""The figures command: a picture, its numbers, and clear refusals."""
+"""The figures command: it finds studies, saves a picture and its numbers, and checks arguments."""
 
-import itertools
 import json
-import sys
-from dataclasses import replace
 
-import imageio.v3 as iio
-import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from tiny import call
 
+import hybrid_rl.studies
 from hybrid_rl import figures
 from hybrid_rl.cli import command
-from hybrid_rl.figures import save
-from hybrid_rl.studies.curves import Curve, from_json, iqm
-from hybrid_rl.studies.style import COLOURS, plot
+
+TOY = '''"""Toy: a line.
+
+    python -m hybrid_rl.figures study=toy
+"""
+
+from typing import Annotated
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from hybrid_rl.cli.arguments import whole
 
 
-def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50, metric="train/return"):
-    x = np.linspace(1000, 200_000, points)
-    each = scale * (1 + np.arange(seeds))[:, None] * np.linspace(0, 1000, points)
-    names = tuple(f"runs/{seed}" for seed in range(seeds))
-    ends = each.min(0), each.max(0)
-    return Curve(task, metric, label, tuple(range(seeds)), names, x, each, iqm(each), *ends, ())
+def figure(
+    title: Annotated[str, "above the axes"],
+    points: Annotated[int, "of the line", whole(2)] = 3,
+):
+    picture = Figure()
+    picture.subplots().plot(range(points))
+    y = np.linspace(0, 1, points, dtype="float32")
+    return picture, {"title": title, "y": y, "lost": [float("nan"), None], "by": {1: y[1]}}
+
+
+def summary(numbers):
+    return [f"{numbers['title']}: {len(numbers['y'])} points"]
+'''
+
+
+@pytest.fixture
+def toy(tmp_path, monkeypatch):
+    """A study in a folder of its own."""
+    folder = tmp_path / "more"
+    folder.mkdir()
+    (folder / "toy.py").write_text(TOY)
+    (folder / "library.py").write_text('"""No study."""\n\n\ndef line():\n    return []\n')
+    path = [*hybrid_rl.studies.__path__, str(folder)]
+    monkeypatch.setattr(hybrid_rl.studies, "__path__", path)
+
+
+def draw(*arguments):
+    """Exit code of the command."""
+    return call(lambda: command.guarded(figures.main), *arguments)
 
 
 def runs(folder):
     for algo in ("nn_mppi", "sac"):
         for seed in range(2):
-            place = folder / algo / str(seed)
-            place.mkdir(parents=True)
-            (place / "config.yaml").write_text(f"task: hopper\nalgo: {algo}\n")
+            path = folder / algo / str(seed)
+            path.mkdir(parents=True)
+            (path / "config.yaml").write_text(f"task: hopper\nalgo: {algo}\n")
             rows = [
                 {"step": step, "seed": seed, "wall_s": step, "train/return": float(seed + step)}
                 for step in range(100, 1100, 100)
             ]
-            (place / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+            (path / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
     return folder
 
 
-def call(monkeypatch, *arguments):
-    """Exit code of the command."""
-    monkeypatch.setattr(sys, "argv", ["figures", *map(str, arguments)])
-    try:
-        command.guarded(figures.main)
-    except SystemExit as end:
-        return end.code
-    return 0
+@pytest.mark.parametrize("arguments", [[], ["study=list"]])
+def test_the_studies_are_listed_without_their_libraries(toy, capsys, arguments):
+    assert draw(*arguments) == 0
+    lines = capsys.readouterr().out.splitlines()[1:]
+    names = ["bayesian_optimisation", "ergodic_coverage", "learning_curves", "model_learning"]
+    assert [line.split()[0] for line in lines] == [*names, "toy"]
+    assert all(line.endswith(".") for line in lines)
 
 
-def test_a_panel_a_task_and_a_line_a_label_of_one_colour():
-    drawn = [curve("ant", "sac", 1), curve("hopper", "nn_mppi", 5), curve("hopper", "sac", 3)]
-    axes = plot(drawn).axes
-    assert [panel.get_title() for panel in axes] == ["ant", "hopper"]
-    said = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in axes]
-    assert said == [["sac (1 seed)"], ["nn_mppi (5 seeds)", "sac (3 seeds)"]]
-    assert [line.get_color() for line in axes[1].lines] == list(COLOURS[:2])
-    assert axes[0].lines[0].get_color() == axes[1].lines[1].get_color()
-    assert [len(panel.collections) for panel in axes] == [0, 2]  # one seed has no band
-    np.testing.assert_array_equal(axes[1].lines[1].get_ydata(), drawn[2].iqm)
+def test_a_study_is_one_file(toy, tmp_path, capsys):
+    out = tmp_path / "new" / "a.png"
+    assert draw("study=toy", "title=x", "points=5", f"out={out}") == 0
+    printed = capsys.readouterr().out
+    assert printed == f"x: 5 points\n{out} and {out.with_suffix('.json')}\n"
+    assert out.read_bytes().startswith(b"\x89PNG")
+    assert json.loads(out.with_suffix(".json").read_text()) == {
+        "title": "x",
+        "y": [0, 0.25, 0.5, 0.75, 1],
+        "lost": [None, None],
+        "by": {"1": 0.25},
+    }
 
 
-def test_labels_carry_units_and_thousands():
-    figure = plot([curve(scale=-1)])
-    figure.canvas.draw()
-    (panel,) = figure.axes
-    assert (panel.get_xlabel(), panel.get_ylabel()) == (
-        "Environment steps per learner",
-        "Training return",
-    )
-    assert "200,000" in [text.get_text() for text in panel.get_xticklabels()]
-    assert "\N{MINUS SIGN}1,600" in [text.get_text() for text in panel.get_yticklabels()]
-    (panel,) = plot([curve(metric="sac/alpha")], x="wall_s").axes
-    assert (panel.get_xlabel(), panel.get_ylabel()) == ("Wall time [h]", "sac/alpha")
-    assert panel.lines[0].get_xdata()[-1] == pytest.approx(200_000 / 3600)
+def test_a_study_explains_itself(toy, capsys):
+    assert draw("study=toy", "--help") == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith("Toy: a line.")
+    for line in ("  study=toy ", "  title= ", "needed; above the axes", "  points=3 ", "  out="):
+        assert line in printed
 
 
-def test_several_metrics_are_rows_without_a_blank():
-    """One column a task; where a task lacks a metric the panels close up."""
-    metrics = ("train/return", "planner/mode_insertion_gradient")
-    drawn = [curve(task, metric=metric) for metric in metrics for task in ("ant", "hopper")]
-    axes = plot(drawn).axes
-    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "ant", "hopper"]
-    assert axes[3].get_ylabel() == "Mode insertion gradient"
-    assert [panel.get_subplotspec().rowspan.start for panel in axes] == [0, 0, 1, 1]
-    axes = plot(drawn[:3]).axes
-    assert len(axes) == axes[0].get_subplotspec().get_gridspec().ncols == 3
-    assert all(panel.lines for panel in axes)
+def test_help_has_the_list_and_the_arguments_of_the_default(toy, capsys):
+    assert draw("--help") == 0
+    printed = capsys.readouterr().out
+    for line in ("  toy ", "  runs= ", "  metric=train/return ", "study=learning_curves"):
+        assert line in printed
 
 
-@pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
-def test_legends_and_notes_cover_no_axes(tasks, labels):
-    """In the boxes that the picture has when it is drawn; and none leaves the picture."""
-    names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
-    drawn = [
-        replace(
-            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}: {i} " + 30 * "word ",)
-        )
-        for task, i in names
-    ]
-    figure = plot(drawn)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    renderer = canvas.get_renderer()
-    panels = [panel.get_window_extent() for panel in figure.axes]
-    legends = [panel.get_legend().get_window_extent(renderer) for panel in figure.axes]
-    note = figure._supxlabel.get_window_extent(renderer)
-    for box in [*legends, note]:
-        assert not any(box.overlaps(panel.padded(-0.5)) for panel in panels)
-        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
-        assert figure.bbox.y0 <= box.y0 < box.y1 <= figure.bbox.y1
-    assert not any(note.overlaps(legend) for legend in legends)
-    labels_of_x = [panel.xaxis.label.get_window_extent(renderer) for panel in figure.axes]
-    assert not any(box.overlaps(other) for box in labels_of_x for other in legends)
-
-
-def test_notes_are_on_the_picture():
-    """Many are cut short, and say so."""
-    (text,) = [plot([replace(curve(), notes=("seed 3 diverged",))])._supxlabel.get_text()]
-    assert text == "seed 3 diverged"
-    many = replace(curve(), notes=tuple(f"note {i}" for i in range(20)))
-    lines = plot([many])._supxlabel.get_text().splitlines()
-    assert lines[-1] == "and 12 more notes, in the JSON beside this picture"
-
-
-def test_markers_at_the_right_edge_are_whole():
-    figure = plot([curve(points=5)])
-    figure.canvas.draw()
-    (panel,) = figure.axes
-    last = panel.transData.transform((200_000, 0))[0]
-    assert panel.bbox.x1 - last > panel.lines[0].get_markersize() / 2 * figure.dpi / 72
-
-
-def test_a_line_is_thin_where_seeds_are_missing():
-    """The thick line and the band end with the last point that all seeds have."""
-    one = curve(points=5)
-    one.each[2, 3:] = np.nan
-    thick, thin = plot([one]).axes[0].lines
-    np.testing.assert_array_equal(np.isfinite(thick.get_ydata()), [True] * 3 + [False] * 2)
-    np.testing.assert_array_equal(np.isfinite(thin.get_ydata()), [False] * 2 + [True] * 3)
-    assert thin.get_linewidth() < thick.get_linewidth()
-
-
-def test_more_lines_than_colours_stay_apart():
-    drawn = [curve(label=f"algo{i:02}") for i in range(2 * len(COLOURS) + 1)]
-    lines = plot(drawn).axes[0].lines
-    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(drawn)
-
-
-def test_a_single_point_is_visible():
-    (panel,) = plot([curve(points=1)]).axes
-    assert panel.lines[0].get_marker() == "o"
-
-
-def test_the_numbers_lie_beside_the_picture(tmp_path):
-    drawn = [curve(seeds=5)]
-    out = save(plot(drawn), drawn, tmp_path / "new" / "a.png", metric="train/return")
-    numbers = json.loads((tmp_path / "new" / "a.json").read_text())
-    assert numbers["metric"] == "train/return"
-    (said,) = numbers["curves"]
-    assert (said["task"], said["label"], said["seeds"]) == ("hopper", "sac", [0, 1, 2, 3, 4])
-    np.testing.assert_allclose(said["iqm"], drawn[0].iqm, rtol=1e-6)
-    picture = iio.imread(out)
-    assert picture.shape[1] == 880
-    assert 600 < picture.shape[0] < 700
-    blue = np.abs(picture[..., :3].astype(int) - [0x00, 0x72, 0xB2]).max(-1) < 8
-    assert blue.sum() > 1000  # the line was drawn
-
-
-def test_a_picture_is_drawn_again_from_its_numbers(tmp_path, monkeypatch, capsys):
-    """The same curves; and numbers that are the source are left as they are."""
-    one = curve()
-    one.each[2, -1] = np.nan
-    drawn = [replace(one, notes=("a note",)), curve(metric="sac/alpha")]
-    save(plot(drawn), drawn, tmp_path / "a.png", metric="train/return,sac/alpha", x="step")
-    before = (tmp_path / "a.json").read_bytes()
-    again, about = from_json(tmp_path / "a.json")
-    assert about["x"] == "step"
-    assert [(c.label, c.metric, c.seeds, c.notes) for c in again] == [
-        (c.label, c.metric, c.seeds, c.notes) for c in drawn
-    ]
-    for name in ("x", "each", "iqm", "low", "high"):
-        for old, new in zip(drawn, again, strict=True):
-            np.testing.assert_allclose(getattr(new, name), getattr(old, name), rtol=1e-6)
-    source = f"runs={tmp_path / 'a.json'}"
-    assert call(monkeypatch, source, f"out={tmp_path / 'b.png'}") == 0
-    again = f"runs={tmp_path / 'b.json'}"
-    assert call(monkeypatch, again, f"out={tmp_path / 'c.png'}") == 0
-    assert (tmp_path / "b.png").read_bytes() == (tmp_path / "c.png").read_bytes()
-    assert call(monkeypatch, source, f"out={tmp_path / 'a.png'}") == 0
-    assert (tmp_path / "a.json").read_bytes() == before
-    (tmp_path / "c.json").write_text("{}")
-    capsys.readouterr()
-    assert call(monkeypatch, f"runs={tmp_path / 'c.json'}", f"out={tmp_path / 'c.png'}") == 2
-    assert "c.json: holds no curves that figures wrote" in capsys.readouterr().err
+@pytest.mark.parametrize("name", figures.studies())
+def test_every_study_has_an_example_of_its_own_command(name, capsys):
+    assert draw(f"study={name}", "--help") == 0
+    printed = capsys.readouterr().out
+    example = "" if name == figures.DEFAULT else f"study={name} "
+    assert f"    python -m hybrid_rl.figures {example}" in printed
 
 
 @pytest.mark.parametrize(
     ("suffix", "magic"), [("pdf", b"%PDF"), ("svg", b"<?xml"), ("png", b"\x89PNG")]
 )
-def test_formats_go_by_suffix_and_are_reproducible(tmp_path, suffix, magic):
-    first, second = [
-        save(plot([curve()]), [curve()], tmp_path / f"{i}.{suffix}").read_bytes() for i in range(2)
-    ]
+def test_formats_are_reproducible(tmp_path, suffix, magic):
+    files = [tmp_path / f"{name}.{suffix}" for name in "ab"]
+    for file in files:
+        picture = Figure()
+        picture.subplots().plot([0, 1], label="a line")
+        figures.save(picture, {}, file)
+    first, second = (file.read_bytes() for file in files)
     assert first.startswith(magic)
     assert first == second
 
 
-def test_the_command_draws_and_tells(tmp_path, monkeypatch, capsys):
-    folder = runs(tmp_path / "runs")
-    out = tmp_path / "a.svg"
-    assert call(monkeypatch, f"runs={folder}/*/*", f"out={out}") == 0
-    said = capsys.readouterr().out
-    assert "hopper, nn_mppi: 2 seeds, last train/return 1,000 [1,000, 1,001]" in said
-    assert "hopper, train/return: nn_mppi ahead of sac in 50% [0%, 100%] of pairs" in said
+def test_learning_curves_are_the_default(tmp_path, capsys):
+    folder, out = runs(tmp_path / "runs"), tmp_path / "a.svg"
+    assert draw(f"runs={folder}/*/*", f"out={out}") == 0
+    printed = capsys.readouterr().out
+    assert "hopper, nn_mppi: 2 seeds, last train/return 1,000 [1,000, 1,001]" in printed
+    assert "hopper, train/return: nn_mppi ahead of sac in 50% [0%, 100%] of pairs" in printed
     assert "sac (2 seeds)" in out.read_text()
     numbers = json.loads(out.with_suffix(".json").read_text())
-    assert [entry["x"][-1] for entry in numbers["curves"]] == [1000, 1000]
+    assert [one["x"][-1] for one in numbers["curves"]] == [1000, 1000]
+    assert numbers["metric"] == "train/return"
 
 
 @pytest.mark.parametrize(
@@ -229,16 +150,26 @@ def test_the_command_draws_and_tells(tmp_path, monkeypatch, capsys):
         (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
         (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),
         (["runs=RUNS", "colour=red"], "colour=red: unknown argument"),
-        ([], "runs: not given"),
+        (["runs=RUNS", "view=cost"], "give key=value with study, out, runs, metric, x, group"),
+        (["out=a.png"], "runs: not given"),
+        (["study=toys", "--help"], "study=toys: unknown; choose one of bayesian_optimisation, "),
+        (["study=toys"], "learning_curves, model_learning, toy (did you mean toy?)"),
+        (["study=curves"], "study=curves: unknown"),
+        (["study=toy", "runs=RUNS"], "give key=value with study, out, title, points"),
+        (["study=toy", "title=x", "points=1"], "points=1: must be a whole number, 2 or more"),
+        (["study=toy"], "title: not given"),
+        (["study=ergodic_coverage", "view=none"], "view=none: choose one of control, average"),
+        (["study=bayesian_optimisation", "runs=nowhere/*"], "runs=nowhere/*: no run there"),
+        (["study=model_learning", "runs=nowhere/*"], "runs=nowhere/*: no run folder matches"),
     ],
 )
-def test_bad_usage_is_one_line_and_code_2(tmp_path, monkeypatch, capsys, arguments, line):
+def test_bad_usage_is_one_line_and_code_2(toy, tmp_path, monkeypatch, capsys, arguments, line):
     folder = runs(tmp_path / "runs")
     monkeypatch.chdir(tmp_path)
-    given = [text.replace("RUNS", str(folder)) for text in arguments]
-    assert call(monkeypatch, *given) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.count("\n") == 1
-    assert line in said.err
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["runs"]
+    before = sorted(path.name for path in tmp_path.iterdir())
+    assert draw(*(text.replace("RUNS", str(folder)) for text in arguments)) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.count("\n") == 1
+    assert line in printed.err
+    assert sorted(path.name for path in tmp_path.iterdir()) == before

@@ -6,6 +6,7 @@ python tests/test_pages.py    writes onto the pages what the files hold now
 import re
 import shlex
 from importlib import import_module
+from importlib.util import find_spec
 from itertools import cycle, islice
 
 import pytest
@@ -13,7 +14,8 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from pages import cited
 from pages.cited import ROOT
 
-from hybrid_rl import config
+from hybrid_rl import config, figures
+from hybrid_rl.cli.arguments import HELP
 
 PAGES = ["readme", "results", "chapter3", "chapter6", "robots", "speed"]  # modules of `pages`
 WITH_COMMANDS = [
@@ -21,7 +23,7 @@ WITH_COMMANDS = [
     "CONTRIBUTING.md",
     *(str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").rglob("*.md"))),
 ]
-LINE = re.compile(r"python -m hybrid_rl\.(\w+)([^`#\n]*)")
+LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
 
 
 def text(page):
@@ -99,13 +101,28 @@ def test_training_commands_compose(page):
 @pytest.mark.parametrize("page", WITH_COMMANDS)
 def test_other_commands_have_the_arguments_of_the_page(page):
     for name, words in commands(page):
-        module = import_module(f"hybrid_rl.{name}")
         if name in ("train", "list"):
             continue
-        known = {one.name for one in module.ARGUMENTS}
+        known = {one.name for one in declared(name, words)}
         for word in words:
             key = word.partition("=")[0]
-            assert key in known, f"{name}: {word}"
+            assert key in known | set(HELP), f"{name}: {word}"
+
+
+def declared(name, words):
+    """Arguments of a command; of `figures` also those of the study that the words name."""
+    package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
+    module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
+    if name != "figures":
+        return module.ARGUMENTS
+    (study,) = [w.removeprefix("study=") for w in words if "study=" in w] or [figures.DEFAULT]
+    if study in ("list", "NAME"):
+        return figures.ARGUMENTS
+    assert study in figures.studies()
+    return [
+        *figures.ARGUMENTS,
+        *figures.arguments(import_module(f"hybrid_rl.studies.{study}")),
+    ]
 
 
 def write(page):

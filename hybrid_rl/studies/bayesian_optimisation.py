@@ -1,41 +1,118 @@
-"""What a search found, how far it strayed from its equilibrium, and where it measured.
+"""Bayesian optimisation with dynamics: best value, Lyapunov function and measurements.
 
-    python -m hybrid_rl.studies.bayesian_optimisation runs="runs/*/*bayesopt/*" out=fig_6_4.png
-    python -m hybrid_rl.studies.bayesian_optimisation runs="runs/*/kle3_bayesopt/*" group=explorer.level out=guard.png
+    python -m hybrid_rl.figures study=bayesian_optimisation runs="runs/*/*bayesopt/*"
 
-Best value over measurements and the Lyapunov function over time, median and range over trials;
-and the measurements of the first trial of each method. The numbers are written beside it, as JSON;
-the best value of each method, how soon it had it and how far it strayed are printed.
+Figures 6-3 to 6-5. Best value over measurements and the Lyapunov function V over time, median and
+range over trials; and the measurements of the first trial of each method. The summary has the best
+value, how many trials get above 95% of the highest hill (1.0), after how many measurements, and the
+greatest V, as interquartile mean and 95% band over trials. group=explorer.level compares levels of
+the guard instead of methods.
 """
 
-if __name__ == "__main__":
-    from hybrid_rl.cli import interrupt
-
-    interrupt.install()
-
-import json
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
-from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, output, read
-from hybrid_rl.studies.curves import Curve, curves, spread
-
-BEST, V, WHERE, VALUE = "belief/best", "planner/lyapunov", "belief/place", "belief/value"
-FEW = 10  # points up to which each has a marker
-SUFFIXES = (".png", ".pdf", ".svg")
-RUNS = 'runs="GLOB", such as runs="runs/*/*bayesopt/*"'
-ARGUMENTS = (
-    Argument("runs", "", "pattern of the run folders, in quotes", needed=RUNS),
-    Argument("out", "searching.png", f"the picture: {', '.join(SUFFIXES)}; numbers beside it"),
-    Argument("group", "algo", "key of the configuration with a curve for each of its values"),
+from hybrid_rl.studies.curves import Curve, curves, plural, spread
+from hybrid_rl.studies.style import (
+    COLOURS,
+    ENTRY,
+    NOTE_WIDTH,
+    STYLE,
+    legend_below,
+    plain_log,
+    wrapped,
+    write_notes,
 )
 
+BEST, V, POSITION, VALUE = "belief/best", "planner/lyapunov", "belief/place", "belief/value"
+FEW = 10  # points up to which each has a marker
+MARKS = (10, 20, 40, 60, 80)  # measurements after which the best value is reported
+REACHED = 0.95  # of the highest hill
 
-def _by_label(runs: str, metric: str, group: str) -> dict[str, Curve]:
-    return {curve.label: curve for curve in curves(runs, metric, group=group)}
+
+def figure(
+    runs: Annotated[str, 'run folders, such as "runs/*/*bayesopt/*" (in quotes)'],
+    group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
+) -> tuple[Any, dict[str, Any]]:
+    """Best values and V of each method, and the measurements of its first trial."""
+    import matplotlib
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
+
+    by_metric = {
+        metric: {curve.label: curve for curve in curves(runs, metric, group=group)}
+        for metric in (BEST, V, POSITION, VALUE)
+    }
+    best, lyapunov = by_metric[BEST], by_metric[V]
+    numbers = {name: reported(curve, lyapunov.get(name)) for name, curve in best.items()}
+    notes = wrapped([note for one in numbers.values() for note in one["notes"]], 2 * NOTE_WIDTH)
+    colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(best)}
+    heights = (3.2 + ENTRY * len(best), 1.9 * len(best) + ENTRY * len(notes))
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(11.5, sum(heights)), layout="constrained")
+        halves: Any = figure.subfigures(2, 1, height_ratios=heights)
+        above, below = halves
+        values, energies = above.subplots(1, 2)
+        panels = below.subplots(len(best), 2, squeeze=False)
+        for (name, curve), pair in zip(best.items(), panels, strict=True):
+            count = np.arange(1, curve.each.shape[1] + 1)
+            _band(values, count, curve.each, name, colours[name])
+            _measurements(pair, by_metric[POSITION][name].each[0], by_metric[VALUE][name].each[0])
+            pair[0].set(title=f"{name}: measurements, late ones light")
+            pair[1].set(title=f"{name}: coordinate of each measurement")
+        for name, curve in lyapunov.items():
+            _band(energies, _seconds(curve), curve.each, name, colours[name])
+        values.set(xlabel="Measurements", title="Best value")
+        energies.set(xlabel="Time [s]", title="Lyapunov function V", yscale="log")
+        plain_log(energies.yaxis)
+        for axes in (values, *panels[:, 1]):
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        for axes in (values, energies):
+            legend_below(axes)
+        write_notes(below, notes)
+    return figure, numbers
+
+
+def summary(numbers: dict[str, Any]) -> list[str]:
+    """A line per method; then the notes."""
+    lines = []
+    for name, one in numbers.items():
+        trials, counts = one["trials"], one["measurements_to_95_percent"]
+        reached = [count for count in counts if count is not None]
+        measurements = max(map(int, one["median_best_after"]))
+        parts = [
+            f"best value {spread(np.array(one['best']))} after {measurements}",
+            f"above 95% in {len(reached)} of {trials}",
+        ]
+        if reached:
+            parts[-1] += f", after {np.median(reached):g} measurements (median)"
+        if "V_peak" in one:
+            parts.append(f"greatest V {spread(np.array(one['V_peak']))}")
+        lines.append(f"{name}, {plural(trials, 'trial')}: {'; '.join(parts)}")
+    notes = [f"note: {note}" for one in numbers.values() for note in one.get("notes", ())]
+    return lines + list(dict.fromkeys(notes))
+
+
+def reported(best: Curve, lyapunov: Curve | None) -> dict[str, Any]:
+    """The numbers of one method, from its best values [S, G] and V [S, T] of all trials."""
+    each = best.each
+    marks = [n for n in (*MARKS, each.shape[1]) if n <= each.shape[1]]
+    numbers: dict[str, Any] = {
+        "trials": len(each),
+        "median_best_after": {n: round(float(np.nanmedian(each[:, n - 1])), 4) for n in marks},
+        "measurements_to_95_percent": [
+            int(np.argmax(one > REACHED)) + 1 if np.nanmax(one) > REACHED else None for one in each
+        ],
+        "best": [round(float(value), 4) for value in np.nanmax(each, 1)],
+        "notes": list(best.notes),
+    }
+    if lyapunov:
+        numbers["V_peak"] = [round(float(peak), 1) for peak in np.nanmax(lyapunov.each, 1)]
+        numbers["V_median"] = round(float(np.nanmedian(lyapunov.each)), 2)
+        numbers["notes"] = list(dict.fromkeys([*best.notes, *lyapunov.notes]))
+    return numbers
 
 
 def _seconds(curve: Curve) -> np.ndarray:
@@ -50,7 +127,7 @@ def _seconds(curve: Curve) -> np.ndarray:
 
 def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str, colour: str) -> None:
     """Median and range of each [S, G] over trials; few points are markers."""
-    label = f"{name} ({len(each)} trial{'s' * (len(each) != 1)})"
+    label = f"{name} ({plural(len(each), 'trial')})"
     marker = "o" if len(x) <= FEW else None
     axes.plot(x, np.nanmedian(each, 0), color=colour, marker=marker, ms=4, label=label)
     low, high = np.nanmin(each, 0), np.nanmax(each, 0)
@@ -59,107 +136,10 @@ def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str, colour: str) ->
         axes.vlines(x, low, high, color=colour, lw=1)
 
 
-def plot(runs: str, group: str = "algo") -> tuple[Any, dict[str, Any], list[str]]:
-    """The figure, what it says in numbers, and the notes of its curves."""
-    import matplotlib
-    from matplotlib.figure import Figure
-    from matplotlib.ticker import MaxNLocator
-
-    from hybrid_rl.studies.style import (
-        COLOURS,
-        ENTRY,
-        NOTE_WIDTH,
-        STYLE,
-        legend_below,
-        plain_log,
-        wrapped,
-    )
-
-    best, strayed = _by_label(runs, BEST, group), _by_label(runs, V, group)
-    at, value = _by_label(runs, WHERE, group), _by_label(runs, VALUE, group)
-    colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(best)}
-    every = [note for found in (best, strayed) for curve in found.values() for note in curve.notes]
-    notes = list(dict.fromkeys(every))
-    lines = wrapped(notes, 2 * NOTE_WIDTH)
-    heights = (3.2 + ENTRY * len(best), 1.9 * len(best) + ENTRY * len(lines))
-    numbers: dict[str, Any] = {}
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(11.5, sum(heights)), layout="constrained")
-        halves: Any = figure.subfigures(2, 1, height_ratios=heights)
-        above, below = halves
-        found, stray = above.subplots(1, 2)
-        rows = below.subplots(len(best), 2, squeeze=False)
-        for (name, curve), (where, when) in zip(best.items(), rows, strict=True):
-            count = np.arange(1, curve.each.shape[1] + 1)
-            _band(found, count, curve.each, name, colours[name])
-            _measurements(where, when, at[name].each[0], value[name].each[0], name)
-            numbers[name] = summarise(curve.each)
-        for name, curve in strayed.items():
-            _band(stray, _seconds(curve), curve.each, name, colours[name])
-            peaks = np.nanmax(curve.each, 1)
-            numbers[name] |= {"V_peak": [round(float(peak), 1) for peak in peaks]}
-            numbers[name] |= {"V_median": round(float(np.nanmedian(curve.each)), 2)}
-        found.set(xlabel="Measurements", title="Best value")
-        stray.set(xlabel="Time [s]", title="Lyapunov function V", yscale="log")
-        plain_log(stray.yaxis)
-        for axes in (found, *rows[:, 1]):
-            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        for axes in (found, stray):
-            legend_below(axes)
-        if lines:
-            below.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=6.5, color="#444444")
-    return figure, numbers, notes
-
-
-def _measurements(where: Any, when: Any, s: np.ndarray, y: np.ndarray, name: str) -> None:
-    """The measurements of one trial: values over coordinate, and coordinate over number."""
+def _measurements(pair: Any, s: np.ndarray, y: np.ndarray) -> None:
+    """One trial in two panels: values y [G] over coordinate s [G], and coordinate over number."""
     count, few = np.arange(1, len(s) + 1), len(s) <= FEW
-    where.scatter(s, y, c=count, s=30 if few else 8, cmap="viridis")
-    where.set(title=f"{name}: measurements, late ones light", xlim=(-1, 1), ylim=(0, 1.1))
-    when.plot(count, s, ".-", lw=0.6, ms=8 if few else 3)
-    when.set(title=f"{name}: coordinate of each measurement", ylim=(-1, 1))
-
-
-def summarise(each: np.ndarray) -> dict[str, Any]:
-    """Of the best values [S, G] of all trials after each of G measurements."""
-    marks = [n for n in (10, 20, 40, 60, 80, each.shape[1]) if n <= each.shape[1]]
-    late = [int(np.argmax(one > 0.95)) + 1 if np.nanmax(one) > 0.95 else None for one in each]
-    return {
-        "trials": len(each),
-        "median_best_after": {n: round(float(np.nanmedian(each[:, n - 1])), 4) for n in marks},
-        "measurements_to_95_percent": late,
-        "best": [round(float(value), 4) for value in np.nanmax(each, 1)],
-    }
-
-
-def line(name: str, numbers: dict[str, Any]) -> str:
-    """One method in words."""
-    trials, soon = numbers["trials"], numbers["measurements_to_95_percent"]
-    reached = [number for number in soon if number is not None]
-    parts = [
-        f"best value {spread(np.array(numbers['best']))} after {max(numbers['median_best_after'])}",
-        f"above 95% in {len(reached)} of {trials}",
-    ]
-    if reached:
-        parts[-1] += f", after {np.median(reached):g} measurements (median)"
-    if "V_peak" in numbers:
-        parts.append(f"greatest V {spread(np.array(numbers['V_peak']))}")
-    return f"{name}, {trials} trial{'s' * (trials != 1)}: {'; '.join(parts)}"
-
-
-def main() -> None:
-    """The command."""
-    given, _ = read(__doc__, ARGUMENTS)
-    out = output("out", given["out"], SUFFIXES, ".json")
-    figure, numbers, notes = plot(given["runs"], given["group"])
-    out.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=130)
-    out.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n", encoding="utf-8")
-    print("\n".join(line(name, found) for name, found in numbers.items()))
-    for note in notes:
-        print(f"note: {note}")
-    print(f"{out} and {out.with_suffix('.json')}")
-
-
-if __name__ == "__main__":
-    command.guarded(main)
+    pair[0].scatter(s, y, c=count, s=30 if few else 8, cmap="viridis")
+    pair[0].set(xlim=(-1, 1), ylim=(0, 1.1))
+    pair[1].plot(count, s, ".-", lw=0.6, ms=8 if few else 3)
+    pair[1].set(ylim=(-1, 1))

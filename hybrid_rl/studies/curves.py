@@ -1,31 +1,27 @@
-"""Learning curves of many runs: read, brought to common steps, averaged over seeds.
+"""Learning curves of many runs, on common steps and averaged over seeds.
 
     IQM = sum_i w_i v_(i) / sum_i w_i,   w_i = |[i-1, i] within [n/4, 3n/4]|
 
-over the n sorted seeds v_(1) <= ... <= v_(n): the mean of the middle half, where a
-seed on its border counts in part, so that few seeds are treated as evenly as many
-(5 seeds: 0, 3/4, 1, 3/4, 0; for n divisible by 4 it is the 25% trimmed mean). The
-band is the 95% percentile bootstrap of the IQM, resampling seeds.
+over the n sorted seeds v_(1) <= ... <= v_(n): the mean of the middle half. A seed on its border
+has a partial weight (5 seeds: 0, 3/4, 1, 3/4, 0); for n divisible by 4 it is the 25% trimmed mean.
+The band is the 95% percentile bootstrap of the IQM, resampling seeds.
 Source: Agarwal et al., Deep RL at the Edge of the Statistical Precipice, NeurIPS 2021.
 
-A seed that diverged, or whose return was not finite, counts as a failure (hybrid_rl.studies.logged).
+A seed that diverged or had an infinite or NaN return is a failure (hybrid_rl.studies.logged).
 """
 
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.results import NOT_ROWS, RunFolder, differences, find, short
-from hybrid_rl.studies.logged import Learner, common, counted, learners, swept
+from hybrid_rl.studies.logged import Learner, common, count_failures, learners, swept
 
 RESAMPLES = 2000  # of the bootstrap
 TIMES = ("step", "wall_s")  # of a row; any other x is a key of the configuration
-ARRAYS = ("x", "each", "iqm", "low", "high")  # of a curve
 Key = tuple[str, str]  # task and label of a curve
 
 
@@ -35,15 +31,15 @@ class Curve:
 
     task: str
     metric: str
-    label: str  # what sets it apart from the other lines
+    label: str  # method and the settings in which the lines differ
     seeds: tuple[int, ...]  # S learners, in the order of `each`
     runs: tuple[str, ...]  # the run folder of each learner
-    x: np.ndarray  # [G] decisions of a learner, seconds, or what was swept
+    x: np.ndarray  # [G] decisions of a learner, seconds, or the swept value
     each: np.ndarray  # [S, G] the metric of each learner, NaN where it has none
     iqm: np.ndarray  # [G] interquartile mean over the learners that have a value
     low: np.ndarray  # [G] lower end of the 95% band
     high: np.ndarray  # [G] upper end
-    notes: tuple[str, ...]  # what a reader should know, one line each
+    notes: tuple[str, ...]  # failed seeds and missing values, one line each
 
     @property
     def shared(self) -> np.ndarray:
@@ -60,61 +56,47 @@ def curves(
 ) -> list[Curve]:
     """A curve for each task, each value of `group`, and each set of settings.
 
-    runs: a glob, or folders; whatever lies below them and holds metrics.jsonl is a run.
-    x: "step" [decisions], "wall_s" [s], or a number in the runs' configuration that a sweep went
-    through, such as num_demonstrations: there a run is one point, what it had at last.
-    group: a key of the runs' configuration. Runs that differ in more than `group` and `x` are
-    different curves, named by what differs (hybrid_rl.run.results.differences); runs of the same
-    settings are one curve, whatever their seeds.
-    smooth: width of a moving mean over each seed, in units of x. Where the seeds logged at the
-    same steps, these are the points; else each seed is averaged in bins, with a straight line
-    over empty ones.
-    A curve goes as far as its longest seed, averaged over those that have a value.
+    Runs of equal settings, whatever their seeds, are one curve; others are labelled by their
+    differences (hybrid_rl.run.results). If the seeds logged at the same steps, these are the
+    points; else each seed is averaged in bins, with linear interpolation over empty ones. A curve
+    is as long as its longest seed, averaged over the seeds that have a value.
+
+    Args:
+        runs: a glob, or folders; every folder in them that has metrics.jsonl is a run.
+        metric: a key of metrics.jsonl.
+        x: "step" [decisions], "wall_s" [s], or a number in the runs' configuration that was swept:
+            a run is then one point, with its last value.
+        group: a key of the runs' configuration.
+        smooth: width of a moving mean over each seed, in units of x.
 
     Raises:
-        UsageError: where nothing fits, and where a file is damaged; the line says what would.
+        UsageError: if no run matches, no run has the metric, or a file is damaged.
     """
     folders = [RunFolder(path) for path in find(runs)]
     with_rows = [run for run in folders if run.rows]
-    found: dict[Key, list[Learner]] = {}
+    groups: dict[Key, list[Learner]] = {}
     notes: dict[Key, list[str]] = {}
-    for key, (members, differing) in _grouped(with_rows, x, group).items():
+    for key, (members, settings) in _grouped(with_rows, x, group).items():
         every = [each for run in members for each in learners(run, metric, _time(x))]
-        found[key] = [each for each in every if each.counts]
-        notes[key] = [*differing, *_left_out(metric, every), *_cut(members)]
-    if not any(len(each.x) for members in found.values() for each in members):
-        raise _nothing(folders, metric)
-    for task in {task for task, _ in found}:
-        panel = {key: members for key, members in found.items() if key[0] == task and members}
-        for key, (members, lines) in counted(metric, panel).items():
-            found[key] = members
+        groups[key] = [each for each in every if each.counts]
+        notes[key] = [*settings, *_without_metric(metric, every), *_truncated(members)]
+    if not any(len(each.x) for members in groups.values() for each in members):
+        raise _no_metric(folders, metric)
+    for task in {task for (task, _), members in groups.items() if members}:
+        panel = {key: members for key, members in groups.items() if key[0] == task and members}
+        for key, (members, lines) in count_failures(metric, panel).items():
+            groups[key] = members
             notes[key] += lines
     if x not in TIMES:
         numbers = {run.path: run.number(x) for run in with_rows}
-        for key, members in found.items():
-            notes[key] += _twice([(each.seed, numbers[each.run]) for each in members])
-            found[key] = swept(members, numbers)
-    drawn = [key for key in sorted(found) if any(np.isfinite(each.y).any() for each in found[key])]
-    lines = {key: [f"{', '.join(key)}: {line}" for line in notes[key]] for key in sorted(notes)}
-    lines[drawn[0]] += [line for key in lines if key not in drawn for line in lines[key]]
-    lines[drawn[0]] += [f"{run.path}: no rows yet; left out" for run in folders if not run.rows]
-    return [_curve(key, metric, found[key], smooth, lines[key]) for key in drawn]
-
-
-def from_json(file: str | Path) -> tuple[list[Curve], dict[str, str]]:
-    """The curves that hybrid_rl.figures wrote beside a picture, and what it wrote of them.
-
-    Raises:
-        UsageError: where the file holds none.
-    """
-    try:
-        read = json.loads(Path(file).read_text(encoding="utf-8"))
-        drawn = [_from_numbers(one, read) for one in read["curves"]]
-    except OSError as error:
-        raise UsageError(f"runs={file}: cannot be read ({error.strerror})") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise UsageError(f"runs={file}: holds no curves that figures wrote") from error
-    return drawn, {key: value for key, value in read.items() if isinstance(value, str)}
+        for key, members in groups.items():
+            notes[key] += _duplicates([(each.seed, numbers[each.run]) for each in members])
+            groups[key] = swept(members, numbers)
+    drawn = sorted(
+        key for key, members in groups.items() if any(np.isfinite(each.y).any() for each in members)
+    )
+    lines = _lines(notes, drawn, folders)
+    return [_curve(key, metric, groups[key], smooth, lines[key]) for key in drawn]
 
 
 def iqm(values: np.ndarray) -> np.ndarray:
@@ -133,7 +115,7 @@ def band(values: np.ndarray, resamples: int = RESAMPLES) -> tuple[np.ndarray, np
 
 
 def spread(values: np.ndarray) -> str:
-    """IQM of [n] and its band, in words: "8,250 [6,429, 8,979]"; a single value alone."""
+    """IQM of [n] and its band as text: "8,250 [6,429, 8,979]"; no band for a single value."""
     middle = f"{iqm(values):,.4g}"
     if len(values) == 1:
         return middle
@@ -141,11 +123,16 @@ def spread(values: np.ndarray) -> str:
     return f"{middle} [{low:,.4g}, {high:,.4g}]"
 
 
+def plural(count: int, noun: str) -> str:
+    """The count with its noun: "1 seed", "2 seeds"."""
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
 def area(curve: Curve) -> np.ndarray:
     """[S] mean of each learner's metric over the run: the area under its curve over its width.
 
-    Up to the last point that all learners have; NaN where there is none. Before its first row a
-    learner has what it had there.
+    Up to the last point that all learners have; NaN if there is none. The first value is taken to
+    hold from 0 on.
     """
     x, each = curve.x[curve.shared], curve.each[:, curve.shared]
     if not len(x):
@@ -155,7 +142,7 @@ def area(curve: Curve) -> np.ndarray:
 
 
 def steps_to(curve: Curve, threshold: float) -> np.ndarray:
-    """[S] where each learner's metric first reaches `threshold`, infinite where it never does."""
+    """[S] the x at which each learner's metric first reaches `threshold`, or infinity."""
     reached = curve.each >= threshold
     return np.where(reached.any(1), curve.x[reached.argmax(1)], np.inf)
 
@@ -176,6 +163,16 @@ def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     return rate(x, y), float(low), float(high)
 
 
+def _lines(
+    notes: dict[Key, list[str]], drawn: list[Key], folders: list[RunFolder]
+) -> dict[Key, list[str]]:
+    """The notes of each curve that is drawn; those of no curve are with the first one."""
+    lines = {key: [f"{', '.join(key)}: {note}" for note in notes[key]] for key in sorted(notes)}
+    lines[drawn[0]] += [line for key in lines if key not in drawn for line in lines[key]]
+    lines[drawn[0]] += [f"{run.path}: no rows yet; left out" for run in folders if not run.rows]
+    return lines
+
+
 def _time(x: str) -> str:
     return x if x in TIMES else "step"
 
@@ -183,11 +180,11 @@ def _time(x: str) -> str:
 def _grouped(
     runs: Sequence[RunFolder], x: str, group: str
 ) -> dict[Key, tuple[list[RunFolder], list[str]]]:
-    """The runs of each curve, and their settings where the label is a letter."""
+    """The runs of each curve, and their settings if the label is a letter."""
     parts: dict[tuple[str, str, str], list[RunFolder]] = {}
     for run in runs:
         parts.setdefault((run.word("task"), run.word(group), run.word("algo")), []).append(run)
-    found: dict[Key, tuple[list[RunFolder], list[str]]] = {}
+    groups: dict[Key, tuple[list[RunFolder], list[str]]] = {}
     for (task, value, algo), members in parts.items():
         label = algo if group == "algo" else f"{group}={value}"
         if len([key for key in parts if key[:2] == (task, value)]) > 1:
@@ -196,24 +193,25 @@ def _grouped(
         for run, name, more in zip(members, short(differ), differ, strict=True):
             settings = ", ".join(f"{key}={shown}" for key, shown in more.items())
             lines = [settings] if settings and "=" not in name else []
-            found.setdefault((task, f"{label} {name}".strip()), ([], lines))[0].append(run)
-    return found
+            groups.setdefault((task, f"{label} {name}".strip()), ([], lines))[0].append(run)
+    return groups
 
 
-def _left_out(metric: str, every: list[Learner]) -> list[str]:
-    """Which learners have no value of the metric yet."""
+def _without_metric(metric: str, every: list[Learner]) -> list[str]:
+    """A note for each learner that has no value of the metric yet."""
     without = [each for each in every if not each.counts]
     if len(without) == len(every):
         return [f"no {metric}"]
     return [f"seed {one.seed} of {one.run} has no {metric} yet; left out" for one in without]
 
 
-def _cut(members: list[RunFolder]) -> list[str]:
-    return [f"the last row of {run.path} is cut; left out" for run in members if run.cut]
+def _truncated(members: list[RunFolder]) -> list[str]:
+    """A note for each run whose last row is incomplete."""
+    return [f"the last row of {run.path} is incomplete; left out" for run in members if run.cut]
 
 
-def _nothing(folders: list[RunFolder], metric: str) -> UsageError:
-    """What to say where no run has the metric."""
+def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:
+    """The error if no run has the metric; it names those that the runs have."""
     names = {name for run in folders for row in run.rows for name in row} - set(NOT_ROWS)
     if names:
         return UsageError(
@@ -226,17 +224,17 @@ def _nothing(folders: list[RunFolder], metric: str) -> UsageError:
     )
 
 
-def _twice(learners: list[tuple[int, float]]) -> list[str]:
-    """Which (seed, number) are there several times."""
+def _duplicates(learners: list[tuple[int, float]]) -> list[str]:
+    """A note on each (seed, number) that occurs several times."""
     seeds = sorted({seed for seed, number in learners if learners.count((seed, number)) > 1})
     return [f"seeds {seeds} are in several run folders and count in each"] if seeds else []
 
 
 def _curve(key: Key, metric: str, members: list[Learner], smooth: float, notes: list[str]) -> Curve:
-    """Learners of one kind as one line."""
+    """The curve of the learners `members`."""
     (task, label), lines = key, list(notes)
     seeds = tuple(each.seed for each in members)
-    lines += [f"{task}, {label}: {line}" for line in _twice([(seed, 0.0) for seed in seeds])]
+    lines += [f"{task}, {label}: {line}" for line in _duplicates([(seed, 0.0) for seed in seeds])]
     x, each = common(members, smooth)
     number = np.isfinite(each).sum(0)
     if (number < len(each)).any():
@@ -249,20 +247,12 @@ def _curve(key: Key, metric: str, members: list[Learner], smooth: float, notes: 
 
 
 def _averaged(each: np.ndarray) -> np.ndarray:
-    """IQM and ends of the band [3, G] of [S, G], at each point over those that have a value."""
-    found = np.full((3, each.shape[1]), np.nan)
+    """IQM and ends of the band [3, G] of [S, G], at each point over the seeds with a value."""
+    averages = np.full((3, each.shape[1]), np.nan)
     present = np.isfinite(each)
     for pattern in np.unique(present, axis=1).T:
         if pattern.any():
             at = (present == pattern[:, None]).all(0)
             values = each[np.ix_(pattern, at)]
-            found[:, at] = iqm(values), *band(values)
-    return found
-
-
-def _from_numbers(one: dict[str, Any], read: dict[str, Any]) -> Curve:
-    """A curve from its JSON; null becomes NaN."""
-    metric = one.get("metric", read["metric"])
-    seeds, runs, notes = (tuple(one[name]) for name in ("seeds", "runs", "notes"))
-    x, each, middle, low, high = (np.array(one[name], float) for name in ARRAYS)
-    return Curve(one["task"], metric, one["label"], seeds, runs, x, each, middle, low, high, notes)
+            averages[:, at] = iqm(values), *band(values)
+    return averages

@@ -1,9 +1,9 @@
-"""What learners logged of one metric: read, failures counted, brought to common points.
+"""One metric that learners logged, with failures counted, at common points.
 
-Where a return or a success is not finite (null in metrics.jsonl), and from the step on at which
-a learner diverged, a learner has the lowest value that any learner of the same task had up to
-there: it counts against its method, and the curve of the others goes on. Of other metrics none
-says what is worst: there a learner that failed has no value.
+Where a return or a success is not finite (null in metrics.jsonl), and from the step at which a
+learner diverged, the learner is given the lowest value that any learner of the same task had up to
+that step: the failure counts against its method, and the curve of the others goes on. Of other
+metrics the worst value is not known, and a failed learner has no value.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,33 +15,33 @@ import numpy as np
 from hybrid_rl.run.results import RunFolder
 
 POINTS = 100  # of a curve whose seeds have no common steps
-SPARE = 1.25  # steps of all learners over those of one, up to which they count as common
-SAME_END = 0.99  # ends as near to each other as this count as one
-OUTCOMES = ("return", "success", "belief/best")  # ends of metrics of which more is better
+SPARE = 1.25  # steps of all learners over those of one, up to which the steps are common
+SAME_END = 0.99  # ratio of two ends from which they are the same end
+OUTCOMES = ("return", "success", "belief/best")  # name endings of metrics to maximise
 RULE = "as the lowest value that any learner of the task had up to there"
 Panel = Mapping[tuple[str, str], list["Learner"]]  # (task, label) -> learners, of one task
 
 
 @dataclass(frozen=True)
 class Learner:
-    """What one seed of one run logged."""
+    """The values that one seed of one run logged."""
 
     run: Path
     seed: int
-    x: np.ndarray  # [N] rising
+    x: np.ndarray  # [N] ascending
     y: np.ndarray  # [N] NaN where it was not finite
     ended: float = np.inf  # x at which it diverged
     why: str = ""  # the quantity that was not finite
 
     @property
     def counts(self) -> bool:
-        """Whether there is anything to draw: a value, or a failure."""
+        """Whether it has a value or a failure."""
         return len(self.x) > 0 or self.ended < np.inf
 
 
 def learners(run: RunFolder, metric: str, x: str) -> list[Learner]:
     """The learners of a run; x: "step" or "wall_s"."""
-    found = []
+    every = []
     for seed in sorted({row["seed"] for row in run.rows}):
         rows = [row for row in run.rows if row["seed"] == seed]
         points = [(row[x], row[metric]) for row in rows if metric in row]
@@ -49,14 +49,16 @@ def learners(run: RunFolder, metric: str, x: str) -> list[Learner]:
         order = np.argsort(at, kind="stable")
         end = next((row for row in rows if "diverged" in row), None)
         failed = (float(end[x]), str(end["diverged"])) if end else (np.inf, "")
-        found.append(Learner(run.path, seed, at[order], y[order], *failed))
-    return found
+        every.append(Learner(run.path, seed, at[order], y[order], *failed))
+    return every
 
 
-def counted(metric: str, panel: Panel) -> dict[tuple[str, str], tuple[list[Learner], list[str]]]:
-    """The learners of a task with their failures counted, and what to say of these.
+def count_failures(
+    metric: str, panel: Panel
+) -> dict[tuple[str, str], tuple[list[Learner], list[str]]]:
+    """The learners of a task with values for their failures, and notes on these.
 
-    A learner that diverged goes on over the points of the longest that did not.
+    A learner that diverged is continued over the points of the longest that did not.
     """
     everyone = [learner for members in panel.values() for learner in members]
     x, y = (np.concatenate([getattr(each, name) for each in everyone]) for name in "xy")
@@ -74,18 +76,19 @@ def counted(metric: str, panel: Panel) -> dict[tuple[str, str], tuple[list[Learn
             y[failed] = lowest[np.maximum(before, 0)]
         return replace(learner, x=x, y=y), _failures(learner, outcome)
 
-    found = {}
+    result = {}
     for key, members in panel.items():
         going = [each for each in members if each.ended == np.inf]
         going = going or [each for each in everyone if each.ended == np.inf] or members
         longest = max(going, key=lambda each: each.x.max(initial=-np.inf))
         each = [one(learner, longest.x) for learner in members]
-        found[key] = [learner for learner, _ in each], [line for _, lines in each for line in lines]
-    return found
+        notes = [line for _, lines in each for line in lines]
+        result[key] = [learner for learner, _ in each], notes
+    return result
 
 
 def _failures(learner: Learner, outcome: bool) -> list[str]:
-    """What went wrong with a learner, and how it counts."""
+    """A note for each kind of failure of a learner, with the rule that applies."""
     lines = []
     name = f"seed {learner.seed} of {learner.run}"
     empty = learner.x[np.isnan(learner.y) & (learner.x < learner.ended)]
@@ -100,7 +103,7 @@ def _failures(learner: Learner, outcome: bool) -> list[str]:
 
 
 def swept(members: Sequence[Learner], numbers: Mapping[Path, float]) -> list[Learner]:
-    """One learner for each seed: what each of its runs had at last, over the number of that run."""
+    """One learner per seed: the last value of each of its runs over the number of that run."""
     joined = []
     for seed in sorted({learner.seed for learner in members}):
         same = [learner for learner in members if learner.seed == seed and len(learner.x)]
@@ -111,7 +114,7 @@ def swept(members: Sequence[Learner], numbers: Mapping[Path, float]) -> list[Lea
 
 
 def common(members: Sequence[Learner], smooth: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points for all learners, and their values there: [G], [S, G], NaN where one has none."""
+    """Common points [G] of all learners, and their values [S, G]; NaN where a learner has none."""
     lasts = [learner.x[-1] for learner in members if len(learner.x)]
     end = max(lasts)
     if min(lasts) >= SAME_END * end:
@@ -127,14 +130,14 @@ def common(members: Sequence[Learner], smooth: float) -> tuple[np.ndarray, np.nd
 
 
 def _binned(learner: Learner, x: np.ndarray, smooth: float) -> np.ndarray:
-    """[G] means of a learner's rows in the bins (x[i-1], x[i]], the first without lower end.
+    """[G] means of a learner's rows in the bins (x[i-1], x[i]]; the first has no lower end.
 
-    An empty bin between its rows lies on a straight line; before its first row, after its last,
-    and where its rows are not finite, it has no value.
+    Empty bins between rows are interpolated linearly; before the first row, after the last one, and
+    where rows are not finite, the value is NaN.
     """
     y = _moving_mean(learner.x, learner.y, smooth)
     which = np.searchsorted(x, learner.x)  # the first point at or after it
-    good, bad = (keep & (which < len(x)) for keep in (np.isfinite(y), np.isnan(y)))
+    good, bad = (chosen & (which < len(x)) for chosen in (np.isfinite(y), np.isnan(y)))
     total = np.bincount(which[good], y[good], len(x))
     number = np.bincount(which[good], minlength=len(x))
     full = number > 0
@@ -146,7 +149,7 @@ def _binned(learner: Learner, x: np.ndarray, smooth: float) -> np.ndarray:
 
 
 def _moving_mean(x: np.ndarray, y: np.ndarray, width: float) -> np.ndarray:
-    """[N] mean of all finite y whose x is within width / 2; NaN where y is."""
+    """[N] mean of all finite y whose x is within width / 2; NaN where y is NaN."""
     start = np.searchsorted(x, x - width / 2, side="left")
     end = np.searchsorted(x, x + width / 2, side="right")
     finite = np.isfinite(y)

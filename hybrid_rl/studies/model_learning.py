@@ -1,140 +1,89 @@
-"""What flights cost, and how well models learned from them fly (table 6.1, figures 6-6 and 6-7).
+"""Model learning in flight: cost of flights, and MPPI by the models learned from them.
 
-    python -m hybrid_rl.studies.model_learning runs="runs/quadcopter_se3/*/*" out=fig_6_6.png
+    python -m hybrid_rl.figures study=model_learning runs="runs/quadcopter_se3/*/*" out=fig_6_6.png
 
-From the decisions that each run remembers a model is learned, the same way for all methods,
-updates=2000 batches a trial. MPPI flies to a target by it for steps=1200 decisions, each trial to
-its own, the same for all methods; and by the exact model, which shows what the planner alone can
-do. updates=0 learns nothing, and draws the flights themselves. All methods are cut to the shortest
-flight and to the fewest trials. The numbers are written beside the picture, as JSON, and
-printed as each method is done.
+Figures 6-6 and 6-7; with updates=0, which learns nothing and plots the flights themselves, table
+6.1. A model is learned from the decisions in the replay memory of each run, in the same way for all
+methods. MPPI then flies to a target with it, each trial to its own, the same for all methods; and
+with the exact model, which shows what the planner alone can do. All methods are cut to the shortest
+flight and to the fewest trials.
 
     power loss   mean |F - m g| [N], F the thrust of all rotors
     norm of u    mean |u|, u in [-1, 1]^4; at hover 0.82
-    error        root mean square error of v and w after one decision, by their change's deviation,
-                 along the flights that the exact model made, from which none learned
+    error        root mean square error of v and w after one decision, divided by the standard
+                 deviation of their change, along the flights with the exact model, which are in
+                 no training data
     tracking     mean distance to the target over the flight [m]
 """
 
-if __name__ == "__main__":
-    from hybrid_rl.cli import interrupt
-
-    interrupt.install()
-
 import glob
-import itertools
-import json
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from omegaconf import OmegaConf
 
-from hybrid_rl.cli import arguments, command
-from hybrid_rl.cli.arguments import Argument, output, whole
+from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
-from hybrid_rl.envs.analytic.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import checkpoint
-from hybrid_rl.run.results import RunFolder, differences, short
-from hybrid_rl.studies.curves import band, iqm
-from hybrid_rl.studies.flight_plots import EXACT, outcome, signals
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.studies.curves import band, iqm, plural
+from hybrid_rl.studies.flights import Flight, cost, equal_size, read_all
+from hybrid_rl.studies.style import COLOURS, ENTRY, STROKES, STYLE, legend_below, plain_log
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 
 TRACKING = ("experiment=thesis/fig_6_6",)
 KNOWN = ("model@known_model=exact", "model_planner.model=${known_model}")
-SUFFIXES = (".png", ".pdf", ".svg")
-RUNS = 'runs="GLOB", such as runs="runs/quadcopter_se3/*/*"'
-ARGUMENTS = (
-    Argument("runs", "", "pattern of the run folders, in quotes", needed=RUNS),
-    Argument("out", "flights.png", f"the picture: {', '.join(SUFFIXES)}; numbers beside it"),
-    Argument("updates", 2000, "batches of which each model learns; 0: none", whole(least=0)),
-    Argument("steps", 1200, "decisions of each flight to a target", whole()),
-)
-TWIST = slice(12, 18)  # v [m/s] and w [rad/s] in an observation
+EXACT = "exact model"
+V, W = slice(12, 15), slice(15, 18)  # v [m/s] and w [rad/s] in an observation
+TWIST = slice(V.start, W.stop)
 MARKS = (1.0, 2.0, 4.0, 6.0)  # [s] at which distances are reported
+TRACKED = ("distance", "turned_over")  # fields that are reported
+Results = dict[str, dict[str, np.ndarray]]  # label -> quantity -> [S, ...]
 
 
-class Flight(NamedTuple):
-    """All trials of one method."""
-
-    label: str
-    memory: Any  # [S, T, ...]
-    obs: np.ndarray  # [S, T, 18]
-    action: np.ndarray  # [S, T, 4]
-    next_obs: np.ndarray  # [S, T, 18]
-    terminated: np.ndarray  # [S, T]
-
-
-def read(folder: Path) -> Flight:
-    """What the run in `folder` remembers.
-
-    Raises:
-        UsageError: where it is no whole flight of one world.
-    """
-    if not RunFolder(folder).settings:  # read with care: a damaged file is named
-        raise UsageError(f"runs={folder}: no run folder there (no config.yaml in it)")
-    config: Any = OmegaConf.load(folder / "config.yaml")
-    if config.task != "quadcopter_se3" or config.num_envs != 1 or not config.checkpoint_replay:
-        raise UsageError(f"runs={folder}: needs quadcopter_se3, num_envs=1, checkpoint_replay=true")
-    run = build(config)
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, learners=None, key=None)
-    memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
-    explorer = config.controllers.full
-    strength = explorer.level if "kind" in explorer else explorer.gain
-    label = f"{config.algo} {strength:g}"
-    flown = int(np.asarray(memory.count).min())
-    return first(label, memory, len(memory.rows), min(flown, memory.rows.shape[1]))
+def figure(
+    runs: Annotated[str, 'run folders, such as "runs/quadcopter_se3/*/*" (in quotes)'],
+    updates: Annotated[int, "batches from which each model learns; 0: none", whole(0)] = 2000,
+    steps: Annotated[int, "decisions of each flight to a target", whole()] = 1200,
+) -> tuple[Any, dict[str, Any]]:
+    """Tracking over time and power loss, or the flights themselves if `updates` is 0."""
+    folders = sorted(Path(path) for path in glob.glob(runs))
+    if not folders:
+        raise UsageError(f"runs={runs}: no run folder matches")
+    flights, dt = equal_size(read_all(folders)), QuadcopterSE3().spec.dt
+    results: Results = {flight.label: cost(flight) for flight in flights}
+    if updates:
+        tracked = measure(flights, updates, steps)
+        results = {label: results.get(label, {}) | tracked[label] for label in [*results, EXACT]}
+    numbers = {label: reported(each, dt) for label, each in results.items()}
+    return plot_tracking(results, dt) if updates else plot_flights(flights, dt), numbers
 
 
-def read_all(folders: list[Path]) -> list[Flight]:
-    """The flights of all runs in the order of their labels.
-
-    Those of one label are kept apart by the settings that differ, or by their folders.
-    """
-    found = sorted(((read(folder), folder) for folder in folders), key=lambda pair: pair[0].label)
-    named = []
-    for label, pairs in itertools.groupby(found, key=lambda pair: pair[0].label):
-        flights, places = zip(*pairs, strict=True)
-        more = short(differences([RunFolder(folder) for folder in places]))
-        if len(set(more)) < len(flights):
-            more = [str(folder) for folder in places]
-        named += [
-            flight._replace(label=f"{label} {words}".strip())
-            for flight, words in zip(flights, more, strict=True)
-        ]
-    return named
-
-
-def first(label: str, memory: Any, trials: int, length: int) -> Flight:
-    """The first `length` decisions of the first `trials` that `memory` [S, ...] holds."""
-    count = jnp.minimum(memory.count[:trials], length)
-    memory = memory.replace(rows=memory.rows[:trials, :length], count=count)
-    rows, (o, m) = np.asarray(memory.rows)[:, :, 0], QuadcopterSE3().spec[:2]
-    parts = np.split(rows, [o, o + m, o + m + 1, o + m + 2, o + m + 3], axis=-1)
-    return Flight(label, memory, parts[0], parts[1], parts[5], parts[3][..., 0])
-
-
-def cost(flight: Flight) -> dict[str, np.ndarray]:
-    """Per trial [S]: power loss [N], norm of u, furthest from the hover [m], whether lost."""
-    thrust = KT * THRUST * flight.action.sum(-1)
-    return {
-        "power_loss": np.abs(thrust - MASS * G).mean(1),
-        "norm_of_u": np.linalg.norm(flight.action, axis=-1).mean(1),
-        "furthest": np.linalg.norm(flight.next_obs[..., :3], axis=-1).max(1),
-        "lost": flight.terminated.max(1),
-    }
+def summary(numbers: dict[str, Any]) -> list[str]:
+    """A line per method: costs as mean ± deviation, error and tracking as IQM [band]."""
+    lines = []
+    for label, one in numbers.items():
+        parts = []
+        if "power_loss" in one:
+            (loss, loss_deviation), (norm, norm_deviation) = one["power_loss"], one["norm_of_u"]
+            parts.append(f"power loss {loss:g} ± {loss_deviation:g} N")
+            parts.append(f"|u| {norm:g} ± {norm_deviation:g}")
+            parts.append(f"kept the hover in {one['kept_hover']:.0%}")
+        for name, unit in (("error", ""), ("tracking", " m")):
+            if name in one:
+                middle, low, high = one[name]
+                parts.append(f"{name} {middle:g} [{low:g}, {high:g}]{unit}")
+        lines.append(f"{label}, {plural(one['trials'], 'trial')}: {', '.join(parts)}")
+    return lines
 
 
 def learn(run: Run, memory: Any, updates: int, key: Array) -> Params:
-    """A model of the decisions in one trial's memory. The key is consumed."""
+    """A model learned from the decisions in one trial's memory. The key is consumed."""
     learner, replay = run.agent.learners["model"], run.agent.replay
     first, drawing, updating = jax.random.split(key, 3)
     rows = learner.batches * learner.batch_size
@@ -149,40 +98,37 @@ def learn(run: Run, memory: Any, updates: int, key: Array) -> Params:
     return Params(**learner.params(state))
 
 
-def error(run: Run, params: Params, seen: Batch) -> Array:
-    """Of one step of the model, on decisions `seen` [B] (see above)."""
+def error(run: Run, params: Params, data: Batch) -> Array:
+    """Normalised one-step error [] of the model on the decisions `data` [B] (see the module)."""
     model: Any = run.agent.learners["model"]
-    ahead = jax.vmap(model.model.step, (None, 0, 0))(params.model, seen.obs, seen.action)
-    apart = (ahead - seen.next_obs)[:, TWIST]
-    change = (seen.next_obs - seen.obs)[:, TWIST]
-    return jnp.sqrt(jnp.mean(jnp.mean(apart**2, 0) / jnp.var(change, 0)))
+    predicted = jax.vmap(model.model.step, (None, 0, 0))(params.model, data.obs, data.action)
+    difference = (predicted - data.next_obs)[:, TWIST]
+    change = (data.next_obs - data.obs)[:, TWIST]
+    return jnp.sqrt(jnp.mean(jnp.mean(difference**2, 0) / jnp.var(change, 0)))
 
 
 class Tracked(NamedTuple):
     """A flight to a target."""
 
-    seen: Batch  # [B] its decisions
+    data: Batch  # [B] its decisions
     distance: Array  # [B+1] to the target [m]
     turned_over: Array  # []
 
 
 def track(run: Run, params: Params, steps: int, key: Array) -> Tracked:
-    """MPPI by the model in `params`, for B = `steps` decisions. The key is consumed."""
+    """MPPI with the model in `params`, for B = `steps` decisions. The key is consumed."""
     u, states = rollout_with_actions(run.agent.episode, run.controllers["full"], params, key, steps)
     no, x = jnp.zeros(steps), states.obs
     distance = jnp.linalg.norm(x[:, :3], axis=-1)
     return Tracked(Batch(x[:-1], u, no, no, no, x[1:], u), distance, states.terminated[-1])
 
 
-def measure(flights: list[Flight], updates: int, steps: int) -> dict[str, dict[str, Any]]:
-    """Per method and trial all that is reported of it; a line is printed as each is done."""
+def measure(flights: list[Flight], updates: int, steps: int) -> Results:
+    """Error and tracking of each method's models, and tracking of the exact model.
+
+    Prints a line as each method is done.
+    """
     began = perf_counter()
-    dt = QuadcopterSE3().spec.dt
-    found = {flight.label: cost(flight) for flight in flights}
-    if not updates:
-        for label, numbers in found.items():
-            print(line(label, summarise(numbers, dt)), flush=True)
-        return found
     print(f"compiling; then {len(flights)} methods, each {updates:,} updates a trial", flush=True)
     run = build(load([*TRACKING, f"episode.steps={steps + 1}"]))
     known = build(load([*TRACKING, *KNOWN, f"episode.steps={steps + 1}"]))
@@ -190,94 +136,130 @@ def measure(flights: list[Flight], updates: int, steps: int) -> dict[str, dict[s
     keys = jax.vmap(lambda i: jax.random.split(jax.random.key(i)))(jnp.arange(trials))
     exact = jax.jit(jax.vmap(lambda k: track(known, Params(), steps, k)))(keys[:, 1])
 
-    def one(given: tuple[Any, Batch, Array]) -> tuple[Array, Array, Array]:
-        memory, seen, (learning, flying) = given
+    def one(args: tuple[Any, Batch, Array]) -> dict[str, Array]:
+        memory, data, (learning, flying) = args
         params = learn(run, memory, updates, learning)
-        flown = track(run, params, steps, flying)
-        return error(run, params, seen), flown.distance, flown.turned_over
+        tracked = track(run, params, steps, flying)._asdict()
+        return {"error": error(run, params, data)} | {name: tracked[name] for name in TRACKED}
 
-    found[EXACT] = {
-        "distance": np.asarray(exact.distance),
-        "turned_over": np.asarray(exact.turned_over),
-    }
-    print(line(EXACT, summarise(found[EXACT], dt)), flush=True)
-    all_of = jax.jit(lambda *given: jax.lax.map(one, given))  # on two cores faster than `vmap`
+    results: Results = {EXACT: {name: np.asarray(getattr(exact, name)) for name in TRACKED}}
+    all_trials = jax.jit(lambda *args: jax.lax.map(one, args))  # on two cores faster than `vmap`
     for number, flight in enumerate(flights, 1):
-        names = ("error", "distance", "turned_over")
-        learned = map(np.asarray, all_of(flight.memory, exact.seen, keys))
-        found[flight.label] |= dict(zip(names, learned, strict=True))
+        learned = all_trials(flight.memory, exact.data, keys)
+        results[flight.label] = {name: np.asarray(value) for name, value in learned.items()}
         progress = f"{number} of {len(flights)}, {perf_counter() - began:.0f} s"
-        words = line(flight.label, summarise(found[flight.label], dt))
-        print(f"{words} ({progress})", flush=True)
-    return {**{flight.label: found[flight.label] for flight in flights}, EXACT: found[EXACT]}
+        print(f"{flight.label}: learned and flown ({progress})", flush=True)
+    return results
 
 
-def summarise(found: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
-    """What the JSON holds of one method.
-
-    Of what a flight cost mean and deviation over trials; of what its model can do IQM and band.
-    """
-    numbers: dict[str, Any] = {"trials": len(next(iter(found.values())))}
-    for name in [n for n in ("power_loss", "norm_of_u", "furthest") if n in found]:
-        numbers[name] = [_short(found[name].mean()), _short(found[name].std())]
-    if "lost" in found:
-        numbers["kept_hover"] = _short(1 - found["lost"].mean())
-    if "error" in found:
-        numbers["error"] = _banded(found["error"])
-    if "distance" in found:
-        distance = found["distance"]
+def reported(values: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
+    """The numbers of one method: mean and deviation of costs; IQM and band of the rest."""
+    numbers: dict[str, Any] = {"trials": len(next(iter(values.values())))}
+    for name in [n for n in ("power_loss", "norm_of_u", "furthest") if n in values]:
+        numbers[name] = [_rounded(values[name].mean()), _rounded(values[name].std())]
+    if "lost" in values:
+        numbers["kept_hover"] = _rounded(1 - values["lost"].mean())
+    if "error" in values:
+        numbers["error"] = _banded(values["error"])
+    if "distance" in values:
+        distance = values["distance"]
         numbers["tracking"] = _banded(distance.mean(1))
-        marks = [at for at in MARKS if round(at / dt) < distance.shape[1]]
-        numbers |= {
-            f"distance_after_{at:g}_s": _banded(distance[:, round(at / dt)]) for at in marks
-        }
-        numbers["turned_over_tracking"] = _short(found["turned_over"].mean())
+        for mark in MARKS:
+            if round(mark / dt) < distance.shape[1]:
+                numbers[f"distance_after_{mark:g}_s"] = _banded(distance[:, round(mark / dt)])
+        numbers["turned_over_tracking"] = _rounded(values["turned_over"].mean())
     return numbers
-
-
-def line(label: str, numbers: dict[str, Any]) -> str:
-    """One method in words: means and deviations of costs, IQM and band of what a model can do."""
-    parts = [f"{label}, {numbers['trials']} trial{'s' * (numbers['trials'] != 1)}:"]
-    if "power_loss" in numbers:
-        loss, effort = numbers["power_loss"], numbers["norm_of_u"]
-        parts.append(f"power loss {loss[0]:g} ± {loss[1]:g} N, |u| {effort[0]:g} ± {effort[1]:g},")
-        parts.append(f"kept the hover in {numbers['kept_hover']:.0%},")
-    for name, unit in (("error", ""), ("tracking", " m")):
-        if name in numbers:
-            middle, low, high = numbers[name]
-            parts.append(f"{name} {middle:g} [{low:g}, {high:g}]{unit},")
-    return " ".join(parts).rstrip(",")
 
 
 def _banded(each: np.ndarray) -> list[float]:
     """IQM over trials [S], and its band."""
-    return [_short(iqm(each)), *map(_short, band(each))]
+    return [_rounded(iqm(each)), *map(_rounded, band(each))]
 
 
-def _short(value: Any) -> float:
+def _rounded(value: Any) -> float:
+    """Four significant digits."""
     return float(f"{value:.4g}")
 
 
-def main() -> None:
-    """The command."""
-    given, _ = arguments.read(__doc__, ARGUMENTS)
-    folders = sorted(Path(path) for path in glob.glob(given["runs"]))
-    if not folders:
-        raise UsageError(f"runs={given['runs']}: no run folder there; say {RUNS}")
-    out = output("out", given["out"], SUFFIXES, ".json")
-    command.prepare(load(TRACKING))
-    updates, steps = given["updates"], given["steps"]
-    flights = read_all(folders)
-    least = [min(flight.obs.shape[axis] for flight in flights) for axis in (0, 1)]
-    flights = [first(flight.label, flight.memory, *least) for flight in flights]
-    found, dt = measure(flights, updates, steps), QuadcopterSE3().spec.dt
-    numbers = {label: summarise(each, dt) for label, each in found.items()}
-    figure = outcome(found, dt) if EXACT in found else signals(flights, dt)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=130)
-    out.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n", encoding="utf-8")
-    print(f"{out} and {out.with_suffix('.json')}")
+def named(label: str, trials: int = 0) -> str:
+    """A label for a legend: "ou_noise 0.1" is "ou_noise, level 0.1", with the number of trials."""
+    algo, *rest = label.split()
+    words = algo if label != EXACT else label
+    if label != EXACT:
+        words += f", {'level' if algo.endswith('noise') else 'gain'} {' '.join(rest)}"
+    return f"{words} ({plural(trials, 'trial')})" if trials else words
 
 
-if __name__ == "__main__":
-    command.guarded(main)
+def plot_flights(flights: list[Flight], dt: float) -> Any:
+    """Actions and velocities of the first trial of each method."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(2.2 * max(3, len(flights)), 4), layout="constrained")
+        panels: Any = figure.subplots(3, len(flights), squeeze=False, sharex=True, sharey="row")
+        for column, flight in zip(panels.T, flights, strict=True):
+            t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
+            column[0].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
+            column[1].plot(t, x[:, V], lw=0.8)
+            column[2].plot(t, x[:, W], lw=0.8)
+            column[0].set_title(named(flight.label).replace(", ", "\n"), fontsize=8)
+            column[2].set_xlabel("Time [s]")
+        for axes, name in zip(panels[:, 0], ("|u|", "v [m/s]", "w [rad/s]"), strict=True):
+            axes.set_ylabel(name)
+    return figure
+
+
+def plot_tracking(results: Results, dt: float) -> Any:
+    """Tracking over time; the models' error and tracking over the power loss of their flights."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    methods = sorted({label.split()[0] for label in results if label != EXACT})
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(13, 4.2 + ENTRY * len(results)), layout="constrained")
+        over_time, errors, tracking = figure.subplots(1, 3)
+        _over_time(over_time, EXACT, results[EXACT]["distance"], ("k", "-"), dt)
+        for name, colour in zip(methods, COLOURS, strict=False):
+            labels = [la for la in results if la.split()[0] == name and la != EXACT]
+            for i, label in enumerate(labels):
+                style = colour, STROKES[i % len(STROKES)]
+                _over_time(over_time, label, results[label]["distance"], style, dt)
+            each = [results[label] for label in labels]
+            _over_power(errors, name, [(one, one["error"]) for one in each], colour)
+            _over_power(tracking, name, [(one, one["distance"].mean(1)) for one in each], colour)
+        exact = iqm(results[EXACT]["distance"].mean(1))
+        tracking.axhline(exact, color="k", lw=0.8, label=EXACT)
+        over_time.set(
+            xlim=(0, None), xlabel="Time [s]", title="Distance to the target [m]", yscale="log"
+        )
+        errors.set(title="Error of one decision")
+        tracking.set(title="Mean distance to the target [m]")
+        for axes in (errors, tracking):
+            axes.set(xlabel="Power loss of the flight [N]", xscale="log", yscale="log")
+            axes.margins(0.12)
+            plain_log(axes.xaxis)
+        for axes in (over_time, errors, tracking):
+            plain_log(axes.yaxis)
+            legend_below(axes)
+    return figure
+
+
+def _over_time(axes: Any, label: str, distance: np.ndarray, style: Any, dt: float) -> None:
+    """IQM and band of the distances to the target [S, B+1] of one method."""
+    each, (colour, stroke) = distance[:, ::10], style
+    t, (low, high) = 10 * dt * np.arange(each.shape[1]), band(each, 500)
+    marker = "o" if len(t) == 1 else None
+    shown = named(label, len(each))
+    axes.plot(t, iqm(each), color=colour, linestyle=stroke, marker=marker, label=shown)
+    axes.fill_between(t, low, high, color=colour, alpha=0.12, lw=0)
+
+
+def _over_power(axes: Any, name: str, pairs: list[tuple[dict, np.ndarray]], colour: str) -> None:
+    """IQM and band of values [S] per setting of a method, over the power loss of its flights."""
+    points = [(one["power_loss"].mean(), values) for one, values in pairs]
+    points.sort(key=lambda point: point[0])
+    middle = np.array([iqm(values) for _, values in points])
+    ends = np.abs(np.array([band(values) for _, values in points]).T - middle[None])
+    power = [at for at, _ in points]
+    axes.errorbar(power, middle, ends, color=colour, marker="o", ms=4, label=name)

@@ -114,7 +114,7 @@ def test_a_shorter_seed_does_not_cut_the_others(tmp_path):
 
 
 def test_a_short_run_without_a_common_step_is_a_point_of_its_own(tmp_path):
-    """A run of 100 steps, evaluated at its end, beside one that was first evaluated at 500."""
+    """A run of 100 steps, evaluated at its end, and one that was first evaluated at 500."""
     run(tmp_path / "a", [(100, 7.0)], 0, metric="eval/return")
     run(tmp_path / "b", [(500, 1.0), (1000, 2.0)], 1, metric="eval/return")
     (curve,) = curves(tmp_path, "eval/return")
@@ -138,8 +138,15 @@ def test_a_run_without_the_metric_yet_is_left_out_with_a_note(tmp_path):
     }
 
 
+def test_a_task_without_the_metric_is_left_out_with_a_note(tmp_path):
+    run(tmp_path / "a", [1.0], metric="planner/lyapunov")
+    run(tmp_path / "b", [1.0], metric="belief/best", task="no_dynamics", algo="bayesopt")
+    (curve,) = curves(tmp_path, "planner/lyapunov")
+    assert (curve.task, curve.notes) == ("hopper", ("no_dynamics, bayesopt: no planner/lyapunov",))
+
+
 def test_failed_evaluations_count_and_cut_nothing(tmp_path):
-    """As the lowest value that anyone of the task had up to there, of another method too."""
+    """As the lowest value of any learner of the task up to there, including other methods."""
     for seed in range(3):
         run(tmp_path / f"s{seed}", [10.0, 20, 30, 40], seed, metric="eval/return")
     failing = run(tmp_path / "s3", [10.0, None, None, 41], 3, metric="eval/return")
@@ -281,11 +288,11 @@ def test_wall_time_is_an_x(tmp_path):
 
 
 def test_a_swept_number_is_an_x(tmp_path):
-    """What each run had at last, over its number; a seed is one learner in all of them."""
+    """The last value of each run over its number; a seed is one learner in all of them."""
     for shown, last in [(10, 7.0), (2, 3.0), (5, 4.0)]:
         for seed in (0, 1):
-            place = tmp_path / f"{shown}-{seed}"
-            run(place, [100.0, last + 2 * seed], seed, data=f"{{shown: {shown}}}")
+            folder = tmp_path / f"{shown}-{seed}"
+            run(folder, [100.0, last + 2 * seed], seed, data=f"{{shown: {shown}}}")
     (curve,) = curves(tmp_path, x="data.shown")
     assert (curve.x.tolist(), curve.seeds) == ([2, 5, 10], (0, 1))
     assert curve.each.tolist() == [[3, 4, 7], [5, 6, 9]]
@@ -294,13 +301,13 @@ def test_a_swept_number_is_an_x(tmp_path):
         curves(tmp_path, x="task")
 
 
-def test_a_run_at_work_is_read_up_to_its_last_whole_row(tmp_path):
+def test_a_run_in_progress_is_read_up_to_its_last_complete_row(tmp_path):
     folder = run(tmp_path / "a", [1.0, 3])
     with (folder / "metrics.jsonl").open("a") as file:
         file.write('{"step": 40, "seed": 0, "train/ret')
     (curve,) = curves(folder)
     assert (curve.x.tolist(), curve.iqm.tolist()) == ([10, 20], [1, 3])
-    assert curve.notes == (f"hopper, sac: the last row of {folder} is cut; left out",)
+    assert curve.notes == (f"hopper, sac: the last row of {folder} is incomplete; left out",)
 
 
 def test_what_does_not_exist_is_named_with_what_does(tmp_path):

@@ -1,4 +1,4 @@
-"""The command that tells what flights cost and taught."""
+"""The study of model learning in flight."""
 
 import json
 import re
@@ -12,12 +12,11 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from tiny import call
 
-from hybrid_rl import config, train
+from hybrid_rl import config, figures, train
 from hybrid_rl.cli import command
 from hybrid_rl.data.replay import Memory, Replay
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.studies import flight_plots
-from hybrid_rl.studies import model_learning as flights
+from hybrid_rl.studies import flights, model_learning
 from hybrid_rl.types import Batch, Params
 
 SHORT = [
@@ -27,6 +26,11 @@ SHORT = [
     "log_every=20",
     "compile_cache=null",
 ]
+
+
+def draw(*arguments) -> int:
+    """Exit code of the command."""
+    return call(lambda: command.guarded(figures.main), "study=model_learning", *arguments)
 
 
 def flight(**fields: np.ndarray) -> flights.Flight:
@@ -59,7 +63,7 @@ def test_cost_by_hand() -> None:
 
 
 def test_first_cuts_trials_and_decisions() -> None:
-    """Rows of zeros but for the place along x, which counts trials and decisions."""
+    """Rows of zeros except for the position along x, which counts trials and decisions."""
     spec = QuadcopterSE3().spec
     rows = jnp.zeros((3, 5, 1, Replay.width(spec)))
     rows = rows.at[..., 0].set(10 * jnp.arange(3.0)[:, None, None] + jnp.arange(5.0)[None, :, None])
@@ -69,57 +73,60 @@ def test_first_cuts_trials_and_decisions() -> None:
 
 
 def test_error_of_the_exact_model_and_of_its_linearisation() -> None:
-    """The one is right, the other nearly."""
+    """The exact model has none, the linearisation a small one."""
     world, rng = QuadcopterSE3(), np.random.default_rng(0)
     x = jnp.asarray(rng.uniform(-0.3, 0.3, (50, 12)), jnp.float32)
     obs, u = jax.vmap(world.from_local)(x), jnp.asarray(rng.uniform(-1, 1, (50, 4)), jnp.float32)
     after, no = jax.vmap(world.dynamics)(obs, u), jnp.zeros(50)
-    seen = Batch(obs, u, no, no, no, after, u)
-    found = {}
+    data = Batch(obs, u, no, no, no, after, u)
+    errors = {}
     for name in ("exact", "local_linear"):
-        over = [*flights.TRACKING, f"model@known_model={name}", "likelihood.model=${known_model}"]
-        found[name] = float(flights.error(config.build(config.load(over)), Params(), seen))
-    assert found["exact"] == 0
-    assert 0.01 < found["local_linear"] < 0.5
+        model = f"model@known_model={name}", "likelihood.model=${known_model}"
+        run = config.build(config.load([*model_learning.TRACKING, *model]))
+        errors[name] = float(model_learning.error(run, Params(), data))
+    assert errors["exact"] == 0
+    assert 0.01 < errors["local_linear"] < 0.5
 
 
 def test_runs_become_a_picture_and_its_numbers(tmp_path, capsys) -> None:
-    """Two methods, labelled apart; what was flown is what the run remembers, and what it logged."""
+    """Two methods with two labels; the costs are those of the replay memory and of the log."""
     train.train(config.load([*SHORT, "algo=ou_noise", f"run_dir={tmp_path / 'runs' / 'ou'}"]))
     more = ["algo=normal_noise", "noisy.level=0", f"run_dir={tmp_path / 'runs' / 'still'}"]
     train.train(config.load([*SHORT, *more, "env.twist=0"]))
-    read = flights.read(tmp_path / "runs" / "still")
-    assert read.label == "normal_noise 0"
-    np.testing.assert_allclose(read.action, 0.40875, atol=1e-4)
-    np.testing.assert_allclose(read.next_obs[:, :-1], read.obs[:, 1:])
+    still = flights.read(tmp_path / "runs" / "still")
+    assert still.label == "normal_noise 0"
+    np.testing.assert_allclose(still.action, 0.40875, atol=1e-4)
+    np.testing.assert_allclose(still.next_obs[:, :-1], still.obs[:, 1:])
     out = tmp_path / "f.png"
     arguments = (f"runs={tmp_path}/runs/*", f"out={out}", "updates=5", "steps=4")
-    assert call(lambda: command.guarded(flights.main), *arguments) == 0
+    assert draw(*arguments) == 0
     lines = capsys.readouterr().out.splitlines()
     begins = (
         "compiling",
+        "normal_noise 0: learned and flown (1 of 2, ",
+        "ou_noise 0.1: learned and flown (2 of 2, ",
+        "normal_noise 0, 2 trials: ",
+        "ou_noise 0.1, 2 trials: ",
         "exact model, 2 trials: tracking ",
-        "normal_noise 0, 2",
-        "ou_noise 0.1, 2",
     )
-    for line, begin in zip(lines[-5:-1], begins, strict=True):
+    for line, begin in zip(lines[-7:-1], begins, strict=True):
         assert line.startswith(begin)
-    assert "kept the hover in 100%, error " in lines[-2]
-    assert "(2 of 2, " in lines[-2]
-    said = json.loads(out.with_suffix(".json").read_text())
-    assert set(said) == {"normal_noise 0", "ou_noise 0.1", "exact model"}
-    assert said["normal_noise 0"]["power_loss"][0] < 1e-3 < said["ou_noise 0.1"]["power_loss"][0]
-    assert said["ou_noise 0.1"]["kept_hover"] == 1
+    assert "kept the hover in 100%, error " in lines[-3]
+    numbers = json.loads(out.with_suffix(".json").read_text())
+    assert set(numbers) == {"normal_noise 0", "ou_noise 0.1", "exact model"}
+    hover, noise = numbers["normal_noise 0"], numbers["ou_noise 0.1"]
+    assert hover["power_loss"][0] < 1e-3 < noise["power_loss"][0]
+    assert noise["kept_hover"] == 1
     rows = map(json.loads, (tmp_path / "runs" / "ou" / "metrics.jsonl").read_text().splitlines())
     logged = [row["world/power_loss"] for row in rows if "world/power_loss" in row]
-    assert said["ou_noise 0.1"]["power_loss"][0] == pytest.approx(np.mean(logged), rel=1e-3)
+    assert noise["power_loss"][0] == pytest.approx(np.mean(logged), rel=1e-3)
     assert out.stat().st_size > 1000
-    assert call(lambda: command.guarded(flights.main), *arguments[:2], "updates=0") == 0
+    assert draw(*arguments[:2], "updates=0") == 0
     assert "tracking" not in json.loads(out.with_suffix(".json").read_text())["ou_noise 0.1"]
 
 
 def test_a_batch_and_its_update_have_keys_of_their_own() -> None:
-    """A learner whose state counts the updates that were given the key of their batch."""
+    """A learner whose state counts the updates that received the key of their batch."""
     same = lambda batch, key: jnp.all(batch == jax.random.key_data(key))  # noqa: E731
     learner = SimpleNamespace(
         batch_size=1,
@@ -131,23 +138,25 @@ def test_a_batch_and_its_update_have_keys_of_their_own() -> None:
     replay = SimpleNamespace(sample=lambda memory, spec, size, key: jax.random.key_data(key))
     agent = SimpleNamespace(learners={"model": learner}, replay=replay, spec=None)
     run: Any = SimpleNamespace(agent=agent)
-    assert flights.learn(run, None, 5, jax.random.key(0)).model == 0
+    assert model_learning.learn(run, None, 5, jax.random.key(0)).model == 0
 
 
-def test_a_method_in_words() -> None:
-    """Cost as mean and deviation, what its model can do with a band; costs alone without one."""
-    numbers = flights.summarise(flights.cost(flight()), 0.005)
+def test_the_summary_has_a_line_a_method() -> None:
+    """Cost as mean and deviation, error and tracking with a band if a model was learned."""
+    numbers = model_learning.reported(flights.cost(flight()), 0.005)
     cost = "hover 1, 2 trials: power loss 0 ± 0 N, |u| 0.8175 ± 0, kept the hover in 100%"
     numbers["power_loss"] = [0.0, 0.0]  # not the rounding of float32
-    assert flights.line("hover 1", numbers) == cost
+    assert model_learning.summary({"hover 1": numbers}) == [cost]
     more = {"error": [0.2, 0.1, 0.3], "tracking": [1.0, 0.5, 2.0]}
-    assert flights.line("hover 1", numbers | more) == (
-        f"{cost}, error 0.2 [0.1, 0.3], tracking 1 [0.5, 2] m"
-    )
+    exact = {"trials": 2, "tracking": [1.0, 0.5, 2.0]}
+    assert model_learning.summary({"hover 1": numbers | more, "exact model": exact}) == [
+        f"{cost}, error 0.2 [0.1, 0.3], tracking 1 [0.5, 2] m",
+        "exact model, 2 trials: tracking 1 [0.5, 2] m",
+    ]
 
 
-def test_flights_of_one_label_are_kept_apart(tmp_path, monkeypatch) -> None:
-    """By the settings that differ, else by their folders: none replaces another."""
+def test_flights_of_one_label_have_labels_of_their_own(tmp_path, monkeypatch) -> None:
+    """By the settings that differ, or by their folders: none replaces another."""
     for name, twist in (("a", 0), ("b", 1), ("c", 1)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "config.yaml").write_text(f"task: t\nenv: {{twist: {twist}}}\n")
@@ -158,24 +167,24 @@ def test_flights_of_one_label_are_kept_apart(tmp_path, monkeypatch) -> None:
     assert [one.label for one in flights.read_all([b, c])] == [f"ou 1 {b}", f"ou 1 {c}"]
 
 
-def test_legends_say_what_their_numbers_are() -> None:
+def test_legends_name_the_quantity_of_a_label() -> None:
     assert (
-        flight_plots.named("kle3_model_learning 11", 20)
+        model_learning.named("kle3_model_learning 11", 20)
         == "kle3_model_learning, gain 11 (20 trials)"
     )
-    assert flight_plots.named("ou_noise 0.1", 1) == "ou_noise, level 0.1 (1 trial)"
-    assert flight_plots.named("exact model", 2) == "exact model (2 trials)"
+    assert model_learning.named("ou_noise 0.1", 1) == "ou_noise, level 0.1 (1 trial)"
+    assert model_learning.named("exact model", 2) == "exact model (2 trials)"
 
 
 def test_the_picture_has_plain_ticks_and_whole_points() -> None:
-    """On logarithmic axes, too; and no legend lies on a curve."""
+    """On logarithmic axes, too; and no legend covers a curve."""
     rng = np.random.default_rng(0)
     cost = {"power_loss": np.array([0.5, 0.6]), "error": np.array([0.2, 0.3])}
-    found = {
+    results = {
         label: cost | {"distance": rng.uniform(0.5, 2, (2, 100))}
         for label in ("ou_noise 0.1", "kle3 11", "exact model")
     }
-    figure = flight_plots.outcome(found, 0.005)
+    figure = model_learning.plot_tracking(results, 0.005)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     for axes in figure.axes:
@@ -190,16 +199,3 @@ def test_the_picture_has_plain_ticks_and_whole_points() -> None:
             assert all(re.fullmatch(r"[0-9,.]+", text.get_text()) for text in inside)
     low, high = figure.axes[1].get_xlim()
     assert low < 0.55 < high
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [("runs=nowhere/*", "no run folder there"), ("runs=*", "must end in .png")],
-)
-def test_bad_arguments_are_one_line(given, words, capsys, tmp_path, monkeypatch) -> None:
-    """And exit code 2."""
-    (tmp_path / "a").mkdir()
-    monkeypatch.chdir(tmp_path)
-    arguments = [given, "out=a.gif"] if given == "runs=*" else [given]
-    assert call(lambda: command.guarded(flights.main), *arguments) == 2
-    assert words in capsys.readouterr().err

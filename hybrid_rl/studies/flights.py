@@ -1,0 +1,95 @@
+"""Quadcopter flights in the replay memories of run folders, and what they cost."""
+
+import itertools
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from omegaconf import OmegaConf
+
+from hybrid_rl.config import build
+from hybrid_rl.envs.analytic.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import checkpoint
+from hybrid_rl.run.results import RunFolder, differences, short
+from hybrid_rl.training.loop import Loop
+
+
+class Flight(NamedTuple):
+    """The flights of one method: S trials of T decisions."""
+
+    label: str
+    memory: Any  # [S, T, ...]
+    obs: np.ndarray  # [S, T, 18]
+    action: np.ndarray  # [S, T, 4]
+    next_obs: np.ndarray  # [S, T, 18]
+    terminated: np.ndarray  # [S, T]
+
+
+def read(folder: Path) -> Flight:
+    """The flight in the replay memory of the run in `folder`.
+
+    Raises:
+        UsageError: if the run has no complete memory of one quadcopter.
+    """
+    if not RunFolder(folder).settings:  # a damaged file raises here, with its name
+        raise UsageError(f"runs={folder}: not a run folder (it has no config.yaml)")
+    config: Any = OmegaConf.load(folder / "config.yaml")
+    if config.task != "quadcopter_se3" or config.num_envs != 1 or not config.checkpoint_replay:
+        raise UsageError(f"runs={folder}: needs quadcopter_se3, num_envs=1, checkpoint_replay=true")
+    run = build(config)
+    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+    like = like.replace(env=None, control=None, learners=None, key=None)
+    memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
+    explorer = config.controllers.full
+    strength = explorer.level if "kind" in explorer else explorer.gain
+    label = f"{config.algo} {strength:g}"
+    decisions = int(np.asarray(memory.count).min())
+    return first(label, memory, len(memory.rows), min(decisions, memory.rows.shape[1]))
+
+
+def read_all(folders: list[Path]) -> list[Flight]:
+    """The flights of all runs in the order of their labels.
+
+    Equal labels are extended by the settings that differ, or by the folders.
+    """
+    pairs = sorted(((read(folder), folder) for folder in folders), key=lambda pair: pair[0].label)
+    flights = []
+    for label, group in itertools.groupby(pairs, key=lambda pair: pair[0].label):
+        members, paths = zip(*group, strict=True)
+        more = short(differences([RunFolder(path) for path in paths]))
+        if len(set(more)) < len(members):
+            more = [str(path) for path in paths]
+        flights += [
+            flight._replace(label=f"{label} {words}".strip())
+            for flight, words in zip(members, more, strict=True)
+        ]
+    return flights
+
+
+def first(label: str, memory: Any, trials: int, length: int) -> Flight:
+    """The first `length` decisions of the first `trials` in `memory` [S, ...]."""
+    count = jnp.minimum(memory.count[:trials], length)
+    memory = memory.replace(rows=memory.rows[:trials, :length], count=count)
+    rows, (o, m) = np.asarray(memory.rows)[:, :, 0], QuadcopterSE3().spec[:2]
+    parts = np.split(rows, [o, o + m, o + m + 1, o + m + 2, o + m + 3], axis=-1)
+    return Flight(label, memory, parts[0], parts[1], parts[5], parts[3][..., 0])
+
+
+def equal_size(flights: list[Flight]) -> list[Flight]:
+    """All flights cut to the fewest trials and to the shortest flight."""
+    trials, length = (min(flight.obs.shape[axis] for flight in flights) for axis in (0, 1))
+    return [first(flight.label, flight.memory, trials, length) for flight in flights]
+
+
+def cost(flight: Flight) -> dict[str, np.ndarray]:
+    """Per trial [S]: power loss [N], norm of u, furthest from the hover [m], whether lost."""
+    thrust = KT * THRUST * flight.action.sum(-1)
+    return {
+        "power_loss": np.abs(thrust - MASS * G).mean(1),
+        "norm_of_u": np.linalg.norm(flight.action, axis=-1).mean(1),
+        "furthest": np.linalg.norm(flight.next_obs[..., :3], axis=-1).max(1),
+        "lost": flight.terminated.max(1),
+    }

@@ -1,0 +1,191 @@
+"""Learning curves: panels, lines and notes, and their numbers."""
+
+import itertools
+import json
+from dataclasses import replace
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from tiny import call
+
+from hybrid_rl import figures
+from hybrid_rl.cli import command
+from hybrid_rl.figures import save
+from hybrid_rl.studies.curves import Curve, iqm
+from hybrid_rl.studies.learning_curves import figure, from_numbers, plot, summary, to_numbers
+from hybrid_rl.studies.style import COLOURS
+
+
+def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50, metric="train/return"):
+    x = np.linspace(1000, 200_000, points)
+    each = scale * (1 + np.arange(seeds))[:, None] * np.linspace(0, 1000, points)
+    names = tuple(f"runs/{seed}" for seed in range(seeds))
+    ends = each.min(0), each.max(0)
+    return Curve(task, metric, label, tuple(range(seeds)), names, x, each, iqm(each), *ends, ())
+
+
+def numbers_of(drawn, metric="train/return", x="step"):
+    return {"metric": metric, "x": x, "curves": [to_numbers(one) for one in drawn]}
+
+
+def test_a_panel_a_task_and_a_line_a_label_of_one_colour():
+    drawn = [curve("ant", "sac", 1), curve("hopper", "nn_mppi", 5), curve("hopper", "sac", 3)]
+    axes = plot(drawn).axes
+    assert [panel.get_title() for panel in axes] == ["ant", "hopper"]
+    labels = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in axes]
+    assert labels == [["sac (1 seed)"], ["nn_mppi (5 seeds)", "sac (3 seeds)"]]
+    assert [line.get_color() for line in axes[1].lines] == list(COLOURS[:2])
+    assert axes[0].lines[0].get_color() == axes[1].lines[1].get_color()
+    assert [len(panel.collections) for panel in axes] == [0, 2]  # one seed has no band
+    np.testing.assert_array_equal(axes[1].lines[1].get_ydata(), drawn[2].iqm)
+
+
+def test_labels_carry_units_and_thousands():
+    figure = plot([curve(scale=-1)])
+    figure.canvas.draw()
+    (panel,) = figure.axes
+    assert (panel.get_xlabel(), panel.get_ylabel()) == (
+        "Environment steps per learner",
+        "Training return",
+    )
+    assert "200,000" in [text.get_text() for text in panel.get_xticklabels()]
+    assert "\N{MINUS SIGN}1,600" in [text.get_text() for text in panel.get_yticklabels()]
+    (panel,) = plot([curve(metric="sac/alpha")], x="wall_s").axes
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("Wall time [h]", "sac/alpha")
+    assert panel.lines[0].get_xdata()[-1] == pytest.approx(200_000 / 3600)
+
+
+def test_several_metrics_are_rows_without_a_blank():
+    """One column a task; where a task lacks a metric the panels close up."""
+    metrics = ("train/return", "planner/mode_insertion_gradient")
+    drawn = [curve(task, metric=metric) for metric in metrics for task in ("ant", "hopper")]
+    axes = plot(drawn).axes
+    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "ant", "hopper"]
+    assert axes[3].get_ylabel() == "Mode insertion gradient"
+    assert [panel.get_subplotspec().rowspan.start for panel in axes] == [0, 0, 1, 1]
+    axes = plot(drawn[:3]).axes
+    assert len(axes) == axes[0].get_subplotspec().get_gridspec().ncols == 3
+    assert all(panel.lines for panel in axes)
+
+
+@pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
+def test_legends_and_notes_cover_no_axes(tasks, labels):
+    """In the boxes that the picture has when it is drawn; and none leaves the picture."""
+    names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
+    drawn = [
+        replace(
+            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}: {i} " + 30 * "word ",)
+        )
+        for task, i in names
+    ]
+    figure = plot(drawn)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    renderer = canvas.get_renderer()
+    panels = [panel.get_window_extent() for panel in figure.axes]
+    legends = [panel.get_legend().get_window_extent(renderer) for panel in figure.axes]
+    note = figure._supxlabel.get_window_extent(renderer)
+    for box in [*legends, note]:
+        assert not any(box.overlaps(panel.padded(-0.5)) for panel in panels)
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= box.y0 < box.y1 <= figure.bbox.y1
+    assert not any(note.overlaps(legend) for legend in legends)
+    labels_of_x = [panel.xaxis.label.get_window_extent(renderer) for panel in figure.axes]
+    assert not any(box.overlaps(other) for box in labels_of_x for other in legends)
+
+
+def test_notes_are_on_the_picture():
+    """Many are cut short, and say so."""
+    (text,) = [plot([replace(curve(), notes=("seed 3 diverged",))])._supxlabel.get_text()]
+    assert text == "seed 3 diverged"
+    many = replace(curve(), notes=tuple(f"note {i}" for i in range(20)))
+    lines = plot([many])._supxlabel.get_text().splitlines()
+    assert lines[-1] == "and 12 more notes, in the JSON next to this picture"
+
+
+def test_markers_at_the_right_edge_are_whole():
+    figure = plot([curve(points=5)])
+    figure.canvas.draw()
+    (panel,) = figure.axes
+    last = panel.transData.transform((200_000, 0))[0]
+    assert panel.bbox.x1 - last > panel.lines[0].get_markersize() / 2 * figure.dpi / 72
+
+
+def test_a_line_is_thin_where_seeds_are_missing():
+    """The thick line and the band end with the last point that all seeds have."""
+    one = curve(points=5)
+    one.each[2, 3:] = np.nan
+    thick, thin = plot([one]).axes[0].lines
+    np.testing.assert_array_equal(np.isfinite(thick.get_ydata()), [True] * 3 + [False] * 2)
+    np.testing.assert_array_equal(np.isfinite(thin.get_ydata()), [False] * 2 + [True] * 3)
+    assert thin.get_linewidth() < thick.get_linewidth()
+
+
+def test_more_lines_than_colours_stay_apart():
+    drawn = [curve(label=f"algo{i:02}") for i in range(2 * len(COLOURS) + 1)]
+    lines = plot(drawn).axes[0].lines
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(drawn)
+
+
+def test_a_single_point_is_visible():
+    (panel,) = plot([curve(points=1)]).axes
+    assert panel.lines[0].get_marker() == "o"
+
+
+def test_the_picture_is_drawn_and_its_numbers_are_float32(tmp_path):
+    drawn, out = [curve(seeds=5)], tmp_path / "new" / "a.png"
+    save(plot(drawn), numbers_of(drawn), out)
+    (one,) = json.loads(out.with_suffix(".json").read_text())["curves"]
+    assert (one["task"], one["label"], one["seeds"]) == ("hopper", "sac", [0, 1, 2, 3, 4])
+    assert one["iqm"] == drawn[0].iqm.astype("float32").tolist()
+    picture = iio.imread(out)
+    assert picture.shape[1] == 880
+    assert 600 < picture.shape[0] < 700
+    blue = np.abs(picture[..., :3].astype(int) - [0x00, 0x72, 0xB2]).max(-1) < 8
+    assert blue.sum() > 1000  # the line was drawn
+
+
+def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
+    """The same curves and picture; numbers that are the source are left as they are."""
+    one = curve()
+    one.each[2, -1] = np.nan
+    drawn = [replace(one, notes=("a note",)), curve(metric="sac/alpha")]
+    source = tmp_path / "a.json"
+    save(plot(drawn), numbers_of(drawn, "train/return,sac/alpha"), tmp_path / "a.png")
+    source.write_text(source.read_text().replace("\n", ""))  # another layout
+    before = source.read_bytes()
+    again = from_numbers(figure(source)[1])
+    for name in ("label", "metric", "seeds", "notes"):
+        assert [getattr(c, name) for c in again] == [getattr(c, name) for c in drawn]
+    for name in ("x", "each", "iqm", "low", "high"):
+        for old, new in zip(drawn, again, strict=True):
+            np.testing.assert_allclose(getattr(new, name), getattr(old, name), rtol=1e-6)
+    first, second = (
+        call(lambda: command.guarded(figures.main), f"runs={source}", f"out={tmp_path / name}.svg")
+        for name in ("a", "b")
+    )
+    assert (first, second) == (0, 0)
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+    assert source.read_bytes() == before
+
+
+def test_a_file_without_curves_is_refused(tmp_path, capsys):
+    (tmp_path / "c.json").write_text("{}")
+    arguments = f"runs={tmp_path / 'c.json'}", f"out={tmp_path / 'c.png'}"
+    assert call(lambda: command.guarded(figures.main), *arguments) == 2
+    assert "c.json: has no curves written by figures" in capsys.readouterr().err
+
+
+def test_the_summary_compares_and_counts_who_reaches_the_threshold():
+    """Up to the last point that all seeds have; then the notes."""
+    one, two = curve(label="a", points=5), replace(curve(label="b", scale=2), notes=("a note",))
+    one.each[2, -1] = np.nan
+    lines = summary(numbers_of([one, two]) | {"threshold": 1500.0})
+    assert lines[0].startswith("hopper, a: 3 seeds, last train/return 1,500 [")
+    assert " at 150,250, mean " in lines[0]
+    assert lines[0].endswith(", 1,500 reached by 2 of 3")
+    assert ", 1,500 reached by 3 of 3 at " in lines[1]
+    assert lines[2].startswith("hopper, train/return: a ahead of b in 1")
+    assert lines[3:] == ["note: a note"]
