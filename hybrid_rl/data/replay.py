@@ -112,8 +112,8 @@ def unpack(rows: Array, spec: Spec) -> Transition:
 
 def as_batch(new: Transition) -> Batch:
     """Transitions [B, ...] as a batch, whose next actions are unknown."""
-    flags = (flag.astype(jnp.float32) for flag in (new.terminated, new.truncated))
-    return Batch(new.obs, new.action, new.reward, *flags, new.next_obs)
+    terminated, truncated = (f.astype(jnp.float32) for f in (new.terminated, new.truncated))
+    return Batch(new.obs, new.action, new.reward, terminated, truncated, new.next_obs)
 
 
 def _packed(new: Transition) -> Array:

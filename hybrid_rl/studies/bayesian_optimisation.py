@@ -5,7 +5,7 @@
 Figures 6-3 to 6-5. Best value over measurements and the Lyapunov function V over time, median and
 range over trials; and the measurements of the first trial of each method. The summary has the best
 value, how many trials get above 95% of the highest hill (1.0), after how many measurements, and the
-greatest V, as interquartile mean and 95% band over trials. group=explorer.level compares levels of
+greatest V, as interquartile mean and 95% band over trials. group=guarded.level compares levels of
 the guard instead of methods.
 """
 
@@ -26,7 +26,7 @@ from hybrid_rl.studies.style import (
     write_notes,
 )
 
-BEST, V, POSITION, VALUE = "belief/best", "planner/lyapunov", "belief/place", "belief/value"
+BEST, V, POSITION, VALUE = "belief/best", "planner/lyapunov", "belief/position", "belief/value"
 FEW = 10  # points up to which each has a marker
 MARKS = (10, 20, 40, 60, 80)  # measurements after which the best value is reported
 REACHED = 0.95  # of the highest hill

@@ -31,6 +31,7 @@ from hybrid_rl.studies.time_averages import (
     grid,
     histogram,
     log_density,
+    objective,
     on_grid,
     trajectories,
 )
@@ -152,15 +153,14 @@ def marginals(task: str, seeds: int, steps: int) -> tuple[Any, dict]:
     """Marginals of target and time average, a panel per coordinate of the search space."""
     import jax
 
-    from hybrid_rl.core import ergodic
-
     run = build(load([f"task={task}", "algo=kle3", f"episode.steps={steps + 1}"]))
-    low, high = tuple(run.config.search.low), tuple(run.config.search.high)
-    s = np.asarray(ergodic.uniform(low, high, 100_000, jax.random.key(0)))
+    domain = objective(run).domain
+    low, high = domain.low, domain.high
+    s = np.asarray(domain.sample(100_000, jax.random.key(0)))
     p = np.asarray(jax.nn.softmax(log_density(run, s)))
     x = trajectories(run, seeds, steps)
     figure, panels = _subplots(-(-len(low) // 3), min(3, len(low)))
-    names = [f"observation {number}" for number in run.config.search.coordinates]
+    names = [f"observation {number}" for number in domain.coordinates]
     names = COORDINATES.get(task, names)
     shares: dict[str, list[np.ndarray]] = {"target": [], "time": []}
     variation = {}
@@ -193,7 +193,7 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
         for v in DIMENSIONS:
             if algo == "fourier_ergodic" and 5**v > MOST:
                 break
-            box = f"search.coordinates={order[:v]} search.low={[-1.0] * v} search.high={[1.0] * v}"
+            box = f"domain.coordinates={order[:v]} domain.low={[-1.0] * v} domain.high={[1.0] * v}"
             more = ["task=quadcopter_se3", f"algo={algo}", "explorer.horizon=5"]
             more += ["fourier_exploration.samples=100"] if algo == "fourier_ergodic" else []
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)

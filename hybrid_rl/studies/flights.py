@@ -10,6 +10,7 @@ import numpy as np
 from omegaconf import OmegaConf
 
 from hybrid_rl.config import build
+from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
@@ -43,8 +44,8 @@ def read(folder: Path) -> Flight:
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
     like = like.replace(env=None, control=None, learners=None, key=None)
     memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
-    explorer = config.controllers.full
-    strength = explorer.level if "kind" in explorer else explorer.gain
+    full = config.controllers.full
+    strength = full.level if "kind" in full else full.controller.gain
     label = f"{config.algo} {strength:g}"
     decisions = int(np.asarray(memory.count).min())
     return first(label, memory, len(memory.rows), min(decisions, memory.rows.shape[1]))
@@ -73,9 +74,8 @@ def first(label: str, memory: Any, trials: int, length: int) -> Flight:
     """The first `length` decisions of the first `trials` in `memory` [S, ...]."""
     count = jnp.minimum(memory.count[:trials], length)
     memory = memory.replace(rows=memory.rows[:trials, :length], count=count)
-    rows, (o, m) = np.asarray(memory.rows)[:, :, 0], QuadcopterSE3().spec[:2]
-    parts = np.split(rows, [o, o + m, o + m + 1, o + m + 2, o + m + 3], axis=-1)
-    return Flight(label, memory, parts[0], parts[1], parts[5], parts[3][..., 0])
+    made = unpack(np.asarray(memory.rows)[:, :, 0], QuadcopterSE3().spec)
+    return Flight(label, memory, made.obs, made.action, made.next_obs, made.terminated)
 
 
 def equal_size(flights: list[Flight]) -> list[Flight]:

@@ -37,7 +37,7 @@ from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 
 TRACKING = ("experiment=thesis/fig_6_6",)
-KNOWN = ("model@known_model=exact", "model_planner.model=${known_model}")
+KNOWN = ("+model@known_model=exact", "model_planner.model=${known_model}")
 EXACT = "exact model"
 V, W = slice(12, 15), slice(15, 18)  # v [m/s] and w [rad/s] in an observation
 TWIST = slice(V.start, W.stop)
@@ -120,7 +120,7 @@ def track(run: Run, params: Params, steps: int, key: Array) -> Tracked:
     u, states = rollout_with_actions(run.agent.episode, run.controllers["full"], params, key, steps)
     no, x = jnp.zeros(steps), states.obs
     distance = jnp.linalg.norm(x[:, :3], axis=-1)
-    return Tracked(Batch(x[:-1], u, no, no, no, x[1:], u), distance, states.terminated[-1])
+    return Tracked(Batch(x[:-1], u, no, no, no, x[1:]), distance, states.terminated[-1])
 
 
 def measure(flights: list[Flight], updates: int, steps: int) -> Results:

@@ -17,21 +17,25 @@ def trajectories(run: Run, seeds: int, steps: int) -> np.ndarray:
     from hybrid_rl.training.rollout import rollout
     from hybrid_rl.types import Params
 
-    indices, controller = tuple(run.config.search.coordinates), run.controllers["full"]
+    controller = run.controllers["full"]
     one = lambda key: rollout(run.agent.episode, controller, Params(), key, steps).obs  # noqa: E731
     obs = jax.jit(jax.vmap(one))(jax.random.split(jax.random.key(run.config.seed), seeds))
-    return np.asarray(obs)[:, :, indices]
+    return np.asarray(objective(run).domain.of(obs))
+
+
+def objective(run: Run) -> Any:
+    """The objective of an explorer, which has a target and a domain."""
+    controller: Any = run.agent.controller
+    return controller.controller.objective  # inside its guard
 
 
 def log_density(run: Run, s: Any) -> Any:
     """log p [N] of the run's target."""
     import jax
-    from hydra.utils import instantiate
 
     from hybrid_rl.types import Params
 
-    target = instantiate(run.config.target, _convert_="all")
-    return jax.vmap(target.log_density, (None, 0))(Params(), s)
+    return jax.vmap(objective(run).target.log_density, (None, 0))(Params(), s)
 
 
 def divergences(run: Run, x: np.ndarray, count: int = 2000) -> np.ndarray:
@@ -39,12 +43,10 @@ def divergences(run: Run, x: np.ndarray, count: int = 2000) -> np.ndarray:
     import jax
     import jax.numpy as jnp
 
-    from hybrid_rl.core import ergodic
-
-    low, high = tuple(run.config.search.low), tuple(run.config.search.high)
-    s = ergodic.uniform(low, high, count, jax.random.key(0))
+    domain = objective(run).domain
+    s = domain.sample(count, jax.random.key(0))
     log_p = jax.nn.log_softmax(log_density(run, s))
-    sides = jnp.array(high) - jnp.array(low)
+    sides = jnp.array(domain.high) - jnp.array(domain.low)
     squares = (s[:, None] - jnp.asarray(x)[None]) ** 2 / (VARIANCE * sides**2)[None, None]
     log_scale = 0.5 * jnp.sum(jnp.log(2 * jnp.pi * VARIANCE * sides**2))
     log_each = -0.5 * jnp.sum(squares, -1) - log_scale

@@ -81,7 +81,7 @@ def test_error_of_the_exact_model_and_of_its_linearisation() -> None:
     data = Batch(obs, u, no, no, no, after, u)
     errors = {}
     for name in ("exact", "local_linear"):
-        model = f"model@known_model={name}", "likelihood.model=${known_model}"
+        model = f"+model@known_model={name}", "model_learner.model=${known_model}"
         run = config.build(config.load([*model_learning.TRACKING, *model]))
         errors[name] = float(model_learning.error(run, Params(), data))
     assert errors["exact"] == 0
