@@ -1,6 +1,6 @@
-"""Every number on README.md and docs/results is that of the file beside it; commands exist.
+"""Numbers on README.md and docs/results agree with their files; commands on all pages exist.
 
-python tests/test_pages.py    writes onto the pages what the files hold now
+python tests/test_pages.py    writes the numbers of the files onto the pages
 """
 
 import re
@@ -42,10 +42,10 @@ def test_every_page_of_results_is_checked():
 
 
 def test_cited_numbers_are_those_of_the_files(page):
-    found = cited.citations(text(page.PAGE), page.CITED)
-    assert found
-    wrong = [f"{one.shown} should be {one.right}" for one in found if one.shown != one.right]
-    assert not wrong, "`python tests/test_pages.py` writes what the files hold"
+    citations = cited.citations(text(page.PAGE), page.CITED)
+    assert citations
+    wrong = [f"{one.shown} should be {one.right}" for one in citations if one.shown != one.right]
+    assert not wrong, "`python tests/test_pages.py` writes the numbers of the files"
 
 
 def test_no_number_is_without_a_source(page):
@@ -53,27 +53,27 @@ def test_no_number_is_without_a_source(page):
 
 
 def test_a_changed_and_an_added_number_are_noticed():
-    """Of this machinery itself: on a table and a sentence of its own."""
+    """By the functions of these tests, on a table and a sentence made for it."""
     cell = cited.Table("seed | a", lambda label, column: [1234.5, -0.4])
-    said = cited.Text("half is # of it", [0.5])
+    sentence = cited.Text("half is # of it", [0.5])
     page = "| seed | a |\n|---|---|\n| 7 | **1,234** [-0] |\n\nhalf is 0.50 of it in 3 runs\n"
-    found = cited.citations(page, [cell, said])
-    assert [(one.shown, one.right) for one in found] == [
+    citations = cited.citations(page, [cell, sentence])
+    assert [(one.shown, one.right) for one in citations] == [
         ("1,234", "1,234"),
         ("-0", "0"),
         ("0.50", "0.50"),
     ]
-    changed = cited.citations(page.replace("1,234", "1,235"), [cell, said])
+    changed = cited.citations(page.replace("1,234", "1,235"), [cell, sentence])
     assert (changed[0].shown, changed[0].right) == ("1,235", "1,234")
-    (left,) = cited.uncited(page, [cell, said], [])
+    (left,) = cited.uncited(page, [cell, sentence], [])
     assert left.startswith("3:")
-    assert not cited.uncited(page, [cell, said], ["in 3 runs"])
+    assert not cited.uncited(page, [cell, sentence], ["in 3 runs"])
     with pytest.raises(AssertionError, match="0 times"):
-        cited.citations(page.replace("half is", "half was"), [cell, said])
+        cited.citations(page.replace("half is", "half was"), [cell, sentence])
 
 
 def commands(page):
-    """(command, its words) of every line of a page that runs one of ours."""
+    """(command, its words) of every line of a page that runs a command of hybrid_rl."""
     return [(name, shlex.split(words)) for name, words in LINE.findall(text(page))]
 
 
@@ -126,7 +126,7 @@ def declared(name, words):
 
 
 def write(page):
-    """The page with each number as its file has it."""
+    """Write each number of the page as its file has it."""
     old = new = text(page.PAGE)
     for one in reversed(cited.citations(old, page.CITED)):
         new = new[: one.start] + one.right + new[one.end :]

@@ -33,7 +33,7 @@ REACHED = 0.95  # of the highest hill
 
 
 def figure(
-    runs: Annotated[str, 'run folders, such as "runs/*/*bayesopt/*" (in quotes)'],
+    runs: Annotated[str, 'run folders, as "runs/*/*bayesopt/*" in quotes'],
     group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
 ) -> tuple[Any, dict[str, Any]]:
     """Best values and V of each method, and the measurements of its first trial."""

@@ -47,7 +47,7 @@ Results = dict[str, dict[str, np.ndarray]]  # label -> quantity -> [S, ...]
 
 
 def figure(
-    runs: Annotated[str, 'run folders, such as "runs/quadcopter_se3/*/*" (in quotes)'],
+    runs: Annotated[str, 'run folders, as "runs/quadcopter_se3/*/*" in quotes'],
     updates: Annotated[int, "batches from which each model learns; 0: none", whole(0)] = 2000,
     steps: Annotated[int, "decisions of each flight to a target", whole()] = 1200,
 ) -> tuple[Any, dict[str, Any]]:

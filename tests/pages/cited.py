@@ -1,9 +1,8 @@
-"""Numbers that a page cites, found on the page and recomputed from the JSON beside it.
+"""The numbers of a page, compared with values recomputed from the JSON next to it.
 
 A page's module lists `CITED`: sentences (`Text`) and tables (`Table`) with their values, and
-`PLAIN`: phrases whose numbers are no measurements of ours (settings, sizes, others' results), or
-that were read off once and of which no file was kept. A number is compared as it is printed: the
-value is rounded to the decimals that the page shows.
+`PLAIN`: phrases whose numbers are not our measurements (settings, sizes, others' results) or have
+no file. A value is rounded to the decimals that the page shows.
 """
 
 import re
@@ -16,7 +15,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 NUMBER = r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\.\d)"
-# What carries digits and is no number of a result: code, links, references, comments.
+# Digits that are not results: code, links, references, comments.
 IGNORED = re.compile(
     r"```.*?```|!\[[^\]]*\]|^    .*?$|`[^`]*`|\]\([^)]*\)|<!--.*?-->|^#.*?$"
     r"|(?i:\b(?:figures?|tables?|chapter|sections?|algorithm|theorem|erratum|eq\.)\s+"
@@ -27,7 +26,7 @@ IGNORED = re.compile(
 
 
 class Citation(NamedTuple):
-    """A number on a page: where it stands, how it is printed, and how it should be."""
+    """A number on a page: its position, its text, and the text that its value gives."""
 
     start: int
     end: int
@@ -37,7 +36,7 @@ class Citation(NamedTuple):
 
 @dataclass(frozen=True)
 class Text:
-    """A phrase that stands once on the page; each # is a number, and has its value."""
+    """A phrase that occurs once on the page; each # is a number with its value."""
 
     phrase: str
     values: Sequence[float]
@@ -50,17 +49,17 @@ class Text:
 
 @dataclass(frozen=True)
 class Table:
-    """The table with this header; `values(label, column)` are those of a cell, in its order.
+    """The table with this header; `values(label, column)` are those of a cell, in order.
 
-    A cell may show fewer than it has (no band), or nothing. Label and column are text without
-    marks: the label is the row's first cell, or the last one that was not empty, and the second
-    cell where that column has no header.
+    A cell may show only the first of its values (no band), or none. Label and column are text
+    without marks: the label is the row's first cell, or the last one above it that is not empty,
+    and the second cell if that column has no header.
     """
 
     header: str
     values: Callable[[str, str], Sequence[float]]
-    after: str = ""  # where several tables have this header: a phrase before this one
-    plain: tuple[str, ...] = ()  # columns that hold no measurements of ours
+    after: str = ""  # a phrase before this table, if several tables have this header
+    plain: tuple[str, ...] = ()  # columns that are not our measurements
 
     def citations(self, page: str) -> list[Citation]:
         found, first = [], ""
@@ -116,7 +115,7 @@ class Table:
 
 
 def citations(page: str, cited: Sequence[Text | Table]) -> list[Citation]:
-    """All of a page's text, in its order."""
+    """All citations of a page, in order."""
     return sorted({found for one in cited for found in one.citations(page)})
 
 
@@ -124,7 +123,7 @@ def uncited(page: str, cited: Sequence[Text | Table], plain: Sequence[str]) -> l
     """Numbers of a page's text that are neither cited nor in a phrase of `plain`, in context.
 
     Raises:
-        AssertionError: where a phrase of `plain` is not on the page.
+        AssertionError: if a phrase of `plain` is not on the page.
     """
     covered = np.zeros(len(page), bool)
     spans = [match.span() for match in IGNORED.finditer(page)]
@@ -150,7 +149,7 @@ def _once(pattern: re.Pattern, page: str, name: str) -> re.Match:
 
 
 def _pattern(phrase: str) -> str:
-    """Its spaces are any white space, its # a number that may be bold."""
+    """The phrase as a pattern: any white space for a space, a number that may be bold for #."""
     parts = [r"\s+".join(map(re.escape, part.split(" "))) for part in phrase.split("#")]
     return rf"\*{{0,2}}({NUMBER})\*{{0,2}}".join(parts)
 

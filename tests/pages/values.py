@@ -23,7 +23,7 @@ def read(name: str) -> Any:
 
 @dataclass(frozen=True)
 class Curve:
-    """What a figure's JSON holds of one line."""
+    """One line of a figure, from its JSON."""
 
     x: np.ndarray  # [G]
     each: np.ndarray  # [S, G]
@@ -32,25 +32,25 @@ class Curve:
     high: np.ndarray
 
     def at(self, x: float) -> list[float]:
-        """IQM, low and high there."""
+        """IQM, low and high at x."""
         i = self.index(x)
         return [float(line[i]) for line in (self.iqm, self.low, self.high)]
 
     def index(self, x: float) -> int:
-        """Which of the points is x."""
-        found = np.flatnonzero(self.x == x)
-        assert len(found) == 1, f"no evaluation at {x:,}: {self.x}"
-        return int(found[0])
+        """The index of x."""
+        (indices,) = np.nonzero(self.x == x)
+        assert len(indices) == 1, f"no evaluation at {x:,}: {self.x}"
+        return int(indices[0])
 
     def seeds(self, x: float) -> np.ndarray:
-        """[S] what each has there."""
+        """[S] values of the seeds at x."""
         return self.each[:, self.index(x)]
 
     def area(self, end: float | None = None) -> np.ndarray:
-        """[S] mean of each line to `end`; before its first point it has what it had there."""
-        kept = self.x <= (self.x[-1] if end is None else end)
-        x = np.append(0.0, self.x[kept])
-        y = np.concatenate([self.each[:, :1], self.each[:, kept]], axis=1)
+        """[S] mean of each line up to `end`; the first value is taken to hold from 0 on."""
+        included = self.x <= (self.x[-1] if end is None else end)
+        x = np.append(0.0, self.x[included])
+        y = np.concatenate([self.each[:, :1], self.each[:, included]], axis=1)
         return np.trapezoid(y, x, axis=1) / x[-1]
 
 
@@ -69,7 +69,7 @@ def curve(name: str, label: str, metric: str = "", task: str = "") -> Curve:
 
 
 def band(each: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What `hybrid_rl.studies.curves.band` gives, all resamples in one array."""
+    """As `hybrid_rl.studies.curves.band`, with all resamples in one array."""
     draws = np.random.default_rng(0).integers(len(each), size=(RESAMPLES, len(each)))
     low, high = np.percentile(iqm(each[draws.T]), [2.5, 97.5], axis=0)
     return low, high
@@ -81,7 +81,7 @@ def spread(each: np.ndarray) -> list[float]:
 
 
 def ahead(x: np.ndarray, y: np.ndarray) -> list[float]:
-    """[%] of pairs in which x is greater, and the band of it."""
+    """[%] of pairs in which x is greater, and its band."""
     return [100 * part for part in improvement(x, y)]
 
 
@@ -114,7 +114,7 @@ def returns(header: str, files: dict[str, str], columns: dict[str, str] | None =
 
 
 def file_of(label: str, files: dict[str, str]) -> str:
-    """That of the longest key with which the label begins."""
+    """The file of the longest key that the label starts with."""
     return files[max((key for key in files if label.startswith(key)), key=len)]
 
 
