@@ -32,14 +32,14 @@ class PushController:
         self, params: Params, state: Array, obs: Array, key: Array
     ) -> tuple[Array, Array, dict[str, Array]]:
         """Action [2], filtered velocity [2], no metrics; deterministic."""
-        reach, left = jnp.split(obs / self.state_scale, 2)  # b - e, b - t
-        way = -left / jnp.maximum(jnp.linalg.norm(left), 1e-6)
-        side = jnp.stack((-way[1], way[0]))
-        along, across = -reach @ way, -reach @ side
+        reach, remaining = jnp.split(obs / self.state_scale, 2)  # b - e, b - t
+        direction = -remaining / jnp.maximum(jnp.linalg.norm(remaining), 1e-6)
+        side = jnp.stack((-direction[1], direction[0]))
+        along, across = -reach @ direction, -reach @ side
         pushing = (along < -0.03) & (jnp.abs(across) < 0.02)
         around = jnp.where(across < 0, -0.08, 0.08) * (along > -0.05)
-        behind = 3 * (reach - 0.07 * way + around * side)
-        velocity = jnp.where(pushing, 0.1 * way - 5 * across * side, behind)
+        behind = 3 * (reach - 0.07 * direction + around * side)
+        velocity = jnp.where(pushing, 0.1 * direction - 5 * across * side, behind)
         velocity *= jnp.minimum(1.0, self.speed / jnp.linalg.norm(velocity))
         keep = self.smoothing
         action = jnp.clip((velocity - keep * state) / ((1 - keep) * self.speed), -1.0, 1.0)

@@ -57,10 +57,10 @@ class StackController:
         tool, block, closed = obs[:3], obs[3:6], obs[6] > 0
         goal = obs[13:] if obs.size > 13 else jnp.array([*self.base, 1.5 * SIDE])
         held = closed & (jnp.linalg.norm(block - tool) < SIDE / 2)
-        left = jnp.where(held, goal - block, block - tool)
-        distance, lifted = jnp.linalg.norm(left[:2]), block[2] - SIDE / 2
+        remaining = jnp.where(held, goal - block, block - tool)
+        distance, lifted = jnp.linalg.norm(remaining[:2]), block[2] - SIDE / 2
         height = jnp.clip(SLOPE * (distance - NEAR / 2), 0.0, HEIGHT) - DEPTH
-        velocity = GAIN * left.at[2].add(height)
+        velocity = GAIN * remaining.at[2].add(height)
         lift = LIFT_SPEED + GAIN * jnp.where(held, lifted, jnp.maximum(tool[2] - block[2], 0.0))
         carried = jnp.append(
             velocity[:2] * jnp.clip(lifted / CLEARANCE - 1, 0.0, 1.0),
