@@ -17,7 +17,7 @@ from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.mujoco import offscreen
-from hybrid_rl.run import checkpoint, integrity, rows, session
+from hybrid_rl.run import checkpoint, integrity, memory, rows, session
 from hybrid_rl.run.evaluations import Evaluations
 
 pytestmark = pytest.mark.xdist_group("errors")

@@ -256,8 +256,8 @@ def test_each_backend_draws_or_is_not_chosen(name):
     """In a process of its own, after mujoco was imported for no display at all."""
     code = (
         "import mujoco, numpy as np, sys\n"
-        "from hybrid_rl import drawing\n"
-        "from hybrid_rl.envs import offscreen\n"
+        "from hybrid_rl.run import drawing\n"
+        "from hybrid_rl.envs.mujoco import offscreen\n"
         "try: name = offscreen.backend()\n"
         "except offscreen.NoGraphicsError as problem: sys.exit(str(problem))\n"
         f"assert name == {name!r}\n"

@@ -205,7 +205,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.training import checkpoint, leaves
+from hybrid_rl.run import checkpoint, leaves
 folder = Path(sys.argv[1])
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
 checkpoint._rename = lambda draft, place: os.kill(os.getpid(), signal.SIGKILL)
@@ -227,7 +227,7 @@ BETWEEN = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.training import checkpoint
+from hybrid_rl.run import checkpoint
 folder = Path(sys.argv[1])
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
 rename = Path.rename

@@ -21,7 +21,7 @@ from hybrid_rl.run import folder as run_folder
 HOLD = """
 import sys, time
 from pathlib import Path
-from hybrid_rl import run_folder
+from hybrid_rl.run import folder as run_folder
 with run_folder.locked(Path(sys.argv[1]), "run_dir"):
     print("held", flush=True)
     time.sleep(60)
@@ -95,8 +95,8 @@ def test_one_at_a_time_has_a_folder(tmp_path):
     code = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from hybrid_rl import run_folder\n"
-        "from hybrid_rl.config import UsageError\n"
+        "from hybrid_rl.run import folder as run_folder\n"
+        "from hybrid_rl.errors import UsageError\n"
         "folder, done = Path(sys.argv[1]), 0\n"
         "while done < 200:\n"
         "    try:\n"
