@@ -27,6 +27,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Controller, Params, Transition
@@ -80,7 +81,7 @@ def by_hand(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Pa
     """
     said = [f"{key}={value}" for key, value in changes.items()]
     config = configuration.load([f"task={task}", "algo=sac", *said])
-    command.prepare(config)
+    prepare(config)
     expert = configuration.expert(config)
     return configuration.build(config).agent.episode, expert, Params()
 

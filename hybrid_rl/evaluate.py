@@ -36,6 +36,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.integrity import write_text
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
@@ -148,7 +149,7 @@ def load(folder: Path | str) -> Trained:
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
     with run_folder.blamed(folder):
-        command.prepare(config)
+        prepare(config)
         run = configuration.build(_without_demonstrations(config))
         like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
         like = like.replace(env=None, control=None, memory=None, key=None)

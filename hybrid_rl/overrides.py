@@ -32,7 +32,7 @@ def parse(texts: Iterable[str]) -> list[Override]:
     return [each for each in parsed if not each.key_or_group.startswith("hydra")]
 
 
-def asked(texts: Iterable[str]) -> dict[str, str]:
+def given(texts: Iterable[str]) -> dict[str, str]:
     """Overrides as key -> value, as they were typed."""
     pairs = (text.lstrip("+~").partition("=") for text in texts)
     return {key: value for key, _, value in pairs}

@@ -14,14 +14,14 @@ import jax
 import jax.numpy as jnp
 
 from hybrid_rl import config
-from hybrid_rl.cli import command
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.types import EnvState
 
 
 def tumble(task: str, physics: str, worlds: int, decisions: int) -> tuple[int, float]:
     """(worlds that were not finite at some time, greatest observation in size)."""
     given = config.load([f"task={task}", f"physics={physics}"])
-    command.prepare(given)
+    prepare(given)
     episode = config.build(given).agent.episode
     first = jax.jit(jax.vmap(episode.reset))(jax.random.split(jax.random.key(0), worlds))
 

@@ -356,7 +356,7 @@ def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsy
         (["run=x", "task=sawyer_push"], "run, task: give one of them"),
         (["run=x", "env.reward=thesis"], "env, episode, expert: a run has its own"),
         (["task=sawyer_push", "mode=full"], "mode: an expert by hand has none"),
-        (["task=pendulum"], "task=pendulum: nobody wrote an expert"),
+        (["task=pendulum"], "task=pendulum: has no scripted expert"),
         (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4, .gif, .png"),
         (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
         (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),

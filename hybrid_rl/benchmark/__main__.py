@@ -13,8 +13,8 @@ loop      decisions a second of the whole training loop, by number of learners
 compile   seconds from start to the first decision, with an empty cache and a filled one
 
 Keys of the method's own parts change it. What is compared is run in turns, by
-hybrid_rl.benchmark.race. The numbers are printed, written as JSON and drawn, a picture a part; by default it takes six
-minutes on two cores.
+hybrid_rl.benchmark.race. The numbers are printed, written as JSON and drawn, a picture a part;
+by default it takes six minutes on two cores.
 """
 
 if __name__ == "__main__":
@@ -35,6 +35,7 @@ from hybrid_rl import config
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, output, read, several, whole
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.jax_settings import CACHE, prepare
 
 TASKS = "halfcheetah,hopper,cartpole"
 LEARNERS = ("plan", "act", "updates", "shares", "loop")
@@ -170,7 +171,7 @@ def compiling(said: dict[str, str], rounds: int) -> list[Table]:
     with tempfile.TemporaryDirectory() as place:
         line = [sys.executable, "-m", "hybrid_rl.train", f"experiment={said['experiment']}"]
         line += [f"algo={said['algo']}", "total_steps=1", "log_every=1", "eval_modes=[]"]
-        own = {key: text for key, text in os.environ.items() if key != command.CACHE}
+        own = {key: text for key, text in os.environ.items() if key != CACHE}
         rows = []
         for name in ("cold", "cached"):
             began = perf_counter()
@@ -257,7 +258,7 @@ def main() -> None:
     out, rounds = output("out", said["out"], (".json",), ".png"), said["rounds"]
     _check(said)
     threads = ["physics=mjx"] if "mjx" in said["physics"] else []
-    command.prepare(config.load([*threads, f"matmul_precision={said['matmul_precision']}"]))
+    prepare(config.load([*threads, f"matmul_precision={said['matmul_precision']}"]))
     sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"]
     said |= {key: value for key, value in sizes.items() if not said[key]}
     machine = provenance.device()

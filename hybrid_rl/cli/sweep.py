@@ -129,9 +129,10 @@ class Sweeper(BasicSweeper):
             configs.append(config)
         refuse_unused(configs, typed, configuration.READ)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
+            if not here and config.physics in ACCELERATED:
+                config = config.copy()
+                config.physics = "native"
             whole = configuration.resolved(config)
-            if not here and whole.physics in ACCELERATED:
-                whole.physics = "native"
             try:
                 with command.as_typed(overrides):
                     if whole.resume is None:

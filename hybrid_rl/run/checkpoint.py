@@ -21,6 +21,7 @@ import re
 import shutil
 from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
 import jax
 
@@ -54,11 +55,11 @@ def _finished(folder: Path) -> dict[int, Path]:
     return found
 
 
-def shapes(folder: Path) -> dict[str, tuple[int, ...]]:
-    """Shape of each leaf of the newest checkpoint that can be read; empty where none can."""
-    for path in (path for _, path in sorted(_finished(folder).items(), reverse=True)):
-        with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-            return leaves.shapes(path)
+def meta(folder: Path) -> dict[str, Any]:
+    """What the newest readable checkpoint holds beside the state; empty if there is none."""
+    for _, path in sorted(_finished(folder).items(), reverse=True):
+        with contextlib.suppress(OSError, ValueError):
+            return json.loads((path / "meta.json").read_text(encoding="utf-8"))
     return {}
 
 

@@ -76,12 +76,6 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
             raise
 
 
-def shapes(path: Path) -> dict[str, tuple[int, ...]]:
-    """Shape of each leaf of a checkpoint, by name."""
-    kinds = json.loads((path / "leaves.json").read_text(encoding="utf-8"))
-    return {name: tuple(kind["shape"]) for name, kind in kinds.items()}
-
-
 def read(path: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
     """State and meta of a sound checkpoint."""
     import orbax.checkpoint as ocp  # 1 s

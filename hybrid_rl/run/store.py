@@ -34,7 +34,8 @@ class Store:
         leaves |= {} if self.replay else {"memory": None}
         leaves |= {} if array is None else {"gathered": array}
         shape = [] if array is None else list(array.shape)
-        here = {"step": step, "capacity": self.loop.agent.replay.capacity}
+        here = {"step": step, "seeds": list(self.loop.seeds)}
+        here |= {"capacity": self.loop.agent.replay.capacity}
         here |= {"gathered": {"names": names, "shape": shape}}
         checkpoint.save(self.folder, step, leaves, here | meta, known=self.known)
         self.known.add(step)
