@@ -259,12 +259,12 @@ def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
 def test_a_damaged_checkpoint_is_passed_over(copied, capfd, damage):
     damage(copied / "checkpoints" / "600")
     assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
-    assert "checkpoint 600 is passed over" in " ".join(capfd.readouterr().out.split())
+    assert "checkpoint 600 is skipped" in " ".join(capfd.readouterr().out.split())
     assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
     assert call_train(f"resume={copied}") == 0
     said = capfd.readouterr()
-    assert "checkpoint 600 is passed over" in said.out
-    assert "going on from step 500" in said.out
+    assert "checkpoint 600 is skipped" in said.out
+    assert "continuing from step 500" in said.out
     assert said.err == ""
     assert integrity.verify(copied / "checkpoints" / "600") is None
 

@@ -1,4 +1,4 @@
-"""What the commands share: settings of JAX, Hydra's command line, one line for what goes wrong.
+"""What the commands share: Hydra's command line, exit codes, one line for each error.
 
 Exit codes: 0 done; 2 bad usage; 130 and 143 after Ctrl-C and SIGTERM; 1 any other failure.
 """
@@ -117,10 +117,10 @@ def _check_form(line: Sequence[str]) -> None:
 
 def report(error: BaseException) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""
-    found = diagnosis(error)
-    if found is None:
+    result = diagnosis(error)
+    if result is None:
         raise error
-    _fail(*found)
+    _fail(*result)
 
 
 def diagnosis(error: BaseException) -> tuple[int, str] | None:

@@ -159,7 +159,7 @@ def test_a_damaged_newest_is_passed_over_and_named(three, harm):
     assert (step, meta) == (20, {"offset": 20})
     assert_same(found, state_at(20))
     (note,) = notes
-    assert "checkpoint 30 is passed over" in note
+    assert "checkpoint 30 is skipped" in note
     assert reason in note
 
 
