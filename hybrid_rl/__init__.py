@@ -2,7 +2,7 @@
 
 import os
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # In a checkout `envs/` stands beside this package; in a wheel it is inside it.
 if not os.path.isdir(os.path.join(os.path.dirname(__file__), "envs")):

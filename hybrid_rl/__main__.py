@@ -9,14 +9,14 @@ MAIN = 'if __name__ == "__main__":'
 
 def commands() -> dict[str, str]:
     """Name of a command -> the first line of its docstring, without an import."""
-    found = {}
+    names = {}
     package = Path(__file__).parent
     for path in (*package.glob("[a-z]*.py"), *package.glob("[a-z]*/__main__.py")):
         text = path.read_text(encoding="utf-8")
         if MAIN in text:
             name = path.parent.name if path.stem == "__main__" else path.stem
-            found[name] = (ast.get_docstring(ast.parse(text)) or "").splitlines()[0]
-    return dict(sorted(found.items()))
+            names[name] = (ast.get_docstring(ast.parse(text)) or "").splitlines()[0]
+    return dict(sorted(names.items()))
 
 
 def main() -> int:

@@ -1,4 +1,4 @@
-"""From overrides to parts: composes conf/, checks it, builds a run."""
+"""From overrides to parts: compose conf/, check it, build a run."""
 
 import logging
 import math
@@ -15,9 +15,16 @@ from hydra.errors import InstantiationException
 from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
-from hybrid_rl.envs.mujoco.physics import resolve
+from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, resolve
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import SHOW, refuse_new_keys, refuse_unused, search_path
+from hybrid_rl.overrides import (
+    SHOW,
+    plain,
+    reached,
+    refuse_new_keys,
+    refuse_unused,
+    search_path,
+)
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Controller
@@ -35,10 +42,10 @@ COUNTS = (
     "log_every",
 )
 
-SEEDS = 2**32  # that JAX's generator tells apart
+SEEDS = 2**32  # distinct seeds of JAX's generator
 
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
-READ = (  # what a run reads, and with it all that these name by interpolation
+READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("matmul_precision", "distributed"),
@@ -46,7 +53,7 @@ READ = (  # what a run reads, and with it all that these name by interpolation
 
 MODES = ("full", "policy", "planner")
 PRECISIONS = ("highest", "high", "default")
-KINDS = {  # type of a part's field -> how its values are called
+KINDS = {  # type of a part's field -> its name in messages
     int: "a whole number",
     float: "a number",
     bool: "true or false",
@@ -54,12 +61,11 @@ KINDS = {  # type of a part's field -> how its values are called
     tuple: "a list",
     NoneType: "null",
 }
-UNKNOWN = object()  # what OmegaConf selects where there is nothing
 
 
 @dataclass(frozen=True)
 class Run:
-    """A configuration made into parts."""
+    """A configuration and the parts built from it."""
 
     config: DictConfig
     agent: Agent
@@ -67,18 +73,18 @@ class Run:
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """Of the learners."""
+        """One seed per learner."""
         return tuple(range(self.config.seed, self.config.seed + self.config.num_seeds))
 
 
 def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) -> DictConfig:
     """The resolved configuration of `python -m hybrid_rl.train OVERRIDES`.
 
-    config_dir: a folder with groups of your own, as of `--config-dir`.
+    config_dir: a folder with configuration groups of the user, as for `--config-dir`.
 
     Raises:
-        hydra.errors.HydraException: where an override fits nothing in conf/.
-        UsageError: where one names a key that does not exist, or that the method does not use.
+        hydra.errors.HydraException: if an override fits nothing in conf/.
+        UsageError: if one names a key that does not exist or that the method does not use.
     """
     if not GlobalHydra.instance().is_initialized():
         with initialize_config_dir(str(CONF), version_base="1.3"):
@@ -91,8 +97,14 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 
 def resolved(config: DictConfig) -> DictConfig:
-    """A copy with every interpolation replaced by its value."""
-    made: Any = OmegaConf.create(OmegaConf.to_container(config, resolve=True))
+    """A copy with every interpolation replaced by its value.
+
+    Single values at the root that no section of the run refers to are left out.
+    """
+    read = reached(plain(config), READ)
+    values: Any = OmegaConf.to_container(config, resolve=True)
+    used = {key: value for key, value in values.items() if key in read or isinstance(value, dict)}
+    made: Any = OmegaConf.create(used)
     OmegaConf.set_struct(made, True)
     return made
 
@@ -101,20 +113,20 @@ def build(config: DictConfig) -> Run:
     """The parts that `config` names.
 
     Raises:
-        UsageError: where a value is out of range.
+        UsageError: if a value is out of range.
     """
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
-    _whole(config.replay, "capacity", "replay.")
+    whole(config.replay, "capacity", "replay.")
     with _usage(config):
-        controllers = {mode: _instantiate(node) for mode, node in config.controllers.items()}
-        env = _instantiate({**config.env, **physics(config)})
-        replay = _instantiate(config.replay)
+        parts = _on_this_machine(config)
+        controllers = {mode: _instantiate(node) for mode, node in parts.controllers.items()}
+        replay = _instantiate(parts.replay)
         longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
         agent = Agent(
-            Episode(env, config.episode.steps, config.episode.action_repeat),
+            Episode(_instantiate(parts.env), config.episode.steps, config.episode.action_repeat),
             controllers["full"],
-            {name: _instantiate(node) for name, node in config.learners.items()},
+            {name: _instantiate(node) for name, node in parts.learners.items()},
             replace(
                 replay, capacity=min(replay.capacity, max(longest, replay.num_demonstrated(1)))
             ),
@@ -126,22 +138,40 @@ def build(config: DictConfig) -> Run:
 
 
 def expert(config: DictConfig) -> Controller:
-    """The task's expert that was written by hand.
+    """The scripted expert of the task.
 
     Raises:
-        UsageError: where it has none.
+        UsageError: if it has none.
     """
     if config.expert is None:
-        raise UsageError(f"task={config.task}: nobody wrote an expert; give run=DIR, a trained one")
+        raise UsageError(f"task={config.task}: has no scripted expert; give run=DIR instead")
     with _usage(config):
         return _instantiate(config.expert)
 
 
-def physics(config: DictConfig) -> dict[str, str]:
-    """The world's `physics`, where it has any, with what auto means for the worlds of this run."""
-    if not isinstance(config.env.get("physics"), str):
-        return {}
-    return {"physics": resolve(config.env.physics, config.num_seeds * config.num_envs)}
+def physics(config: DictConfig) -> str | None:
+    """The physics of the world, with `auto` resolved; None if the world has no such field."""
+    value = config.env.get("physics")
+    if not isinstance(value, str):
+        return None
+    return resolve(value, config.num_seeds * config.num_envs)
+
+
+def _on_this_machine(config: DictConfig) -> DictConfig:
+    """The sections, in which every copy of the world has its physics resolved."""
+    parts: Any = OmegaConf.masked_copy(config, list(SECTIONS))
+    name = physics(config)
+
+    def visit(node: Any) -> None:
+        for key, value in node.items() if isinstance(node, DictConfig) else enumerate(node):
+            if key == "physics" and value == config.env.physics:
+                node[key] = name
+            elif isinstance(value, (DictConfig, ListConfig)):
+                visit(value)
+
+    if name is not None:
+        visit(parts)
+    return parts
 
 
 def _instantiate(node: Any) -> Any:
@@ -150,7 +180,7 @@ def _instantiate(node: Any) -> Any:
 
 @contextmanager
 def _usage(config: DictConfig) -> Iterator[None]:
-    """A part's ValueError about its fields becomes the user's."""
+    """Turn a ValueError that a part raises about its fields into a UsageError."""
     try:
         yield
     except (InstantiationException, ValueError) as error:
@@ -161,7 +191,7 @@ def _usage(config: DictConfig) -> Iterator[None]:
         if "needs an analytic environment" in line:
             needs = f"task={config.task}: {config.algo} needs an analytic environment"
             line = f"{needs}; choose one of {', '.join(analytic_tasks())}"
-        field = line.partition("=")[0]  # of the world, whose keys are typed as env.KEY
+        field = line.partition("=")[0]  # a field of the world is typed as env.FIELD
         raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error
 
 
@@ -170,22 +200,22 @@ def _of_world(config: DictConfig, field: str) -> bool:
 
 
 def analytic_tasks(conf: Path = CONF) -> list[str]:
-    """Tasks whose world is a formula, as the methods with an equilibrium need it."""
-    found = []
+    """Tasks with an analytic world, which has dynamics and an equilibrium in closed form."""
+    names = []
     for path in sorted((conf / "task").glob("*.yaml")):
         task: Any = OmegaConf.load(path)
-        with suppress(ImportError, KeyError, AttributeError):  # one of the user's, unfinished
-            found += [path.stem] if hasattr(_class(task.env._target_), "equilibrium") else []
-    return found
+        with suppress(ImportError, KeyError, AttributeError):  # an unfinished task of the user
+            names += [path.stem] if hasattr(_class(task.env._target_), "equilibrium") else []
+    return names
 
 
 def check(config: DictConfig) -> None:
-    """Raise UsageError for a value that no run can have; parts check their own ranges."""
+    """Raise UsageError for a value that no run accepts; parts check their own ranges."""
     for key in SECTIONS:
         if not isinstance(config.get(key), DictConfig):
             raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
     for key in COUNTS:
-        _whole(config, key)
+        whole(config, key)
     if type(config.seed) is not int or config.seed < 0:
         raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
     if config.seed + config.num_seeds > SEEDS:
@@ -199,15 +229,15 @@ def check(config: DictConfig) -> None:
     for key in ("checkpoint_replay", "distributed"):
         if type(config.get(key, False)) is not bool:
             raise UsageError(f"{key}={config[key]}: must be true or false")
-    if config.matmul_precision not in PRECISIONS:
-        known = ", ".join(PRECISIONS)
-        raise UsageError(f"matmul_precision={config.matmul_precision}: choose one of {known}")
-    _check_kinds(OmegaConf.create({"env": config.env}))  # first: other parts hold copies of it
+    for key, known in (("matmul_precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
+        if config[key] not in known:
+            raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
+    _check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
     _check_kinds(config)
 
 
 def _check_kinds(node: DictConfig, where: str = "") -> None:
-    """Raise UsageError for a value of a part, here or below, that its field cannot hold."""
+    """Raise UsageError for a value in `node` that the field of its part cannot hold."""
     kinds = _kinds(node, where)
     for key, value in node.items():
         each = value if isinstance(value, ListConfig) else [value]
@@ -224,13 +254,13 @@ def _check_kinds(node: DictConfig, where: str = "") -> None:
 
 
 def _class(target: str) -> Any:
-    """What a `_target_` names; Hydra would say in three lines more where there is nothing."""
+    """The object that a `_target_` names; Hydra's own log lines are suppressed."""
     logging.getLogger("hydra").addHandler(logging.NullHandler())
     return get_object(target)
 
 
 def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
-    """Field -> types it can hold, of the part that `node` names; fields of other types left out."""
+    """Field -> the types that it accepts, for those fields of a part whose types are in KINDS."""
     if "_target_" not in node:
         return {}
     try:
@@ -239,17 +269,22 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
         hint = "is its folder on PYTHONPATH?"
         line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"
         raise UsageError(f"{line}; {hint}") from error
-    found = {}
+    kinds = {}
     for field in fields(part) if is_dataclass(part) else ():
         several = get_origin(field.type) in (Union, UnionType)
         each = get_args(field.type) if several else (field.type,)
         wanted = {get_origin(kind) or kind for kind in each}
         if wanted <= set(KINDS):
-            found[field.name] = wanted
-    return found
+            kinds[field.name] = wanted
+    return kinds
 
 
-def _whole(config: Any, key: str, where: str = "") -> int:
+def whole(config: Any, key: str, where: str = "") -> int:
+    """The value at `key`, a whole number, 1 or more.
+
+    Raises:
+        UsageError: if it is anything else.
+    """
     value = config[key]
     if not isinstance(value, int) or isinstance(value, bool) or value < 1:
         raise UsageError(f"{where}{key}={value}: must be a whole number, 1 or more")

@@ -3,10 +3,10 @@
     python -m hybrid_rl.demonstrate task=panda_stack episodes=20
     python -m hybrid_rl.demonstrate run=DIR mode=policy out=demonstrations/ant.npz
 
-The file is demonstrations/T.npz by default. The expert is the task's own, by hand, in the
-task as it stands or as env.KEY=VALUE, episode.KEY=VALUE, expert.KEY=VALUE change it; with run=DIR
-it is what was learned there (mode: full, policy or planner; the first seed), without exploration.
-Episode i begins by the key i of `seed`.
+The file is demonstrations/T.npz by default. The expert is the task's scripted one, in
+the task with its defaults or with env.KEY=VALUE, episode.KEY=VALUE, expert.KEY=VALUE; with run=DIR
+it is the trained controller (mode: full, policy or planner; the first seed), without exploration.
+Episode i starts from key i of `seed`.
 """
 
 if __name__ == "__main__":
@@ -27,12 +27,13 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Controller, Params, Transition
 
 ARGUMENTS = (
-    Argument("task", "", "a task with an expert written by hand"),
+    Argument("task", "", "a task with a scripted expert"),
     Argument("run", "", "instead: folder of a trained run"),
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
     Argument("episodes", 10, "how many", whole()),
@@ -44,18 +45,18 @@ GROUPS = {name: f"with task=T: a key of its {name}" for name in ("env", "episode
 
 @dataclass(frozen=True)
 class Recording:
-    """What an expert did: N decisions, of M episodes."""
+    """The decisions of an expert: N decisions, of M episodes."""
 
     decisions: Transition  # [N, ...]
     episode: np.ndarray  # [N] 0, 0, ..., M - 1
     returns: np.ndarray  # [M]
-    success: np.ndarray | None  # [M] 1 where it succeeded at last; None: the task has no measure
+    success: np.ndarray | None  # [M] 1 if it succeeded at the end; None: the task has no measure
 
 
 def record(
     episode: Episode, controller: Controller, params: Params, episodes: int, seed: int = 0
 ) -> Recording:
-    """`episodes` episodes of a controller that knows `params`."""
+    """`episodes` episodes of a controller with `params`."""
     keys = jax.random.split(jax.random.key(seed), episodes)
     one = partial(rollout_with_actions, episode, controller, params, steps=episode.steps)
     actions, states = jax.tree.map(np.asarray, jax.jit(jax.vmap(one))(keys))
@@ -73,14 +74,14 @@ def record(
 
 
 def by_hand(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Params]:
-    """A task, as `changes` make it, and its expert, which needs to know nothing.
+    """A task, as `changes` make it, and its scripted expert, which has no parameters.
 
     Raises:
-        UsageError: for a task without one.
+        UsageError: if the task has none.
     """
-    said = [f"{key}={value}" for key, value in changes.items()]
-    config = configuration.load([f"task={task}", "algo=sac", *said])
-    command.prepare(config)
+    values = [f"{key}={value}" for key, value in changes.items()]
+    config = configuration.load([f"task={task}", "algo=sac", *values])
+    prepare(config)
     expert = configuration.expert(config)
     return configuration.build(config).agent.episode, expert, Params()
 
@@ -88,7 +89,7 @@ def by_hand(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Pa
 def _expert(
     given: dict[str, Any], changes: dict[str, str]
 ) -> tuple[str, Episode, Controller, Params]:
-    """(task, episode, controller, what it knows) that the arguments name."""
+    """(task, episode, controller, parameters) that the arguments name."""
     if bool(given["task"]) == bool(given["run"]):
         raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
     if given["task"]:
@@ -112,14 +113,12 @@ def main() -> None:
         output("out", given["out"], (".npz",))
     task, world, controller, params = _expert(given, changes)
     out = output("out", given["out"] or f"demonstrations/{task}.npz", (".npz",))
-    found = record(world, controller, params, episodes, seed)
-    save(out, task, world.spec.dt, found.decisions, found.episode)
-    line = f"{out}: {episodes} episodes, {len(found.episode):,} decisions, seed {seed}, return "
-    line += (
-        f"{found.returns.mean():,.1f} ({found.returns.min():,.1f} to {found.returns.max():,.1f})"
-    )
-    if found.success is not None:
-        line += f", {int(found.success.sum())} succeeded"
+    recording = record(world, controller, params, episodes, seed)
+    save(out, task, world.spec.dt, recording.decisions, recording.episode)
+    line = f"{out}: {episodes} episodes, {len(recording.episode):,} decisions, seed {seed}, return "
+    line += f"{recording.returns.mean():,.1f} ({recording.returns.min():,.1f} to {recording.returns.max():,.1f})"
+    if recording.success is not None:
+        line += f", {int(recording.success.sum())} succeeded"
     print(line)
 
 

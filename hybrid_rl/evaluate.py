@@ -36,6 +36,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.integrity import write_text
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
@@ -58,15 +59,15 @@ class Trained:
     params: Params  # [S, ...]
     seeds: tuple[int, ...]
     step: int  # decisions of each learner
-    notes: tuple[str, ...]  # checkpoints that were passed over
+    notes: tuple[str, ...]  # one for each checkpoint that was skipped
 
     def policy(self, seed: int | None = None, mode: str = "full", key: int = 0) -> "TrainedPolicy":
         """Observations to actions, as the learner of `seed` acts; None is the first.
 
-        key: of what a planner draws.
+        key: seed of the planner's random numbers.
 
         Raises:
-            UsageError: for a seed that the run does not have, or a mode that its method does not.
+            UsageError: for a seed or a mode that the run does not have.
         """
         seed = self.seeds[0] if seed is None else seed
         if seed not in self.seeds:
@@ -140,15 +141,15 @@ def load(folder: Path | str) -> Trained:
     """The learners of the run in `folder`, at its newest sound checkpoint.
 
     Raises:
-        UsageError: where `folder` holds no run, a damaged configuration, or no checkpoint.
-        CheckpointError: where none of its checkpoints is sound.
+        UsageError: if `folder` holds no run, a damaged configuration, or no checkpoint.
+        CheckpointError: if none of its checkpoints is sound.
     """
     folder = Path(folder)
     config = run_folder.read(folder, "run")
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
     with run_folder.blamed(folder):
-        command.prepare(config)
+        prepare(config)
         run = configuration.build(_without_demonstrations(config))
         like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
         like = like.replace(env=None, control=None, memory=None, key=None)
@@ -160,7 +161,7 @@ def load(folder: Path | str) -> Trained:
 
 
 def _without_demonstrations(config: Any) -> Any:
-    """The same run for those who learn no further: it needs no file of demonstrations."""
+    """The configuration without files of demonstrations, which evaluation does not need."""
     config = config.copy()
     config.pretrain = 0
     for part in (config.replay, *config.learners.values()):
@@ -172,7 +173,7 @@ def _without_demonstrations(config: Any) -> Any:
 def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[str, np.ndarray]:
     """Undiscounted `return` [S, episodes] of the same episodes as in training.
 
-    Where the task tells it, also `success` [S, episodes], 0 or 1.
+    If the task measures it, also `success` [S, episodes], 0 or 1.
 
     Raises:
         UsageError: for a mode that the method does not have.
@@ -210,27 +211,27 @@ def main() -> None:
     run_folder.writable(folder, "run")  # before minutes of work
     for note in trained.notes:
         print(note)
-    said = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
+    values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
     print(f"{folder}, mode {given['mode']}, step {trained.step:,}")  # whole, also in a pipe
-    Console().print(_table(said))
+    Console().print(_table(values))
     out = folder / f"evaluation_{given['mode']}.json"
-    write_text(out, json.dumps(said, indent=1) + "\n")
+    write_text(out, json.dumps(values, indent=1) + "\n")
     print(f"{episodes} episodes a seed; written to {out}")
 
 
-def _table(said: dict[str, Any]) -> Table:
+def _table(values: dict[str, Any]) -> Table:
     """A row for each seed, and one for the episodes of all of them."""
     table = Table()
-    shares = said.get("success", [])
+    shares = values.get("success", [])
     columns = ("seed", "mean return", "std", "lowest", "highest", *["successes"][: len(shares)])
     for name in columns:
         table.add_column(name, justify="right")
     lines = [
         (str(seed), each, shares[i : i + 1])
-        for i, (seed, each) in enumerate(zip(said["seeds"], said["returns"], strict=True))
+        for i, (seed, each) in enumerate(zip(values["seeds"], values["returns"], strict=True))
     ]
     if len(lines) > 1:
-        lines.append(("all", np.ravel(said["returns"]), [np.mean(shares)] if shares else []))
+        lines.append(("all", np.ravel(values["returns"]), [np.mean(shares)] if shares else []))
     for name, each, share in lines:
         numbers = (np.mean(each), np.std(each), np.min(each), np.max(each))
         row = [f"{value:,.1f}" for value in numbers] + [f"{part:.0%}" for part in share]

@@ -3,8 +3,8 @@
     python -m hybrid_rl.list
     python -m hybrid_rl.list config_dir=my_conf
 
-What each is stands in the first comment of its YAML file. With config_dir=DIR, or --config-dir DIR
-as `train` takes it, the entries in a folder of your own are there too.
+The description is the first comment of the YAML file. With config_dir=DIR, or --config-dir DIR
+as for `train`, the entries of that folder are listed, too.
 """
 
 if __name__ == "__main__":
@@ -27,7 +27,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import plain, reached
 
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
-ARGUMENTS = (Argument("config_dir", "", "folder with groups of your own"),)
+ARGUMENTS = (Argument("config_dir", "", "folder with configuration groups of yours"),)
 
 
 def listing(conf: Path = CONF) -> dict[str, dict[str, str]]:
@@ -62,7 +62,7 @@ def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
 
 
 def _needs_an_analytic_world(path: Path) -> bool:
-    """Whether a part that the method of a YAML file uses knows the world; demonstrations may."""
+    """Whether a part of the method in a YAML file, demonstrations aside, holds the world."""
     own: Any = OmegaConf.load(path)
     raw = plain(cast(DictConfig, OmegaConf.merge(_parts(), own)))
     read = reached(raw, ("controllers", "learners"))
@@ -91,11 +91,11 @@ def main() -> None:
         if not own.is_dir():
             raise UsageError(f"config_dir={own}: no such folder")
         folders.append(own)
-    found = [(listing(folder), marks(folder)) for folder in folders]
-    width = max(len(name) for names, _ in found for group in GROUPS for name in names[group])
+    listed = [(listing(folder), marks(folder)) for folder in folders]
+    width = max(len(name) for names, _ in listed for group in GROUPS for name in names[group])
     for group, title in GROUPS.items():
         print(f"{title}  ({group}=NAME)")
-        for names, restricted in found:
+        for names, restricted in listed:
             for name, text in names[group].items():
                 mark = restricted[group].get(name)
                 print(f"  {name:{width}}  {text} {f'[{mark}]' if mark else ''}".rstrip())

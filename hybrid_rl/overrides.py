@@ -22,7 +22,7 @@ from hybrid_rl.errors import UsageError
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, by the key that it names
 MOST = 4  # keys that one line suggests
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
-LACKING: Any = object()  # what is found where there is nothing
+LACKING: Any = object()  # the value of a key that does not exist
 
 
 def parse(texts: Iterable[str]) -> list[Override]:
@@ -32,7 +32,7 @@ def parse(texts: Iterable[str]) -> list[Override]:
     return [each for each in parsed if not each.key_or_group.startswith("hydra")]
 
 
-def asked(texts: Iterable[str]) -> dict[str, str]:
+def given(texts: Iterable[str]) -> dict[str, str]:
     """Overrides as key -> value, as they were typed."""
     pairs = (text.lstrip("+~").partition("=") for text in texts)
     return {key: value for key, _, value in pairs}
@@ -70,12 +70,12 @@ def select(raw: dict[str, Any], path: str) -> Any:
 
 def reached(raw: dict[str, Any], roots: Iterable[str]) -> dict[str, Any]:
     """Every key at or below `roots`, and below the keys that these name, with its value."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
 
     def visit(path: str, node: Any) -> None:
-        if path in found:
+        if path in values:
             return
-        found[path] = node
+        values[path] = node
         if isinstance(node, dict):
             for name, value in node.items():
                 visit(f"{path}.{name}", value)
@@ -86,7 +86,7 @@ def reached(raw: dict[str, Any], roots: Iterable[str]) -> dict[str, Any]:
     for root in roots:
         if root in raw:
             visit(root, raw[root])
-    return found
+    return values
 
 
 def unused(config: DictConfig, typed: Iterable[Override], roots: Iterable[str]) -> dict[str, str]:

@@ -6,7 +6,7 @@
 `out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode.
 
 The episode is the first of the run's own evaluation: same key, no exploration. With task=T it is
-played by the task's expert, which is written by hand.
+played by the task's expert, which is scripted.
 """
 
 if __name__ == "__main__":
@@ -27,7 +27,7 @@ from hybrid_rl.errors import UsageError
 
 ARGUMENTS = (
     Argument("run", "", "folder of a trained run"),
-    Argument("task", "", "instead: a task with an expert written by hand"),
+    Argument("task", "", "instead: a task with a scripted expert"),
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
     Argument("mode", "", "of run=DIR: full, policy or planner; empty: full"),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
@@ -68,7 +68,7 @@ def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: in
 
 
 def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
-    """What a controller that knows `params` does in one episode of `world`."""
+    """One episode of `world` under `controller` with `params`."""
     import jax
 
     from hybrid_rl.training.rollout import rollout
@@ -85,24 +85,28 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
 
 
 def _shown(
-    said: dict[str, str], changes: dict[str, str], seed: int | None, steps: int
+    given: dict[str, str], changes: dict[str, str], seed: int | None, steps: int
 ) -> tuple[Any, str, Film]:
     """(world with its clock, whose actions, episode) that the arguments name."""
     from hybrid_rl.envs.mujoco.offscreen import check_drawable
 
-    if said["task"]:
+    if given["task"]:
         from hybrid_rl.demonstrate import by_hand
         from hybrid_rl.training.rollout import evaluation_keys
 
-        whole, controller, params = by_hand(said["task"], changes)
+        whole, controller, params = by_hand(given["task"], changes)
         _check(check_drawable, whole.env)
         world = replace(whole, steps=steps or whole.steps)
-        return world, "by hand", film(world, controller, params, evaluation_keys(seed or 0, 1)[0])
+        return (
+            world,
+            "scripted expert",
+            film(world, controller, params, evaluation_keys(seed or 0, 1)[0]),
+        )
     from hybrid_rl.evaluate import load
 
-    trained = load(Path(said["run"]))
+    trained = load(Path(given["run"]))
     _check(check_drawable, trained.episode.env)
-    shown = episode(trained, said["mode"] or "full", seed, steps)
+    shown = episode(trained, given["mode"] or "full", seed, steps)
     return trained.episode, f"step {trained.step:,}", shown
 
 
@@ -116,28 +120,28 @@ def _check(check: Callable[..., None], *values: Any) -> None:
 
 def main() -> None:
     """The command."""
-    said, changes = read(__doc__, ARGUMENTS, GROUPS)
-    if bool(said["run"]) == bool(said["task"]):
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    if bool(given["run"]) == bool(given["task"]):
         raise UsageError(
             "run, task: give one of them; run=DIR is a folder that training wrote, "
-            "task=T shows the task's expert by hand"
+            "task=T shows the task's scripted expert"
         )
-    if said["run"] and changes:
+    if given["run"] and changes:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
-    if said["task"] and said["mode"]:
-        raise UsageError("mode: an expert by hand has none; give it with run=DIR")
+    if given["task"] and given["mode"]:
+        raise UsageError("mode: a scripted expert has none; give it with run=DIR")
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.run.drawing import SUFFIXES, draw
 
-    default = f"{said['run']}/video.mp4" if said["run"] else f"{said['task']}.mp4"
-    out = output("out", said["out"] or default, SUFFIXES)
+    default = f"{given['run']}/video.mp4" if given["run"] else f"{given['task']}.mp4"
+    out = output("out", given["out"] or default, SUFFIXES)
     width, height, steps, seed = (
-        said[name] for name in ("width", "height", "episode_steps", "seed")
+        given[name] for name in ("width", "height", "episode_steps", "seed")
     )
     offscreen.backend()  # before minutes of work: nothing is lost where nothing can draw
     _check(offscreen.check_size, width, height)
 
-    world, by, shown = _shown(said, changes, seed, steps)
+    world, by, shown = _shown(given, changes, seed, steps)
     rate = 1 / world.spec.dt
     stride = int(np.ceil(rate / FASTEST))
     draw(world.env.scene(), shown.poses[::stride], out, rate / stride, width, height)

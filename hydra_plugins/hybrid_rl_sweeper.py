@@ -1,6 +1,6 @@
-"""The sweeper of hybrid_rl, where Hydra finds it: it takes plugins of this package alone.
+"""The sweeper of hybrid_rl, in the only package where Hydra looks for plugins.
 
-Every Hydra program on the machine imports this module, so it imports the rest when it is used.
+Every Hydra program on the machine imports this module, so the rest is imported when it is used.
 """
 
 from typing import Any

@@ -2,7 +2,7 @@
 
 `make` runs it; it needs nothing but the standard library. Where Python came without
 pip (Debian's python3 does), the pip that the lock names is fetched from the index.
-A set-up that was interrupted starts over; of two at once, one waits for the other.
+A set-up that was interrupted starts over; of two at the same time, one waits for the other.
 """
 
 import fcntl

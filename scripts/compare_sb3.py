@@ -5,7 +5,7 @@
 The numbers of Haarnoja et al. 2018 as SB3's authors tune MuJoCo tasks: batch 256, two layers
 of 256, learning rate 3e-4, gamma 0.99, tau 0.005, an update a step after 10000 random steps.
 Writes metrics.jsonl and summary.json as `python -m hybrid_rl.train` does. One thread: run
-many at once. Needs `pip install stable-baselines3`.
+many in parallel. Needs `pip install stable-baselines3`.
 """
 
 import argparse
@@ -76,8 +76,8 @@ class Log(BaseCallback):
     def row(self, **values: float) -> None:
         """Append one row."""
         wall = round(time.perf_counter() - self.begin, 3)
-        place = {"step": self.num_timesteps, "seed": self.seed, "wall_s": wall}
-        self.file.write(json.dumps(place | values) + "\n")
+        coordinates = {"step": self.num_timesteps, "seed": self.seed, "wall_s": wall}
+        self.file.write(json.dumps(coordinates | values) + "\n")
         self.file.flush()
 
     def _on_step(self) -> bool:
@@ -117,13 +117,13 @@ def commit() -> str | None:
 
 def versions() -> dict[str, str]:
     """Version of each package that matters and is installed."""
-    found = {"python": platform.python_version()}
+    installed = {"python": platform.python_version()}
     for package in ("stable-baselines3", "torch", "gymnasium", "mujoco", "jax", "numpy"):
         try:
-            found[package] = version(package)
+            installed[package] = version(package)
         except PackageNotFoundError:
             continue
-    return found
+    return installed
 
 
 def summary(args: argparse.Namespace, log: Log, steps: int, finished: bool) -> dict[str, Any]:
@@ -181,10 +181,10 @@ def main() -> None:
         model.learn(args.steps, callback=log)
         finished = True
     finally:
-        told = summary(args, log, model.num_timesteps, finished)
+        values = summary(args, log, model.num_timesteps, finished)
         path = args.run_dir / "summary.json"
-        path.write_text(json.dumps(told, indent=1) + "\n", encoding="ascii")
-    print(json.dumps(told))
+        path.write_text(json.dumps(values, indent=1) + "\n", encoding="ascii")
+    print(json.dumps(values))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
     python scripts/finite.py ant sawyer_push --worlds 256 --decisions 10000 --physics native
 
-Worlds begin anew when an episode ends. Says how many worlds were ever not finite (observation,
+Worlds restart when an episode ends. Says how many worlds were ever not finite (observation,
 reward or state), and the greatest observation; exits with 1 where there was such a world.
 """
 
@@ -14,14 +14,14 @@ import jax
 import jax.numpy as jnp
 
 from hybrid_rl import config
-from hybrid_rl.cli import command
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.types import EnvState
 
 
 def tumble(task: str, physics: str, worlds: int, decisions: int) -> tuple[int, float]:
     """(worlds that were not finite at some time, greatest observation in size)."""
     given = config.load([f"task={task}", f"physics={physics}"])
-    command.prepare(given)
+    prepare(given)
     episode = config.build(given).agent.episode
     first = jax.jit(jax.vmap(episode.reset))(jax.random.split(jax.random.key(0), worlds))
 
@@ -52,15 +52,15 @@ def main() -> int:
     parser.add_argument("--worlds", type=int, default=256)
     parser.add_argument("--decisions", type=int, default=10_000)
     parser.add_argument("--physics", default="native")
-    said = parser.parse_args()
+    arguments = parser.parse_args()
     bad = 0
-    for task in said.tasks:
+    for task in arguments.tasks:
         began = perf_counter()
-        lost, most = tumble(task, said.physics, said.worlds, said.decisions)
+        lost, most = tumble(task, arguments.physics, arguments.worlds, arguments.decisions)
         bad += lost
         print(
-            f"{task}, {said.physics}: {lost} of {said.worlds} worlds not finite in "
-            f"{said.decisions:,} decisions, observations up to {most:.3g}, "
+            f"{task}, {arguments.physics}: {lost} of {arguments.worlds} worlds not finite in "
+            f"{arguments.decisions:,} decisions, observations up to {most:.3g}, "
             f"{perf_counter() - began:.0f} s",
             flush=True,
         )

@@ -4,7 +4,7 @@
 
 A trial starts the run in a process of its own and stops it up to `--stops` times, each time
 after a random delay and by a random one of Ctrl-C, SIGTERM and kill -9; a run that was stopped
-before its first checkpoint starts anew. Then it goes on to its end. Compared are the newest
+before its first checkpoint starts over. Then it goes on to its end. Compared are the newest
 checkpoints, bit for bit, and metrics.jsonl, all but its clocks. Exit code 1 where any differs.
 """
 
@@ -57,9 +57,9 @@ def finish(overrides: Sequence[str]) -> float:
     """Run to the end; [s] that it took."""
     began = time.monotonic()
     process = start(overrides)
-    said = process.communicate()[1]
+    errors = process.communicate()[1]
     if process.returncode:
-        raise RuntimeError(f"{' '.join(overrides)}: exit code {process.returncode}: {said}")
+        raise RuntimeError(f"{' '.join(overrides)}: exit code {process.returncode}: {errors}")
     return time.monotonic() - began
 
 
@@ -105,11 +105,11 @@ def _state(run: Path) -> tuple[int, dict[str, np.ndarray]]:
     built = configuration.build(config)
     like = jax.eval_shape(Loop(built.agent, built.seeds, 1).init)
     step, state, *_ = checkpoint.restore(run / "checkpoints", like)
-    found = {}
+    arrays = {}
     for path, leaf in jax.tree_util.tree_leaves_with_path(state):
         key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
-        found[jax.tree_util.keystr(path)] = np.asarray(jax.random.key_data(leaf) if key else leaf)
-    return step, found
+        arrays[jax.tree_util.keystr(path)] = np.asarray(jax.random.key_data(leaf) if key else leaf)
+    return step, arrays
 
 
 def trial(overrides: Sequence[str], whole: Path, run: Path, stops: int, within: float) -> Trial:
@@ -134,8 +134,8 @@ def _or_resume(overrides: Sequence[str], run: Path) -> list[str]:
 
 def line(number: int, done: Trial) -> str:
     """A trial in the table."""
-    told = ", ".join(f"{stop.by} -> {stop.code} at {stop.step}" for stop in done.stops)
-    return f"{number:5}  {done.difference or 'same'}  {told}"
+    stops = ", ".join(f"{stop.by} -> {stop.code} at {stop.step}" for stop in done.stops)
+    return f"{number:5}  {done.difference or 'same'}  {stops}"
 
 
 def arguments() -> argparse.Namespace:
@@ -155,16 +155,16 @@ def main() -> int:
     args = arguments()
     random.seed(args.seed)
     with tempfile.TemporaryDirectory() as spare:
-        place = args.keep or Path(spare)
-        whole = place / "whole"
+        folder = args.keep or Path(spare)
+        whole = folder / "whole"
         finish([*args.overrides, f"run_dir={whole}"])  # compiles, and keeps what it compiled
-        within = args.within or finish([*args.overrides, f"run_dir={place / 'again'}"])
+        within = args.within or finish([*args.overrides, f"run_dir={folder / 'again'}"])
         print(f"never stopped: {within:.0f} s, last checkpoint {newest(whole)}", flush=True)
         print("trial  result  signal -> exit code at newest checkpoint", flush=True)
         same = 0
         for number in range(1, args.trials + 1):
             stops = random.randint(1, args.stops)
-            done = trial(args.overrides, whole, place / str(number), stops, within)
+            done = trial(args.overrides, whole, folder / str(number), stops, within)
             print(line(number, done), flush=True)
             same += not done.difference
     print(f"{same} of {args.trials} the same as the run that was never stopped")

@@ -22,11 +22,11 @@ from hybrid_rl.training.rollout import evaluation_keys
 from hybrid_rl.types import EnvState
 
 
-def outcome(trained: Trained, params: Any, key: Array, said: argparse.Namespace) -> Array:
+def outcome(trained: Trained, params: Any, key: Array, arguments: argparse.Namespace) -> Array:
     """Undiscounted return of one episode."""
     controller: Any = trained.controllers["policy"]
     episode, policy = trained.episode, controller.policy
-    shape = (said.samples, said.horizon, episode.spec.act)
+    shape = (arguments.samples, arguments.horizon, episode.spec.act)
 
     def step(env: EnvState, u: Array) -> EnvState:
         after = episode.step(env, u)
@@ -45,7 +45,7 @@ def outcome(trained: Trained, params: Any, key: Array, said: argparse.Namespace)
         env, key = carry
         key, now = jax.random.split(key)
         us, returns = jax.vmap(partial(candidate, env))(jax.random.normal(now, shape))
-        w = sampling.weights(returns, said.temperature, True, None)
+        w = sampling.weights(returns, arguments.temperature, True, None)
         return step(env, w[:, 0] @ us[:, 0]), key
 
     start, key = jax.random.split(key)
@@ -61,12 +61,12 @@ def main() -> None:
     parser.add_argument("--samples", type=int, default=40)
     parser.add_argument("--temperature", type=float, default=1.0)
     parser.add_argument("--episodes", type=int, default=10)
-    said = parser.parse_args()
-    trained = load(said.run)
-    one = jax.jit(jax.vmap(lambda p, key: outcome(trained, p, key, said), in_axes=(None, 0)))
+    arguments = parser.parse_args()
+    trained = load(arguments.run)
+    one = jax.jit(jax.vmap(lambda p, key: outcome(trained, p, key, arguments), in_axes=(None, 0)))
     for i, seed in enumerate(trained.seeds):
         params = jax.tree.map(lambda x, i=i: x[i], trained.params)
-        returns = one(params, evaluation_keys(seed, said.episodes))
+        returns = one(params, evaluation_keys(seed, arguments.episodes))
         print(f"seed {seed}: {float(returns.mean()):,.1f}, {sorted(returns.round(0).tolist())}")
 
 

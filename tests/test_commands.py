@@ -241,9 +241,10 @@ def test_the_list_names_every_task_and_method(capsys):
 @pytest.mark.parametrize(("given", "threads"), [({}, max(8, cores())), ({"NPROC": "3"}, 3)])
 def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
     code = (
-        "import jax; from pathlib import Path; from hybrid_rl import command, config\n"
+        "import jax; from pathlib import Path\n"
+        "from hybrid_rl import config; from hybrid_rl.run.jax_settings import prepare\n"
         "given = config.load(['physics=mjx', 'compile_cache=null'])\n"
-        "config.build(given); command.prepare(given); jax.devices()\n"
+        "config.build(given); prepare(given); jax.devices()\n"
         "names = [path.read_text() for path in Path('/proc/self/task').glob('*/comm')]\n"
         "print(sum('XLAEigen' in name for name in names))"
     )

@@ -17,7 +17,7 @@ from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.mujoco import offscreen
-from hybrid_rl.run import checkpoint, integrity, rows, session
+from hybrid_rl.run import checkpoint, integrity, memory, rows, session
 from hybrid_rl.run.evaluations import Evaluations
 
 pytestmark = pytest.mark.xdist_group("errors")
@@ -41,7 +41,7 @@ USAGE = [  # overrides of train, words of the line
     ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
     ("env=null", "env=null: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),
-    ("objective=foo", "objective=foo: unknown; choose one of climb, fourier_ergodic"),
+    ("objective=foo", "objective=foo: unknown; choose one of fourier_ergodic, "),
     ("experiment=foo", "experiment=foo: unknown; choose one of thesis/"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of thesis/"),
     ("task=pendulm", "quadcopter_se3, sawyer_push; did you mean pendulum?"),
@@ -115,7 +115,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
     ("evaluate {trained}", 2, "unknown argument; give key=value"),
     ("demonstrate", 2, "task, run: give one of them"),
-    ("demonstrate task=ant", 2, "task=ant: nobody wrote an expert; give run=DIR"),
+    ("demonstrate task=ant", 2, "task=ant: has no scripted expert; give run=DIR"),
     ("demonstrate task=aunt", 2, "task=aunt: unknown; choose one of"),
     ("demonstrate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
     ("demonstrate run={trained} out=file.csv", 2, "out=file.csv: must end in .npz"),
@@ -136,11 +136,11 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("list config_dir=nowhere", 2, "config_dir=nowhere: no such folder"),
 ]
 RESUMED = [  # overrides beside resume, words of the line
-    ("task=cartpole", "task=cartpole: beside resume only total_steps can be changed; the run in"),
-    ("algo=nn_mppi", "algo=nn_mppi: beside resume only total_steps can be changed; the run in"),
+    ("task=cartpole", "task=cartpole: with resume only total_steps can be changed; the run in"),
+    ("algo=nn_mppi", "algo=nn_mppi: with resume only total_steps can be changed; the run in"),
     ("seed=7", "has 0"),
-    ("policy.hidden=[8,8]", "has [16]"),
-    ("experiment=thesis/fig_3_2_pendulum", "beside resume only total_steps can be changed"),
+    ("policy.hidden=[8,8]", "policy.hidden=[8,8]: with resume only total_steps can be changed"),
+    ("experiment=thesis/fig_3_2_pendulum", "with resume only total_steps can be changed"),
     ("total_steps=100", "has 600; it can be raised, not lowered"),
     ("total_steps=1e9", f"total_steps=1e9: {COUNT}"),
 ]
@@ -259,12 +259,12 @@ def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
 def test_a_damaged_checkpoint_is_passed_over(copied, capfd, damage):
     damage(copied / "checkpoints" / "600")
     assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
-    assert "checkpoint 600 is passed over" in " ".join(capfd.readouterr().out.split())
+    assert "checkpoint 600 is skipped" in " ".join(capfd.readouterr().out.split())
     assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
     assert call_train(f"resume={copied}") == 0
     said = capfd.readouterr()
-    assert "checkpoint 600 is passed over" in said.out
-    assert "going on from step 500" in said.out
+    assert "checkpoint 600 is skipped" in said.out
+    assert "continuing from step 500" in said.out
     assert said.err == ""
     assert integrity.verify(copied / "checkpoints" / "600") is None
 

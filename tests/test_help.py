@@ -78,7 +78,7 @@ def test_arguments_are_parsed_as_declared(monkeypatch):
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("", "runs: not given; say runs=GLOB"),
+        ("", "runs: not given; give runs=GLOB"),
         ("sizes=5", "sizes=5: must be an even number"),
         ("parts=a,c", "parts=c: unknown; choose of a, b"),
         ("sise=3", "give key=value with sizes, parts, runs, env.* (did you mean sizes?)"),

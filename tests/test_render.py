@@ -256,8 +256,8 @@ def test_each_backend_draws_or_is_not_chosen(name):
     """In a process of its own, after mujoco was imported for no display at all."""
     code = (
         "import mujoco, numpy as np, sys\n"
-        "from hybrid_rl import drawing\n"
-        "from hybrid_rl.envs import offscreen\n"
+        "from hybrid_rl.run import drawing\n"
+        "from hybrid_rl.envs.mujoco import offscreen\n"
         "try: name = offscreen.backend()\n"
         "except offscreen.NoGraphicsError as problem: sys.exit(str(problem))\n"
         f"assert name == {name!r}\n"
@@ -301,7 +301,7 @@ def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_dr
     small = ["width=64", "height=48", "episode_steps=2"]
     assert call(monkeypatch, "task=sawyer_push", f"out={tmp_path}/a.mp4", *small) == 0
     assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == 3
-    assert capsys.readouterr().out.splitlines()[-1].endswith(", no success, by hand")
+    assert capsys.readouterr().out.splitlines()[-1].endswith(", no success, scripted expert")
 
 
 @dataclass(frozen=True)
@@ -355,8 +355,8 @@ def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsy
         ([], "run, task: give one of them"),
         (["run=x", "task=sawyer_push"], "run, task: give one of them"),
         (["run=x", "env.reward=thesis"], "env, episode, expert: a run has its own"),
-        (["task=sawyer_push", "mode=full"], "mode: an expert by hand has none"),
-        (["task=pendulum"], "task=pendulum: nobody wrote an expert"),
+        (["task=sawyer_push", "mode=full"], "mode: a scripted expert has none"),
+        (["task=pendulum"], "task=pendulum: has no scripted expert"),
         (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4, .gif, .png"),
         (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
         (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),

@@ -1,20 +1,20 @@
-"""How fast this machine is: worlds, planners, updates and whole loops, beside others' code.
+"""The speed of worlds, planners, updates and whole loops on this machine, and of other libraries.
 
     python -m hybrid_rl.benchmark parts=physics,plan,shares,loop,compile out=benchmark.json
     python -m hybrid_rl.benchmark parts=loop model_learner.updates=1 planner.horizon=5
     python -m hybrid_rl.benchmark parts=updates experiment= algo=sac
 
-physics   physics steps a second by task, implementation and number of worlds, beside bare loops
+physics   physics steps a second by task, implementation and number of worlds, and bare loops
 plan      model steps a second of the planner, by learners, K and T
-act       decisions a second of a controller alone, by number of robots, beside real time
-updates   gradient steps a second of each learner, by number of them, beside Brax's SAC
+act       decisions a second of a controller alone, by number of robots, and real time
+updates   gradient steps a second of each learner, by number of them, and Brax's SAC
 shares    where a decision's time goes
 loop      decisions a second of the whole training loop, by number of learners
 compile   seconds from start to the first decision, with an empty cache and a filled one
 
 Keys of the method's own parts change it. What is compared is run in turns, by
-hybrid_rl.benchmark.race. The numbers are printed, written as JSON and drawn, a picture a part; by default it takes six
-minutes on two cores.
+hybrid_rl.benchmark.race. The numbers are printed, written as JSON and drawn, a picture a part;
+by default it takes six minutes on two cores.
 """
 
 if __name__ == "__main__":
@@ -35,6 +35,7 @@ from hybrid_rl import config
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, output, read, several, whole
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.jax_settings import CACHE, prepare
 
 TASKS = "halfcheetah,hopper,cartpole"
 LEARNERS = ("plan", "act", "updates", "shares", "loop")
@@ -52,15 +53,15 @@ SIZES = {  # what is left empty, on a CPU and elsewhere
 Table = dict[str, Any]
 
 
-def physics(said: dict[str, str], rounds: int) -> list[Table]:
+def physics(settings: dict[str, str], rounds: int) -> list[Table]:
     """Worlds of every task, ours against bare loops of the same compiled model."""
     from hybrid_rl.benchmark import others, ours
 
     tables = []
-    for task in (said["tasks"] or TASKS).split(","):
-        for count in _counts(said, "worlds"):
+    for task in (settings["tasks"] or TASKS).split(","):
+        for count in _counts(settings, "worlds"):
             field = []
-            for implementation in said["physics"].split(","):
+            for implementation in settings["physics"].split(","):
                 limit = 20_000 if implementation == "native" else 500
                 decisions = max(20, min(20_000 // count, limit))
                 own = ours.worlds(task, implementation, count, decisions)
@@ -72,115 +73,119 @@ def physics(said: dict[str, str], rounds: int) -> list[Table]:
                     bare = others.bare_mjx(task, count, bare_steps, kind)
                 field += [bare, own]
             theirs = others.playground(count, decisions) if task == "halfcheetah" else None
-            field += [theirs] if theirs and said["physics"] != "native" else []
+            field += [theirs] if theirs and settings["physics"] != "native" else []
             name = f"{task}, {_many(count, 'world')}"
             table = _race("physics", name, "steps/s", field, rounds)
             tables.append(table | {"solver": others.solver(task)})
     return tables
 
 
-def plan(said: dict[str, str], rounds: int) -> list[Table]:
-    """The planner alone, beside one whose model is the world itself."""
+def plan(settings: dict[str, str], rounds: int) -> list[Table]:
+    """The planner alone, and one whose model is the world itself."""
     from hybrid_rl.benchmark import others, ours
 
-    agent, world = _agent(said), _agent(said, said["physics"].split(",")[-1]).episode
+    agent, world = _agent(settings), _agent(settings, settings["physics"].split(",")[-1]).episode
     tables = []
-    for text in said["plans"].split(","):
+    for text in settings["plans"].split(","):
         samples, horizon = (whole()("plans", part) for part in text.split("x"))
         most = 2**20 // samples  # a large plan is for few learners
         try:
             planner = replace(agent.controller, horizon=horizon, samples=samples)
         except TypeError as error:
-            raise UsageError(f"plan: {said['algo']} has no planner by samples") from error
+            raise UsageError(f"plan: {settings['algo']} has no planner by samples") from error
         planning = replace(agent, controller=planner)
         field = [
             ours.decisions(_many(learners, "learner"), planning, learners, samples * horizon)
-            for learners in _counts(said, "learners")
+            for learners in _counts(settings, "learners")
             if learners <= max(most, 1)
         ]
         field.append(others.on_the_true_model(world, samples, horizon))
-        what = f"{said['algo']}, K {samples:,}, T {horizon}"
+        what = f"{settings['algo']}, K {samples:,}, T {horizon}"
         tables.append(_race("plan", what, "model steps/s", field, rounds))
     return tables
 
 
-def act(said: dict[str, str], rounds: int) -> list[Table]:
+def act(settings: dict[str, str], rounds: int) -> list[Table]:
     """What any controller does in a decision."""
     from hybrid_rl.benchmark import ours
 
-    agent = _agent(said)
-    field = [ours.decisions(_many(n, "robot"), agent, n) for n in _counts(said, "learners")]
+    agent = _agent(settings)
+    field = [ours.decisions(_many(n, "robot"), agent, n) for n in _counts(settings, "learners")]
     real = f"real time: {1 / agent.spec.dt:,.0f} each"
-    return [_race("act", f"{said['experiment']}, {said['algo']}, {real}", "acts/s", field, rounds)]
+    return [
+        _race(
+            "act", f"{settings['experiment']}, {settings['algo']}, {real}", "acts/s", field, rounds
+        )
+    ]
 
 
-def updates(said: dict[str, str], rounds: int) -> list[Table]:
-    """One gradient step of each learner; soft actor-critic beside another's of the same size."""
+def updates(settings: dict[str, str], rounds: int) -> list[Table]:
+    """One gradient step of each learner, and of another soft actor-critic of the same size."""
     from hybrid_rl.benchmark import others, ours
 
-    agent, tables = _agent(said), []
-    for count in _counts(said, "learners"):
+    agent, tables = _agent(settings), []
+    for count in _counts(settings, "learners"):
         field = [ours.updates(f"{name} learner", agent, name, count) for name in agent.learners]
         for learner in agent.learners.values():
             critic: Any = getattr(learner, "critic", None)
             if critic is not None:
                 size = learner.batch_size
                 field.append(others.brax_sac(agent.spec, critic.hidden, size, count))
-        what = f"{said['algo']}, {_many(count, 'learner')}"
+        what = f"{settings['algo']}, {_many(count, 'learner')}"
         tables.append(_race("updates", what, "gradient steps/s", field, rounds))
     return tables
 
 
-def shares(said: dict[str, str], rounds: int) -> list[Table]:
+def shares(settings: dict[str, str], rounds: int) -> list[Table]:
     """The whole loop with parts left out, and what the chip can do."""
     from hybrid_rl.benchmark import ours
 
-    agent, decisions = _agent(said), 500
+    agent, decisions = _agent(settings), 500
     most = 64  # enough to see; more is the business of `loop`
     tables = [
         _race(
             "shares",
-            f"{said['algo']}, {_many(count, 'learner')}",
+            f"{settings['algo']}, {_many(count, 'learner')}",
             "decisions/s",
             ours.shares(agent, count, decisions),
             rounds,
         )
-        for count in _counts(said, "learners")
+        for count in _counts(settings, "learners")
         if count <= most
     ]
     return [*tables, _race("shares", "float32", "operations/s", [ours.product()], rounds)]
 
 
-def loop(said: dict[str, str], rounds: int) -> list[Table]:
+def loop(settings: dict[str, str], rounds: int) -> list[Table]:
     """Training, by number of learners."""
     from hybrid_rl.benchmark import ours
 
     field = []
-    for implementation in said["physics"].split(","):
-        agent = _agent(said, implementation)
-        for count in _counts(said, "learners"):
+    for implementation in settings["physics"].split(","):
+        agent = _agent(settings, implementation)
+        for count in _counts(settings, "learners"):
             name = f"{_many(count, 'learner')}, {implementation}"
             decisions = max(10, 200 // -(-count // 64))
             field.append(ours.loop(name, agent, count, decisions)[0])
-    return [_race("loop", said["algo"], "decisions/s", field, rounds)]
+    return [_race("loop", settings["algo"], "decisions/s", field, rounds)]
 
 
-def compiling(said: dict[str, str], rounds: int) -> list[Table]:
+def compiling(settings: dict[str, str], rounds: int) -> list[Table]:
     """[1/s] of a start, from the command to its first decision, cold and cached."""
-    with tempfile.TemporaryDirectory() as place:
-        line = [sys.executable, "-m", "hybrid_rl.train", f"experiment={said['experiment']}"]
-        line += [f"algo={said['algo']}", "total_steps=1", "log_every=1", "eval_modes=[]"]
-        own = {key: text for key, text in os.environ.items() if key != command.CACHE}
+    with tempfile.TemporaryDirectory() as folder:
+        line = [sys.executable, "-m", "hybrid_rl.train", f"experiment={settings['experiment']}"]
+        line += [f"algo={settings['algo']}", "total_steps=1", "log_every=1", "eval_modes=[]"]
+        own = {key: text for key, text in os.environ.items() if key != CACHE}
         rows = []
         for name in ("cold", "cached"):
             began = perf_counter()
-            run = [*line, f"compile_cache={place}/cache", f"run_dir={place}/{name}"]
+            run = [*line, f"compile_cache={folder}/cache", f"run_dir={folder}/{name}"]
             subprocess.run(run, check=True, capture_output=True, env=own)
             rows.append({"name": name, "seconds": perf_counter() - began})
     for row in rows:
         row |= {"rate": 1 / row["seconds"], "best": 1 / row["seconds"], "memory": None}
         row["ratio"] = rows[0]["seconds"] / row["seconds"]
-    return [{"part": "compile", "what": said["algo"], "unit": "starts/s", "rows": rows}]
+    return [{"part": "compile", "what": settings["algo"], "unit": "starts/s", "rows": rows}]
 
 
 PARTS = {
@@ -203,34 +208,34 @@ ARGUMENTS = (
     Argument("plans", "", "KxT, such as 20x10,64x20, of part plan"),
     Argument("matmul_precision", "highest", "of float32 products", one_of(*config.PRECISIONS)),
     Argument("rounds", 5, "of which medians are taken", whole()),
-    Argument("out", "benchmark.json", "the numbers; a picture beside it"),
+    Argument("out", "benchmark.json", "the numbers; a picture in the same folder"),
 )
 GROUPS = {name: f"a key of the method's {name}" for name in PLANNED}
 
 
-def _agent(said: dict[str, str], physics: str = "auto") -> Any:
-    names = [f"experiment={said['experiment']}"] if said["experiment"] else []
-    names += [f"algo={said['algo']}", f"physics={physics}"]
-    names += [f"{key}={value}" for key, value in said.items() if "." in key]
+def _agent(settings: dict[str, str], physics: str = "auto") -> Any:
+    names = [f"experiment={settings['experiment']}"] if settings["experiment"] else []
+    names += [f"algo={settings['algo']}", f"physics={physics}"]
+    names += [f"{key}={value}" for key, value in settings.items() if "." in key]
     steps = "total_steps=20000"  # bounds the replay memory of many learners
     return config.build(config.load([*names, steps])).agent
 
 
-def _check(said: dict[str, Any]) -> None:
+def _check(settings: dict[str, Any]) -> None:
     """Raise UsageError for a list that none of the parts uses, or an unknown task."""
     for name, parts in OF.items():
-        if said[name] and not set(parts) & set(said["parts"]):
-            line = f"{name}={said[name]}: parts={','.join(said['parts'])} does not use it"
+        if settings[name] and not set(parts) & set(settings["parts"]):
+            line = f"{name}={settings[name]}: parts={','.join(settings['parts'])} does not use it"
             raise UsageError(f"{line}; {', '.join(parts)} would")
-    several(*command.options("task"))("tasks", said["tasks"] or TASKS)
+    several(*command.options("task"))("tasks", settings["tasks"] or TASKS)
 
 
 def _many(count: int, what: str) -> str:
     return f"{count:,} {what}{'s' * (count != 1)}"
 
 
-def _counts(said: dict[str, str], key: str) -> list[int]:
-    return [whole()(key, text) for text in said[key].split(",")]
+def _counts(settings: dict[str, str], key: str) -> list[int]:
+    return [whole()(key, text) for text in settings[key].split(",")]
 
 
 def _race(part: str, what: str, unit: str, field: list[Any], rounds: int) -> Table:
@@ -253,22 +258,22 @@ def main() -> None:
     from hybrid_rl.run import provenance
 
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
-    said: dict[str, Any] = {**given, **changes}
-    out, rounds = output("out", said["out"], (".json",), ".png"), said["rounds"]
-    _check(said)
-    threads = ["physics=mjx"] if "mjx" in said["physics"] else []
-    command.prepare(config.load([*threads, f"matmul_precision={said['matmul_precision']}"]))
+    settings: dict[str, Any] = {**given, **changes}
+    out, rounds = output("out", settings["out"], (".json",), ".png"), settings["rounds"]
+    _check(settings)
+    threads = ["physics=mjx"] if "mjx" in settings["physics"] else []
+    prepare(config.load([*threads, f"matmul_precision={settings['matmul_precision']}"]))
     sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"]
-    said |= {key: value for key, value in sizes.items() if not said[key]}
+    settings |= {key: value for key, value in sizes.items() if not settings[key]}
     machine = provenance.device()
     print(f"{machine}; medians of {rounds} rounds, ratios to the first line of a table")
     tables: list[Table] = []
-    asked = {key: value for key, value in said.items() if key != "out"}
+    asked = {key: value for key, value in settings.items() if key != "out"}
     began = perf_counter()
-    for number, part in enumerate(said["parts"], 1):
+    for number, part in enumerate(settings["parts"], 1):
         passed = f"{perf_counter() - began:,.0f} s so far"
-        print(f"\npart {number} of {len(said['parts'])}: {part}; {passed}", flush=True)
-        tables += PARTS[part](said, rounds)
+        print(f"\npart {number} of {len(settings['parts'])}: {part}; {passed}", flush=True)
+        tables += PARTS[part](settings, rounds)
         numbers = {"machine": machine, "versions": provenance.versions(), "asked": asked}
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps({**numbers, "tables": tables}, indent=1) + "\n")

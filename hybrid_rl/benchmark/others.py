@@ -76,7 +76,7 @@ def bare_mjx(task: str, count: int, steps: int, implementation: str = "jax") -> 
 
 
 def solver(task: str) -> dict[str, Any]:
-    """The settings that a world of `task` and the bare loops beside it share."""
+    """The settings that a world of `task` and its bare loops share."""
     env: Any = world(task, "native").env
     option = env._body.model.opt
     return {
@@ -124,7 +124,7 @@ def brax_sac(spec: Spec, hidden: tuple[int, ...], size: int, learners: int) -> C
 
     def one(state: tuple, batch: Batch, key: jax.Array) -> tuple:
         no_end: Any = {"state_extras": {"truncation": batch.truncated}}
-        seen = Transition(
+        data = Transition(
             batch.obs, batch.action, batch.reward, 1 - batch.terminated, batch.next_obs, no_end
         )
 
@@ -132,17 +132,17 @@ def brax_sac(spec: Spec, hidden: tuple[int, ...], size: int, learners: int) -> C
             (policy, q, log_alpha), target, optimisers = state
             keys, alpha = jax.random.split(jax.random.fold_in(key, i), 3), jnp.exp(log_alpha)
             grads = (
-                jax.grad(of_actor)(policy, None, q, alpha, seen, keys[0]),
-                jax.grad(of_critic)(q, policy, None, target, alpha, seen, keys[1]),
-                jax.grad(of_alpha)(log_alpha, policy, None, seen, keys[2]),
+                jax.grad(of_actor)(policy, None, q, alpha, data, keys[0]),
+                jax.grad(of_critic)(q, policy, None, target, alpha, data, keys[1]),
+                jax.grad(of_alpha)(log_alpha, policy, None, data, keys[2]),
             )
-            parts, kept = [], []
+            parts, states = [], []
             for grad, optimiser, part in zip(grads, optimisers, state[0], strict=True):
                 change, optimiser = adam.update(grad, optimiser, part)
                 parts.append(optax.apply_updates(part, change))
-                kept.append(optimiser)
+                states.append(optimiser)
             target = optax.incremental_update(parts[1], target, 0.005)
-            return tuple(parts), target, tuple(kept)
+            return tuple(parts), target, tuple(states)
 
         return jax.lax.fori_loop(0, repeats, again, state)
 

@@ -74,7 +74,7 @@ def world(task: str, physics: str) -> Episode:
 
 
 def beginning(task: str, physics: str, count: int) -> tuple[Episode, EnvState, Array]:
-    """A task, `count` first states and an action [count, m] for each: all contestants' alike."""
+    """A task, `count` first states and an action [count, m] for each."""
     episode = world(task, physics)
     keys = jax.random.split(jax.random.key(0), count)
     u = jax.random.uniform(jax.random.key(1), (count, episode.spec.act), minval=-1, maxval=1)
@@ -111,8 +111,8 @@ def decisions(name: str, agent: Agent, learners: int, each: float = 1.0) -> Cont
         def again(i: Array, held: tuple) -> tuple:  # each sees something new: none is left out
             control, total = held
             now = jax.vmap(jax.random.fold_in, (0, None))(keys, i)
-            seen = obs + 1e-3 * i.astype(obs.dtype)
-            u, control, _metrics = jax.vmap(controller.act)(params, control, seen, now)
+            moved = obs + 1e-3 * i.astype(obs.dtype)
+            u, control, _metrics = jax.vmap(controller.act)(params, control, moved, now)
             return control, total + u
 
         first = (rest, jnp.zeros((learners, agent.spec.act)))

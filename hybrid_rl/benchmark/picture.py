@@ -22,16 +22,16 @@ OTHERS = "#999999"  # colour of what ours is compared with
 def draw(tables: Sequence[Table], out: Path) -> list[Path]:
     """Writes the picture `out`, or one for each part, such as benchmark_loop.png."""
     parts = list(dict.fromkeys(table["part"] for table in tables))
-    found = []
+    paths = []
     for part in parts:
         path = out if len(parts) == 1 else out.with_stem(f"{out.stem}_{part}")
         _picture([table for table in tables if table["part"] == part], path)
-        found.append(path)
-    return found
+        paths.append(path)
+    return paths
 
 
 def redraw(file: str | Path) -> list[Path]:
-    """The pictures of a benchmark's JSON, beside it."""
+    """The pictures of a benchmark's JSON, in the same folder."""
     tables = json.loads(Path(file).read_text(encoding="utf-8"))["tables"]
     return draw(tables, Path(file).with_suffix(".png"))
 

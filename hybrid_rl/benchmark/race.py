@@ -1,6 +1,6 @@
 """Speeds measured side by side: every round runs each contestant once.
 
-A machine that is now fast, now slow is so to all of a round alike; what is compared is the ratio
+A machine that is now fast, now slow is so to all of a round equally; what is compared is the ratio
 within a round, and its median over rounds.
 """
 

@@ -1,4 +1,4 @@
-"""key=value arguments of a command, declared once: parsing, checks and --help follow from it."""
+"""key=value arguments of a command, declared once for parsing, checks and --help."""
 
 import difflib
 import inspect
@@ -34,7 +34,7 @@ def whole(least: int = 1, even: bool = False) -> Kind:
 
 
 def number(least: float = -math.inf, what: str = "") -> Kind:
-    """A finite number; `what` says of what."""
+    """A finite number; what: words that follow "a number" in the message."""
 
     def kind(name: str, given: str) -> float:
         try:
@@ -79,22 +79,22 @@ class Argument:
 
     name: str
     default: Any  # as `kind` returns it
-    about: str  # what --help says
+    about: str  # description in --help
     kind: Kind = text
-    needed: str = ""  # what to give; where this is set the argument cannot be left out
+    needed: str = ""  # what to give, for an argument that is required
 
 
 def read(
     doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """The values of all `known` arguments, and the `group.key=value` that were given.
+    """The values of all `known` arguments, and the `group.key=value` of the user.
 
-    With --help among the arguments the process prints the help and ends.
+    With --help the process prints the help and ends.
 
     Args:
-        doc: what the command does, with examples; the docstring of its module.
+        doc: the docstring of its module.
         known: its arguments.
-        groups: groups of the configuration whose keys it takes too -> what --help says.
+        groups: groups of the configuration whose keys it accepts -> their description in --help.
 
     Raises:
         UsageError: for an argument of another form, an unknown one, or a value out of range.
@@ -116,14 +116,14 @@ def read(
             raise UsageError(_refusal(line, at, named, groups))
     for argument in known:
         if argument.needed and not values[argument.name]:
-            raise UsageError(f"{argument.name}: not given; say {argument.needed}")
+            raise UsageError(f"{argument.name}: not given; give {argument.needed}")
     return values, changes
 
 
 def _refusal(
     line: Sequence[str], at: int, named: Mapping[str, Argument], groups: Mapping[str, str]
 ) -> str:
-    """The line for an argument that is none."""
+    """The message for an invalid argument."""
     given = line[at]
     name = given.partition("=")[0].lstrip("-")
     if name in named:
@@ -139,7 +139,7 @@ def _refusal(
 
 
 def as_pair(line: Sequence[str], at: int) -> str:
-    """How to write the argument line[at], which is no key=value."""
+    """line[at], which is not key=value, written as key=value."""
     name, equals, value = line[at].lstrip("-").partition("=")
     rest = [each for each in line[at + 1 : at + 3] if each != "="]
     if not equals and rest and "=" not in rest[0].removeprefix("="):
@@ -167,18 +167,18 @@ def _written(value: Any) -> str:
     return ",".join(value) if isinstance(value, list) else f"{value}"
 
 
-def output(key: str, out: str | Path, suffixes: Sequence[str], *beside: str) -> Path:
-    """`out` as a path, after a check that it can be written, before any work.
+def output(key: str, out: str | Path, suffixes: Sequence[str], *others: str) -> Path:
+    """`out` as a path, after a check that it can be written to.
 
-    key: of the argument. beside: suffixes of files that are written next to it.
+    key: of the argument. others: suffixes of further files with the same name.
 
     Raises:
-        UsageError: where its suffix is none of `suffixes`, or it cannot be written to.
+        UsageError: if its suffix is none of `suffixes`, or it cannot be written to.
     """
     out = Path(out)
     if out.suffix not in suffixes:
         raise UsageError(f"{key}={out}: must end in {', '.join(suffixes)}")
-    for path in (out, *(out.with_suffix(suffix) for suffix in beside)):
+    for path in (out, *(out.with_suffix(suffix) for suffix in others)):
         if path.is_dir():
             raise UsageError(f"{key}={out}: {path} is a folder")
         try:

@@ -1,4 +1,4 @@
-"""What the commands share: settings of JAX, Hydra's command line, one line for what goes wrong.
+"""What the commands share: Hydra's command line, exit codes, one line for each error.
 
 Exit codes: 0 done; 2 bad usage; 130 and 143 after Ctrl-C and SIGTERM; 1 any other failure.
 """
@@ -9,8 +9,6 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any, NoReturn
 
 from omegaconf import DictConfig
@@ -21,8 +19,8 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.jax_settings import prepare as prepare
 
-CACHE = "JAX_COMPILATION_CACHE_DIR"  # JAX's own variable, which wins over compile_cache
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
     **dict.fromkeys(("--hydra-help", "-sc", "--shell-completion"), 0),
@@ -119,10 +117,10 @@ def _check_form(line: Sequence[str]) -> None:
 
 def report(error: BaseException) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""
-    found = diagnosis(error)
-    if found is None:
+    result = diagnosis(error)
+    if result is None:
         raise error
-    _fail(*found)
+    _fail(*result)
 
 
 def diagnosis(error: BaseException) -> tuple[int, str] | None:
@@ -173,50 +171,6 @@ def options(group: str) -> list[str]:
         str(path.relative_to(CONF / group).with_suffix(""))
         for path in (CONF / group).rglob("*.yaml")
     )
-
-
-def prepare(config: DictConfig) -> None:
-    """Settings of JAX for this process: compilation cache, matrix precision, threads.
-
-    Before JAX has looked for its devices. On a CPU, MJX factorises matrices of many worlds at
-    once, and side by side; each such call holds one of XLA's threads while others do its work
-    (jaxlib 0.10). Where there are two of them they wait for ever: so let there be eight.
-    """
-    import jax
-
-    from hybrid_rl.envs.mujoco.native import cores
-
-    if config.physics == "mjx" and cores() < 8:
-        os.environ.setdefault("NPROC", "8")
-    jax.config.update("jax_default_matmul_precision", config.matmul_precision)
-    if config.compile_cache is None or CACHE in os.environ:
-        return
-    if cache := _cache(str(config.compile_cache)):
-        _mend(cache)
-        jax.config.update("jax_compilation_cache_dir", str(cache))
-        jax.config.update("jax_compilation_cache_max_size", 4 * 2**30)
-        jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.1)
-
-
-def _cache(given: str) -> Path | None:
-    """The folder of compiled programs; None, after a line on stderr, where none can be kept."""
-    cache = Path(given).expanduser()
-    try:
-        cache.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=cache):
-            pass
-    except OSError as error:
-        why = f"cannot be written to ({error.strerror}); programs are compiled again each time"
-        print(f"hybrid_rl: compile_cache={given}: {why}", file=sys.stderr, flush=True)
-        return None
-    return cache
-
-
-def _mend(cache: Path) -> None:
-    """Drop what a kill left half written: JAX would warn of it, and never write there again."""
-    for entry in cache.glob("*-cache"):
-        if not entry.with_name(entry.name.removesuffix("-cache") + "-atime").exists():
-            entry.unlink(missing_ok=True)
 
 
 def guarded(job: Callable[[], None]) -> None:

@@ -1,16 +1,16 @@
-"""Ctrl-C and SIGTERM, from the first moment of a command to its last.
+"""Ctrl-C and SIGTERM, from the start of a command to its end.
 
-A command calls `install` before it imports anything heavy. From then on a thread hears both
-signals, also while the main thread is in an import, in XLA's compiler or in compiled code:
+A command calls `install` before it imports anything slow. From then on a thread handles both
+signals, also while the main thread is importing, compiling or in compiled code:
 
-* by default the process ends at once, with one line on stderr and exit code 130 or 143;
+* by default the process ends immediately, with one line on stderr and exit code 130 or 143;
 * within `tidily` the main thread gets KeyboardInterrupt and a few seconds to clean up; a
-  second signal ends the process at once;
-* within `answered` the first signal asks for an end; Ctrl-C after it ends the process at once,
-  and SIGTERM after it changes nothing.
+  second signal ends the process immediately;
+* within `answered` the first signal calls a function; Ctrl-C after it ends the process immediately,
+  and SIGTERM after it has no effect.
 
-Nothing is installed by an import. In a program that never calls `install`, such as a notebook,
-`answered` alone has an effect: it sets Python's handlers for its own time.
+Importing this module installs nothing. In a program that never calls `install`, such as a notebook,
+only `answered` has an effect: it sets Python's handlers until its block ends.
 """
 
 import os
@@ -34,13 +34,13 @@ class _State:
     tidily = False
     patience = PATIENCE
     ask: Ask | None = None
-    first: int | None = None  # the signal that was heard first in the present state
+    first: int | None = None  # the first signal in the present state
     raised: int | None = None  # the signal that became KeyboardInterrupt
     leaving = threading.Lock()  # never released: the process ends in one thread alone
 
 
 def install() -> None:
-    """Hear both signals from now on; to be called in the main thread of a command."""
+    """Handle both signals from now on; call it in the main thread of a command."""
     if _State.installed:
         return
     _State.installed = True
@@ -90,7 +90,7 @@ def answered(ask: Ask) -> Iterator[None]:
 
 
 def leave(number: int | None = None) -> NoReturn:
-    """End the process at once, with one line and exit code 128 + number.
+    """End the process immediately, with one line and exit code 128 + number.
 
     number: None stands for the signal that became KeyboardInterrupt.
     """
@@ -130,7 +130,7 @@ def _in_the_main_thread(number: int, frame: Any) -> None:
 
 
 def _listen(heard: int) -> None:
-    """Act on every signal as it comes."""
+    """Act on every signal."""
     while True:
         for number in os.read(heard, 1):
             _act(number)

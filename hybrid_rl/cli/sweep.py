@@ -1,4 +1,4 @@
-"""A sweep: all its jobs are checked before the first one runs, all run, a table ends it.
+"""A sweep: all jobs are checked before the first one runs, all run, and a table is printed.
 
 Hydra's basic sweeper ends a sweep at the first job that fails, and prints nothing of jobs that run
 in other processes. Here a failed job is a result like any other; the exit code of the command is
@@ -129,9 +129,10 @@ class Sweeper(BasicSweeper):
             configs.append(config)
         refuse_unused(configs, typed, configuration.READ)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
+            if not here and config.physics in ACCELERATED:
+                config = config.copy()
+                config.physics = "native"
             whole = configuration.resolved(config)
-            if not here and whole.physics in ACCELERATED:
-                whole.physics = "native"
             try:
                 with command.as_typed(overrides):
                     if whole.resume is None:
@@ -152,11 +153,11 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
         UsageError: where such a folder holds a run already.
     """
     given = [config.run_dir for config in configs]
-    placed = []
+    complete = []
     for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
         mine = [text for text in overrides if not text.startswith("run_dir=")]
         if config.resume is not None:
-            placed.append(list(overrides))
+            complete.append(list(overrides))
             continue
         if config.run_dir is None:
             folder = made(config, f"_{number}")
@@ -165,8 +166,8 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             folder = Path(str(config.run_dir), str(number) if same else "")
         if (folder / "config.yaml").exists():
             raise UsageError(f"run_dir={folder}: holds a run already; choose another")
-        placed.append([*mine, f"run_dir='{folder}'"])
-    return placed
+        complete.append([*mine, f"run_dir='{folder}'"])
+    return complete
 
 
 def _labels(jobs: Sequence[Sequence[str]]) -> list[str]:
@@ -186,14 +187,14 @@ def _report(
     for number, (label, overrides) in enumerate(zip(labels, jobs, strict=True)):
         given = [text for text in overrides if text.startswith(("run_dir=", "resume="))]
         run_dir = "".join(given[:1]).partition("=")[2].strip("'")
-        kept = results.get(number, {"code": None, "line": "not run"})
-        if kept["code"] is None and run_dir:
+        result = results.get(number, {"code": None, "line": "not run"})
+        if result["code"] is None and run_dir:
             with suppress(OSError):  # it holds something, or is not there
                 Path(run_dir).rmdir()
-        rows.append({"job": number, "overrides": label, "run_dir": run_dir, **kept})
+        rows.append({"job": number, "overrides": label, "run_dir": run_dir, **result})
     (folder / "jobs.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     cells = [("job", "overrides", "run folder", "result")]
-    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _said(r)) for r in rows]
+    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _shown(r)) for r in rows]
     widths = [max(len(row[i]) for row in cells) for i in range(3)]
     print()
     for row in cells:
@@ -204,6 +205,6 @@ def _report(
     print(f"{len(rows) - len(failed)} of {len(rows)} jobs done{which}", flush=True)
 
 
-def _said(row: dict[str, Any]) -> str:
+def _shown(row: dict[str, Any]) -> str:
     """The result of a job in the table."""
     return row["line"] if not row["code"] else f"failed ({row['code']}): {row['line']}"

@@ -1,18 +1,16 @@
-"""Checkpoints that are whole or absent, and come back bit for bit.
+"""Checkpoints that are complete or absent, and are restored bit for bit.
 
     FOLDER/STEP/state/         the leaves of the state, written by Orbax
                /leaves.json    name -> shape, dtype, and PRNG kind where it is a key
-               /meta.json      what the caller wants back beside the state
+               /meta.json      further values of the caller
                /manifest.json  every file above with its size and SHA-256
 
-A checkpoint is written as FOLDER/.STEP.tmp, forced to the disk, then renamed:
-whatever has a number for a name was finished. An older one of that step is
-FOLDER/.STEP.replaced.tmp for the moment between the two renames, and counts as
-STEP until there is a new one. A checkpoint is renamed before it is deleted, so
-that another process reads all of it or finds it gone, and takes a newer one.
-Leaves are stored flat, by their path in the state, so that containers of any
-type are welcome and a part of the state (say, parameters without replay memory)
-can be restored alone.
+A checkpoint is written to FOLDER/.STEP.tmp, forced to the disk, then renamed, so every folder
+whose name is a number is complete. An older checkpoint of that step is FOLDER/.STEP.replaced.tmp
+between the two renames, and counts as STEP until there is a new one. A checkpoint is renamed before
+it is deleted, so another process reads all of it or none, and then takes a newer one. Leaves are
+stored flat, by their path in the state, so the state may consist of any containers, and a part of
+it (parameters without replay memory, say) can be restored alone.
 """
 
 import contextlib
@@ -21,6 +19,7 @@ import re
 import shutil
 from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
 import jax
 
@@ -28,13 +27,13 @@ from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import integrity, leaves
 from hybrid_rl.types import PyTree
 
-KEEP = 2  # complete checkpoints that stay
-ATTEMPTS = 100  # at reading a folder whose checkpoints are replaced meanwhile
+KEEP = 2  # complete checkpoints
+ATTEMPTS = 100  # to read a folder whose checkpoints another process replaces
 NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.tmp")  # of a finished checkpoint
 
 
 def nbytes(state: PyTree) -> int:
-    """[bytes] that a checkpoint of `state` takes on the disk, but for a few kB."""
+    """Size of a checkpoint of `state` on the disk [bytes], to a few kB."""
     return sum(leaf.size * leaf.dtype.itemsize for leaf in jax.tree.leaves(state))
 
 
@@ -45,20 +44,20 @@ def steps(folder: Path) -> list[int]:
 
 def _finished(folder: Path) -> dict[int, Path]:
     """The finished checkpoints in `folder` by step."""
-    found: dict[int, Path] = {}
+    checkpoints: dict[int, Path] = {}
     for path in folder.iterdir() if folder.is_dir() else ():
         if match := NAME.fullmatch(path.name):
             step = int(match[1] or match[2])
-            if match[1] or step not in found:  # the replaced one counts where there is no other
-                found[step] = path
-    return found
+            if match[1] or step not in checkpoints:  # a replaced one counts if there is no other
+                checkpoints[step] = path
+    return checkpoints
 
 
-def shapes(folder: Path) -> dict[str, tuple[int, ...]]:
-    """Shape of each leaf of the newest checkpoint that can be read; empty where none can."""
-    for path in (path for _, path in sorted(_finished(folder).items(), reverse=True)):
-        with contextlib.suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-            return leaves.shapes(path)
+def meta(folder: Path) -> dict[str, Any]:
+    """meta.json of the newest readable checkpoint; {} if there is none."""
+    for _, path in sorted(_finished(folder).items(), reverse=True):
+        with contextlib.suppress(OSError, ValueError):
+            return json.loads((path / "meta.json").read_text(encoding="utf-8"))
     return {}
 
 
@@ -70,14 +69,14 @@ def save(
     keep: int = KEEP,
     known: Collection[int] | None = None,
 ) -> Path:
-    """Writes FOLDER/STEP, then deletes all but the newest `keep`.
+    """Write FOLDER/STEP, then delete all but the newest `keep` checkpoints.
 
-    Checkpoints beyond `step` are deleted too: they belong to a future that was left when
-    the run went on from here. Of checkpoints other than `known` none is deleted: another
-    process wrote them; None: all are known. `meta` is anything that JSON holds.
+    Checkpoints beyond `step` are deleted, too: the run was resumed from an earlier one. Only
+    checkpoints in `known` are deleted, as another process wrote the others; None: all of them.
+    meta: values that JSON can represent.
 
     Raises:
-        CheckpointError: where it cannot be written; what was there stays.
+        CheckpointError: if it cannot be written; earlier checkpoints stay.
     """
     arrays, kinds = leaves.flatten(state)
     texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
@@ -108,29 +107,29 @@ def restore(
     """The newest sound checkpoint, or the one at `step`: (step, state, meta, notes).
 
     `like` gives the structure, shapes and dtypes (arrays, or what `jax.eval_shape`
-    returns); leaves come back as arrays on the default device. part: `like` may lack leaves
-    that the checkpoint has. `notes` says in one line each what was passed over. Another
-    process may write checkpoints to `folder` and delete older ones meanwhile.
+    returns); the leaves are arrays on the default device. part: `like` may lack leaves that the
+    checkpoint has. notes: one line for each checkpoint that was skipped. Another process may write
+    checkpoints to `folder` and delete older ones meanwhile.
 
     Raises:
-        CheckpointError: where there is none that is sound.
-        MisfitError: where the checkpoint has other leaves than `like`.
+        CheckpointError: if none is sound.
+        MisfitError: if the checkpoint has other leaves than `like`.
     """
     for _ in range(ATTEMPTS):
-        found = _finished(folder)
-        if step is not None and step not in found:
-            has = sorted(found) or "none"
+        checkpoints = _finished(folder)
+        if step is not None and step not in checkpoints:
+            has = sorted(checkpoints) or "none"
             raise CheckpointError(f"{folder} has no checkpoint {step}; it has {has}")
         notes = []
-        for candidate in sorted(found, reverse=True) if step is None else [step]:
-            path = found[candidate]
+        for candidate in sorted(checkpoints, reverse=True) if step is None else [step]:
+            path = checkpoints[candidate]
             before = _identity(path)
             read, flaw = _attempt(path, like, part)
             if before is None or _identity(path) != before:
                 break  # deleted or replaced while it was read
             if read is not None:
                 return candidate, *read, notes
-            notes.append(f"checkpoint {candidate} is passed over: {flaw}")
+            notes.append(f"checkpoint {candidate} is skipped: {flaw}")
         else:
             if not notes:
                 raise CheckpointError(f"{folder} holds no checkpoint")
@@ -139,12 +138,12 @@ def restore(
 
 
 def _identity(path: Path) -> tuple[int, int, int] | None:
-    """What a folder keeps when it is renamed and no other has; None where there is none."""
+    """An identity of a folder that survives renaming; None if there is none."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_dev, found.st_ino, found.st_mtime_ns
+    return status.st_dev, status.st_ino, status.st_mtime_ns
 
 
 def _attempt(path: Path, like: PyTree, part: bool) -> tuple[tuple[PyTree, dict] | None, str]:
@@ -161,14 +160,14 @@ def _attempt(path: Path, like: PyTree, part: bool) -> tuple[tuple[PyTree, dict] 
 
 
 def _fits(folder: Path, needed: int) -> None:
-    """Raises before the disk is filled. needed: [bytes]."""
+    """Raise OSError if the disk is too small. needed: [bytes]."""
     free = shutil.disk_usage(folder).free
     if needed > free:
         raise OSError(f"it needs {needed / 1e6:.0f} MB and the disk has {free / 1e6:.0f} MB left")
 
 
 def _recover(folder: Path) -> None:
-    """Gives a replaced checkpoint its name back where a kill left no other; drops old drafts."""
+    """Rename a replaced checkpoint back if a kill left no newer one; delete old drafts."""
     for step, path in _finished(folder).items():
         if path.name != str(step):
             path.rename(folder / str(step))
@@ -177,7 +176,7 @@ def _recover(folder: Path) -> None:
 
 
 def _rename(draft: Path, path: Path) -> Path:
-    """Gives a finished draft its name, and takes the name from an older one."""
+    """Give a complete draft its name, which an older checkpoint loses."""
     if path.exists():
         path.rename(path.with_name(f".{path.name}.replaced.tmp"))
     draft.rename(path)
@@ -186,7 +185,7 @@ def _rename(draft: Path, path: Path) -> Path:
 
 
 def _prune(folder: Path, newest: int, keep: int, known: Collection[int] | None) -> None:
-    """Deletes those of the `known` checkpoints that a new one makes superfluous."""
+    """Delete the `known` checkpoints that the new one replaces."""
     ours = [s for s in steps(folder) if known is None or s in known or s == newest]
     sound = [s for s in ours if s <= newest and not integrity.verify(folder / str(s), False)]
     for step in set(ours) - set(sound[-keep:]):
@@ -199,8 +198,8 @@ def _prune(folder: Path, newest: int, keep: int, known: Collection[int] | None) 
 def _refusal(folder: Path, step: int, problem: Exception) -> str:
     """One line for a checkpoint that could not be written."""
     reason = " ".join(str(problem).split()) or type(problem).__name__
-    if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's tale
+    if system := re.search(r"([^:]+) \[os_error_code=", reason):  # the end of TensorStore's message
         reason = system[1].strip()
     before = [s for s in steps(folder) if not integrity.verify(folder / str(s), False)]
-    kept = f"checkpoint {before[-1]} is whole" if before else "there is no earlier one"
-    return f"checkpoint {step} in {folder} was not written: {reason}; {kept}"
+    last = f"checkpoint {before[-1]} is whole" if before else "there is no earlier one"
+    return f"checkpoint {step} in {folder} was not written: {reason}; {last}"

@@ -5,9 +5,9 @@
 `jax.distributed` counts the processes. Under Slurm, Open MPI and Kubernetes it finds them;
 elsewhere JAX_COORDINATOR_ADDRESS (host:port of process 0), JAX_NUM_PROCESSES and JAX_PROCESS_ID
 name them.
-Learners exchange nothing, so the processes part again once they are counted: process K writes an
-ordinary run of its seeds into RUN_DIR/process_K, and none waits for, or ends with, another.
-`resume=RUN_DIR distributed=true` goes on with all of them.
+Learners exchange nothing, so the processes are independent once they are counted: process K writes
+an ordinary run of its seeds to RUN_DIR/process_K, and none waits for another.
+`resume=RUN_DIR distributed=true` continues all of them.
 """
 
 import os
@@ -29,7 +29,7 @@ def share(config: DictConfig) -> DictConfig:
     """The run of this process: its seeds, its folder.
 
     Raises:
-        UsageError: where there are fewer learners than processes, or no common run folder.
+        UsageError: if there are fewer learners than processes, or no common run folder.
     """
     key = "run_dir" if config.resume is None else "resume"
     if config[key] is None:
@@ -59,10 +59,10 @@ def processes() -> tuple[int, int]:
     """The number of this process, from 0, and how many there are.
 
     Raises:
-        UsageError: where no cluster is found.
+        UsageError: if there is no cluster.
     """
     import jax
-    from jax._src.distributed import global_state  # its public counts make a backend of all hosts
+    from jax._src.distributed import global_state  # its public counts create a backend of all hosts
 
     try:
         total, index = (int(os.environ[name]) if name in os.environ else None for name in NUMBERS)
@@ -70,7 +70,7 @@ def processes() -> tuple[int, int]:
     except (ValueError, TypeError) as error:
         reason = str(error).rstrip(".")
         raise UsageError(f"distributed=true: no processes found ({reason}); {HOW}") from error
-    found = global_state.process_id, global_state.num_processes
+    process = global_state.process_id, global_state.num_processes
     jax.distributed.shutdown()
-    global_state.process_id, global_state.num_processes = 0, 1  # alone from here on
-    return found
+    global_state.process_id, global_state.num_processes = 0, 1  # independent from here on
+    return process

@@ -1,4 +1,4 @@
-"""Learners that reach NaN or infinity: each one ends, and the others of its program go on."""
+"""Learners that reach NaN or infinity: each one ends, and the others of its program continue."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -16,14 +16,14 @@ End = dict[str, Any]  # {"seed", "step", "quantity"} of a learner that diverged
 class Diverged:
     """The learners of `loop` that have ended.
 
-    The program computes all learners together, so that one that has ended goes through the
-    motions; `mended` gives it back the state of its last good checkpoint, or its first one.
+    The program computes all learners together, so one that has ended is still computed; `repaired`
+    gives it the state of its last sound checkpoint, or its initial state.
     """
 
     def __init__(self, loop: Loop, store: Store) -> None:
         self.loop, self.store = loop, store
         self.ends: dict[int, End] = {}  # by the learner's number
-        self._whole: dict[int, Any] = {}  # its state then
+        self._sound: dict[int, Any] = {}  # the state that replaces its own
 
     @property
     def steps(self) -> dict[int, int]:
@@ -35,49 +35,49 @@ class Diverged:
         """Learners that go on."""
         return len(self.loop.seeds) - len(self.ends)
 
-    def add(self, found: Mapping[int, tuple[int, str]]) -> list[End]:
-        """The ends that were not known; found: learner -> (step, quantity)."""
+    def add(self, failures: Mapping[int, tuple[int, str]]) -> list[End]:
+        """The new ends; failures: learner -> (step, quantity)."""
         new = {
             s: {"seed": self.loop.seeds[s], "step": step, "quantity": quantity}
-            for s, (step, quantity) in sorted(found.items())
+            for s, (step, quantity) in sorted(failures.items())
             if s not in self.ends
         }
         self.ends |= new
         return list(new.values())
 
     def resume(self, ends: Sequence[End]) -> None:
-        """Take up what a checkpoint knew."""
+        """Restore the ends from a checkpoint."""
         self.ends = {self.loop.seeds.index(end["seed"]): end for end in ends}
 
-    def mended(self, state: Any) -> Any:
-        """`state`, whose memory is used again, with sound rows for learners that have ended."""
+    def repaired(self, state: Any) -> Any:
+        """`state`, whose buffers are reused, with sound values for learners that have ended."""
         for s in self.ends:
-            if s not in self._whole:
-                self._whole[s] = self.store.learner(s)
-            state = self.loop.replaced(state, s, self._whole[s])
+            if s not in self._sound:
+                self._sound[s] = self.store.learner(s)
+            state = self.loop.replaced(state, s, self._sound[s])
         return state
 
 
 def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:
     """Learner -> (step, name) of a learned number [S, ...] that is not finite."""
-    found: dict[int, tuple[int, str]] = {}
+    failures: dict[int, tuple[int, str]] = {}
     for path, leaf in jax.tree_util.tree_leaves_with_path(learners):
         if jnp.issubdtype(leaf.dtype, jnp.floating):
             numbers = np.asarray(leaf)
             for s in np.flatnonzero(~np.isfinite(numbers.reshape(len(numbers), -1)).all(1)):
                 name = jax.tree_util.keystr(path, simple=True, separator=".")
-                found.setdefault(int(s), (step, name))
-    return found
+                failures.setdefault(int(s), (step, name))
+    return failures
 
 
-def said(end: End, left: int) -> str:
-    """That a learner ended, while `left` others go on."""
-    others = "the other learner goes" if left == 1 else f"the other {left} learners go"
-    return f"{_words(end)}; it ends here, {others} on"
+def note(end: End, left: int) -> str:
+    """A line for a learner that ended while `left` others continue."""
+    others = "the other learner continues" if left == 1 else f"the other {left} learners continue"
+    return f"{_words(end)}; it ends here, {others}"
 
 
 def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
-    """What happened and what can be done, in one line.
+    """The failure and what can be done, in one line.
 
     left: learners that went on; checkpoint: the step of the newest one.
     """

@@ -1,4 +1,4 @@
-"""Evaluations of a run: all learners, in every mode, in calls that a signal can cut."""
+"""Evaluations of a run: all learners, in every mode, in calls short enough to react to a signal."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.run.pace import Pace
+from hybrid_rl.run.schedule import Pace
 from hybrid_rl.training.loop import SAME, SEEDS, Loop
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Controller, Params
@@ -35,14 +35,14 @@ class Evaluations:
         }
 
     def __call__(self, params: Params, cut: Callable[[], bool]) -> list[dict[str, float]] | None:
-        """For each learner the mean of every outcome; None as soon as `cut` is true."""
-        found: dict[str, np.ndarray] = {}  # [S]
+        """For each learner the mean of every outcome; None once `cut` is true."""
+        means: dict[str, np.ndarray] = {}  # [S]
         for mode, evaluator in self._evaluators.items():
-            got = evaluator(params, self.keys, cut)
-            if got is None:
+            outcomes = evaluator(params, self.keys, cut)
+            if outcomes is None:
                 return None
-            found |= {EVALUATED[mode] + name: each.mean(-1) for name, each in got.items()}
-        return [{name: float(m[s]) for name, m in found.items()} for s in range(len(self.keys))]
+            means |= {EVALUATED[mode] + name: each.mean(-1) for name, each in outcomes.items()}
+        return [{name: float(m[s]) for name, m in means.items()} for s in range(len(self.keys))]
 
 
 class Evaluator:
@@ -64,7 +64,7 @@ class Evaluator:
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[], bool]
     ) -> dict[str, np.ndarray] | None:
-        """The `scores` [S, N]; None as soon as `cut` is true."""
+        """The `scores` [S, N]; None once `cut` is true."""
         carry, pace = self._begin(keys), Pace()
         while not np.asarray(carry[0].done).all():
             if cut():

@@ -1,16 +1,15 @@
-"""A run folder: one process writes to it, and its config.yaml is read back or blamed in one line.
+"""A run folder: where it is made, and its config.yaml, which holds what the run was built from.
 
-While a process trains, the folder holds `lock`: a file that the operating system locks (flock)
-and that names the process. The system lets go of it when the process ends, however that ends: a
-file that a killed process left is no lock.
+config.yaml names the version that wrote it, the single values of the configuration, and the
+SECTIONS with every interpolation resolved. A part that occurs several times, such as a model that
+both the planner and a learner have, is written once and referenced by a YAML anchor.
 """
 
-import errno
-import fcntl
-import os
-import socket
+import json
+import re
+from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from pkgutil import resolve_name
@@ -21,69 +20,22 @@ import yaml
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
+from hybrid_rl import __version__
 from hybrid_rl.config import COUNTS, SECTIONS
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.run import checkpoint
+from hybrid_rl.run.integrity import write_text
+from hybrid_rl.run.lock import locked
 
-LOCK = "lock"
-NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)  # of some network disks
-
-
-@contextmanager
-def locked(folder: Path, key: str) -> Iterator[Path]:
-    """`folder`, which is of this process alone until the end of the block.
-
-    Raises:
-        UsageError: where another process has it, or it cannot be written to.
-    """
-    path = folder / LOCK
-    handle = _opened(path, key)
-    try:
-        with suppress(OSError):  # on a full disk the file stays empty
-            os.ftruncate(handle, 0)
-            os.write(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode())
-        yield folder
-    finally:
-        with suppress(OSError):
-            path.unlink()
-        os.close(handle)
-
-
-def _opened(path: Path, key: str) -> int:
-    """The handle of the lock file at `path`, locked."""
-    while True:
-        try:
-            handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
-        except OSError as error:
-            line = f"{key}={path.parent}: cannot be written to ({error.strerror})"
-            raise UsageError(line) from error
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if os.path.samestat(os.fstat(handle), path.stat()):
-                return handle
-        except FileNotFoundError:  # the process before has just deleted it
-            pass
-        except BlockingIOError:
-            holder = os.read(handle, 200).decode(errors="replace").strip() or "another process"
-            os.close(handle)
-            raise UsageError(
-                f"{key}={path.parent}: is being written by {holder}; wait for it, or stop it"
-            ) from None
-        except OSError as error:
-            if error.errno not in NO_LOCKS:
-                os.close(handle)
-                raise
-            print(f"{path.parent}: no locks on this disk; let no other process write there")
-            return handle
-        os.close(handle)
+FIRST = "0.2"  # version that writes its number to config.yaml
 
 
 @contextmanager
 def fresh(config: DictConfig) -> Iterator[Path]:
-    """A new run folder for `config`, of this process alone until the end of the block.
+    """A new run folder for `config`, locked by this process until the end of the block.
 
     Raises:
-        UsageError: where it holds a run already, another process has it, or it cannot be written.
+        UsageError: if it holds a run, another process holds it, or it cannot be written to.
     """
     folder = made(config) if config.run_dir is None else Path(str(config.run_dir))
     with locked(writable(folder, "run_dir"), "run_dir"):
@@ -95,10 +47,10 @@ def fresh(config: DictConfig) -> Iterator[Path]:
 
 
 def made(config: DictConfig, suffix: str = "") -> Path:
-    """A folder runs/TASK/ALGO/TIME[suffix] that did not exist.
+    """A new folder runs/TASK/ALGO/TIME[suffix].
 
     Raises:
-        UsageError: where it cannot be written.
+        UsageError: if it cannot be written to.
     """
     parent = writable(Path("runs") / config.task / config.algo, "run_dir")
     stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}{suffix}"
@@ -113,53 +65,167 @@ def made(config: DictConfig, suffix: str = "") -> Path:
 
 
 def writable(folder: Path, key: str) -> Path:
-    """`folder`, made if need be.
+    """`folder`, created if it does not exist.
 
     Raises:
-        UsageError: where it cannot be written to.
+        UsageError: if it cannot be written to.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=folder):  # of no other run that begins at the same time
+        with TemporaryFile(dir=folder):  # its name is unique, as other runs may begin there too
             pass
     except OSError as error:
         raise UsageError(f"{key}={folder}: cannot be written to ({error.strerror})") from error
     return folder
 
 
+def pruned(config: DictConfig) -> DictConfig:
+    """A resolved configuration without the parts that are not built; it builds the same run."""
+    single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
+    order = dict.fromkeys(["task", "algo", *single, *SECTIONS])
+    values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
+    return OmegaConf.create({"version": __version__} | values | {"resume": None})
+
+
+def write(folder: Path, config: DictConfig) -> None:
+    """Write config.yaml of a run with the resolved configuration `config`."""
+    write_text(folder / "config.yaml", as_yaml(pruned(config)))
+
+
+def as_yaml(config: DictConfig) -> str:
+    """`config` as YAML, in which a part that occurs several times is written once."""
+    first: dict[str, Any] = {}  # a part as text -> its first occurrence
+
+    def share(key: str, node: Any) -> Any:
+        if not isinstance(node, dict):
+            return node
+        names = sorted(node, key=lambda name: name != "_target_")  # it comes first
+        node = _Part({name: share(name, node[name]) for name in names})
+        node.key = key
+        return first.setdefault(str(node), node) if "_target_" in node else node
+
+    values = share("", OmegaConf.to_container(config))
+    return yaml.dump(values, Dumper=_Dumper, sort_keys=False, allow_unicode=True)
+
+
+class _Part(dict):
+    """A mapping that remembers its key."""
+
+    key: str
+
+
+class _Dumper(yaml.SafeDumper):
+    """Names an anchor by the key of the part that it marks: model, model_2, ..."""
+
+    def __init__(self, *arguments: Any, **settings: Any) -> None:
+        super().__init__(*arguments, **settings)
+        self.anchored: Counter[str] = Counter()  # key -> number of its anchors
+
+    def generate_anchor(self, node: Any) -> str:
+        key = re.sub(r"\W", "_", node.key)
+        self.anchored[key] += 1
+        return key if self.anchored[key] == 1 else f"{key}_{self.anchored[key]}"
+
+    def part(self, data: _Part) -> yaml.Node:
+        node: Any = self.represent_dict(data)
+        node.key = data.key
+        return node
+
+    def sequence(self, data: list[Any]) -> yaml.Node:
+        flow = not any(isinstance(value, (dict, list)) for value in data)
+        return self.represent_sequence("tag:yaml.org,2002:seq", data, flow_style=flow)
+
+    def word(self, data: str) -> yaml.Node:
+        """Quote what reads as a number in YAML 1.2, such as 1e-3."""
+        try:
+            float(data)
+        except ValueError:
+            return self.represent_str(data)
+        return self.represent_scalar("tag:yaml.org,2002:str", data, style="'")
+
+
+_Dumper.add_representer(_Part, _Dumper.part)
+_Dumper.add_representer(list, _Dumper.sequence)
+_Dumper.add_representer(str, _Dumper.word)
+
+
 def read(folder: Path, key: str) -> DictConfig:
-    """The configuration of the run in `folder`, which `key` named.
+    """The configuration of the run in `folder`, which the argument `key` named.
 
     Raises:
-        UsageError: where there is no run, or its config.yaml is not what training wrote.
+        UsageError: if there is no run, another version made it, or its config.yaml is not what
+            training wrote.
     """
     path = folder / "config.yaml"
     if not path.exists():
         raise UsageError(f"{key}={folder}: no run folder there (no config.yaml in it)")
     config: Any = _parsed(path)
+    _check_version(folder, key, config)
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
         raise UsageError(f"{path}: lacks {', '.join(missing)}")
-    for where, target in _targets({"env": config.env} | dict(config.items())):
+    for part, target in _targets({"env": config.env} | dict(config.items())):
         try:
             resolve_name(target)
         except (ImportError, AttributeError, ValueError) as error:
             raise UsageError(
-                f"{path}: {where}={target} cannot be imported ({error}); put the folder of its "
+                f"{path}: {part}={target} cannot be imported ({error}); put the folder of its "
                 "module on PYTHONPATH"
             ) from error
-    held = checkpoint.shapes(folder / "checkpoints").get("key")
-    if held and held[0] != config.num_seeds:
-        raise UsageError(f"{path} says {config.num_seeds} seeds, its checkpoint holds {held[0]}")
+    _check_seeds(folder, config)
     return config
+
+
+def _check_version(folder: Path, key: str, config: DictConfig) -> None:
+    """Raise UsageError if another minor version made the run."""
+    version = config.get("version")
+    if _minor(version) == _minor(__version__):
+        return
+    if version is None:
+        version = _version_of_summary(folder)
+        if _minor(version) == _minor(__version__):
+            raise UsageError(f"{folder / 'config.yaml'}: lacks version")
+    todo = "train again" if version is None else f"pip install hybrid_rl=={version}, or train again"
+    raise UsageError(
+        f"{key}={folder}: made by hybrid_rl {version or f'older than {FIRST}'}, and this is "
+        f"{__version__}; {todo}"
+    )
+
+
+def _minor(version: Any) -> list[str]:
+    """The first two numbers of a version."""
+    return str(version).split(".")[:2]
+
+
+def _version_of_summary(folder: Path) -> str | None:
+    """The version that summary.json names, if it does."""
+    try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        return str(summary["versions"]["hybrid_rl"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _check_seeds(folder: Path, config: DictConfig) -> None:
+    """Raise UsageError if the newest checkpoint holds learners of other seeds."""
+    saved = checkpoint.meta(folder / "checkpoints").get("seeds")
+    first, number = config.seed, config.num_seeds
+    if saved is None or not (isinstance(first, int) and isinstance(number, int)):
+        return
+    if saved != list(range(first, first + number)):
+        listed = ", ".join(map(str, saved))
+        raise UsageError(
+            f"{folder / 'config.yaml'}: seed={first} num_seeds={number}: its checkpoint holds the "
+            f"learners of seed {listed}; put back seed={saved[0]} num_seeds={len(saved)}"
+        )
 
 
 @contextmanager
 def blamed(folder: Path) -> Iterator[None]:
-    """What is wrong with the configuration of a run is its file's fault, not the user's keys'.
+    """Errors about the configuration of a run name its config.yaml.
 
     Raises:
-        UsageError: which names config.yaml.
+        UsageError: that begins with the path of config.yaml.
     """
     path = folder / "config.yaml"
     try:

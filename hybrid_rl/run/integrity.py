@@ -1,9 +1,8 @@
-"""What makes a folder of files whole: a manifest, fsync, and rename.
+"""Complete folders of files: a manifest, fsync, and rename.
 
 `write_manifest` lists every file below a folder with its size and SHA-256 in MANIFEST and
-forces all of it to the disk. `verify` reads that list back and names the first
-thing that is missing, short, or changed. A folder without a manifest is one
-whose writer never finished.
+forces all of it to the disk. `verify` compares the folder with that list and names the
+first difference. A folder without a manifest was never completed.
 """
 
 import hashlib
@@ -17,7 +16,7 @@ MANIFEST = "manifest.json"
 
 
 def write_manifest(folder: Path) -> None:
-    """Lists all files below `folder`, then forces files and folders to the disk."""
+    """List all files below `folder`, then force files and folders to the disk."""
     files = sorted(path for path in folder.rglob("*") if path.is_file())
     listed = {
         path.relative_to(folder).as_posix(): {"bytes": path.stat().st_size, "sha256": digest(path)}
@@ -44,8 +43,8 @@ def verify(folder: Path, contents: bool = True) -> str | None:
         return f"its {MANIFEST} cannot be read ({type(problem).__name__})"
     for name, size, sha256 in files:
         try:
-            if (found := (folder / name).stat().st_size) != size:
-                return f"{name} has {found} bytes instead of {size}"
+            if (size_now := (folder / name).stat().st_size) != size:
+                return f"{name} has {size_now} bytes instead of {size}"
             if contents and digest(folder / name) != sha256:
                 return f"{name} has changed since it was written (SHA-256 differs)"
         except OSError as problem:
@@ -60,7 +59,7 @@ def digest(path: Path) -> str:
 
 
 def sync(path: Path) -> None:
-    """Forces a file, or the entries of a folder, to the disk."""
+    """Force a file, or the entries of a folder, to the disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -69,7 +68,7 @@ def sync(path: Path) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Replaces the text of a file so that a reader sees the old or the new, never a part."""
+    """Replace the text of a file; a reader sees the old or the new text, never a part."""
     draft = path.with_name(f".{path.name}.tmp")
     with naming(path):
         try:
@@ -84,7 +83,7 @@ def write_text(path: Path, text: str) -> None:
 
 @contextmanager
 def naming(path: Path) -> Iterator[None]:
-    """Adds `path` to an OSError that names no file: writing to a full disk raises such ones."""
+    """Add `path` to an OSError that names no file, such as that of a full disk."""
     try:
         yield
     except OSError as error:

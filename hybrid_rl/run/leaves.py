@@ -1,7 +1,7 @@
 """The leaves of a state, in files and back, by Orbax.
 
-Each leaf has a name, its path in the state: "learners.policy.params". Keys are stored as the
-numbers they are made of, arrays without elements by their shape alone.
+The name of a leaf is its path in the state: "learners.policy.params". Keys of JAX are stored as
+their data, arrays without elements as their shape alone.
 """
 
 import contextlib
@@ -38,7 +38,7 @@ def flatten(state: PyTree) -> tuple[dict[str, np.ndarray], dict[str, dict]]:
 
 
 def _named(tree: PyTree) -> list[tuple[str, jax.Array]]:
-    """Leaves beside their names, in the order of the tree: "learners.sac.params"."""
+    """(name, leaf) in the order of the tree, such as ("learners.sac.params", ...)."""
     pairs = jax.tree_util.tree_flatten_with_path(tree)[0]
     names = [quote(jax.tree_util.keystr(path, simple=True, separator=".")) for path, _ in pairs]
     if len(set(names)) < len(names):
@@ -49,7 +49,7 @@ def _named(tree: PyTree) -> list[tuple[str, jax.Array]]:
 
 @contextlib.contextmanager
 def _quiet() -> Iterator[None]:
-    """Keeps Orbax's and TensorStore's running commentary off the terminal."""
+    """Suppress the output of Orbax and TensorStore."""
     logger = logging.getLogger("absl")
     level, hook = logger.level, sys.unraisablehook
     logger.setLevel(logging.CRITICAL + 1)
@@ -74,12 +74,6 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
         except Exception:
             time.sleep(AFTERMATH)
             raise
-
-
-def shapes(path: Path) -> dict[str, tuple[int, ...]]:
-    """Shape of each leaf of a checkpoint, by name."""
-    kinds = json.loads((path / "leaves.json").read_text(encoding="utf-8"))
-    return {name: tuple(kind["shape"]) for name, kind in kinds.items()}
 
 
 def read(path: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:

@@ -1,7 +1,7 @@
-"""What a run leaves to read: metrics.jsonl, tensorboard/, summary.json.
+"""The records of a run: metrics.jsonl, tensorboard/, summary.json.
 
-A checkpoint remembers how long metrics.jsonl was when it was written; a resumed
-run cuts the file back to that length, so that every row is there exactly once.
+A checkpoint stores the length of metrics.jsonl at that time; a resumed run truncates the file to
+that length, so that it has every row exactly once.
 """
 
 import json
@@ -19,14 +19,14 @@ from hybrid_rl.run.integrity import write_text
 if TYPE_CHECKING:
     from hybrid_rl.run.board import Board
 
-PLACE = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
+COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
 
 
 class RunLog:
-    """Rows of numbers, on their way into a run folder.
+    """Writes rows of numbers to a run folder.
 
-    In tensorboard/ the scalars of one learner carry their names; those of several
-    learners lie in one subfolder a seed, so that a chart overlays the seeds.
+    tensorboard/ has one event file for a single learner, and one subfolder per seed for several,
+    so that a chart overlays the seeds.
     """
 
     def __init__(self, run_dir: Path, seeds: Sequence[int]) -> None:
@@ -52,7 +52,7 @@ class RunLog:
         self._rows.close()
 
     def write(self, rows: list[dict[str, Any]]) -> None:
-        """Appends rows {"step", "seed", "wall_s", name: number or word, ...}."""
+        """Append rows {"step", "seed", "wall_s", name: number or word, ...}."""
         for row in rows:
             plain = {n: v if isinstance(v, str) else number(v) for n, v in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
@@ -60,13 +60,13 @@ class RunLog:
             scalars: dict[str, float] = {
                 n: v
                 for n, v in plain.items()
-                if n not in PLACE and v is not None and not isinstance(v, str)
+                if n not in COORDINATES and v is not None and not isinstance(v, str)
             }
             self._board(int(row["seed"])).write(int(row["step"]), scalars)
         self._rows.flush()
 
     def flush(self) -> int:
-        """Forces all rows to the disk. [bytes] of metrics.jsonl, for `rewind`."""
+        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`."""
         for board in self._boards.values():
             board.flush()
         self._rows.flush()
@@ -74,10 +74,10 @@ class RunLog:
         return self._rows.tell()
 
     def rewind(self, offset: int, step: int) -> list[str]:
-        """Forgets what was written after the checkpoint at `step`; call it before `write`.
+        """Delete what was written after the checkpoint at `step`; call it before `write`.
 
-        offset: [bytes] that `flush` returned then. The answer says in one line each
-        what is not as the checkpoint knew it.
+        offset: [bytes] that `flush` returned then. Returns one line for each difference from the
+        state at the checkpoint.
         """
         path = self.run_dir / "metrics.jsonl"
         known = path.read_bytes()[:offset]
@@ -90,13 +90,13 @@ class RunLog:
         return [f"{path} has changed: rows before step {step} are missing or edited"]
 
     def summary(self, fields: dict[str, Any]) -> Path:
-        """Replaces summary.json; NaN and infinity become null."""
+        """Replace summary.json; NaN and infinity become null."""
         path = self.run_dir / "summary.json"
         write_text(path, json.dumps(_finite(fields), indent=2, allow_nan=False) + "\n")
         return path
 
     def _board(self, seed: int) -> "Board":
-        """The TensorBoard file of a seed, opened when first needed."""
+        """The TensorBoard file of a seed, opened at its first row."""
         if seed not in self._boards:
             from hybrid_rl.run.board import Board  # 0.2 s
 
@@ -116,7 +116,7 @@ def number(value: Any) -> int | float | None:
 
 
 def _finite(value: Any) -> Any:
-    """`value` with None for every float that JSON has no word for."""
+    """`value` with None for NaN and infinity."""
     match value:
         case dict():
             return {name: _finite(entry) for name, entry in value.items()}

@@ -43,8 +43,8 @@ def replay(run: Run) -> str:
             f"{each * learners / 1e9:,.1f} GB and there are {have / 1e9:,.1f} GB; {fits} would fit"
             + (f", or num_seeds={int(have // each)}" if have > each else "")
         )
-    kept = "in checkpoints too" if run.config.checkpoint_replay else "not in checkpoints"
+    saved = "in checkpoints too" if run.config.checkpoint_replay else "not in checkpoints"
     return (
         f"replay memory: {replay.capacity:,} decisions, {each / 1e6:,.1f} MB a learner, "
-        f"{each * learners / 1e6:,.1f} MB in all, {kept}"
+        f"{each * learners / 1e6:,.1f} MB in all, {saved}"
     )

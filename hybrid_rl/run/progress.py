@@ -64,7 +64,7 @@ class Progress:
             self._task = self._bar.add_task(self.label, total=self.total, completed=self.step)
             self._live = Live(get_renderable=self._picture, console=console, refresh_per_second=4)
             self._live.start()
-            console.show_cursor(True)  # nothing to undo where the process ends at once
+            console.show_cursor(True)  # nothing to restore if the process ends suddenly
         else:
             threading.Thread(target=self._beat, daemon=True).start()
         return self

@@ -1,4 +1,4 @@
-"""Where numbers come from: versions, commit, device; for summary.json."""
+"""Versions, commit and device, for summary.json."""
 
 import os
 import platform
@@ -15,16 +15,16 @@ PACKAGES = ("jax", "jaxlib", "mujoco", "mujoco-mjx", "flax", "optax")
 
 def versions() -> dict[str, str | None]:
     """Python's and each package's version; None where it is not installed."""
-    found: dict[str, str | None] = {
+    installed: dict[str, str | None] = {
         "hybrid_rl": __version__,
         "python": platform.python_version(),
     }
     for name in PACKAGES:
         try:
-            found[name] = version(name)
+            installed[name] = version(name)
         except PackageNotFoundError:
-            found[name] = None
-    return found
+            installed[name] = None
+    return installed
 
 
 def git_commit() -> str | None:

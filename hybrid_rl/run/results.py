@@ -1,5 +1,10 @@
-"""What run folders hold, read for figures: the rows of metrics.jsonl and the settings of a run."""
+"""Run folders, read for figures: the rows of metrics.jsonl and the settings of a run.
 
+A setting is named by its full key in config.yaml, such as controllers.full.horizon, or by the last
+names of that key, such as horizon or full.horizon. Runs of older versions are read, too.
+"""
+
+import difflib
 import glob
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -15,15 +20,16 @@ from hybrid_rl.errors import UsageError
 
 NOT_ROWS = ("step", "seed", "wall_s", "diverged")  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
-# what they write and when, and where. None of them changes what a learner does up to a given step.
+# what they write, when and where. None of them changes what a learner does up to a given step.
 NOT_SETTINGS = (
     *("task", "algo", "seed", "num_seeds", "run_dir", "resume", "total_steps", "log_every"),
     *("eval_every", "eval_episodes", "eval_modes", "checkpoint_every", "checkpoint_replay"),
-    "compile_cache",
+    *("compile_cache", "version", "distributed"),
 )
-NOT_SETTINGS_ANYWHERE = ("physics",)  # who computes the same equations
-UNSET, SET = "unset", "set"  # of a key that only some of the runs have, and of a group of keys
+NOT_SETTINGS_ANYWHERE = ("physics",)  # implementations of the same equations
+UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys
 MOST_KEYS, MOST_CHARACTERS = 3, 40  # of a label; beyond that it is a letter
+MOST_SUGGESTED = 4  # keys in one message
 
 
 @dataclass(frozen=True)
@@ -31,14 +37,14 @@ class RunFolder:
     """A folder that training wrote; its files are read when they are first needed.
 
     Raises:
-        UsageError: where a file is damaged; the line names it.
+        UsageError: if a file is damaged; the line names it.
     """
 
     path: Path
 
     @cached_property
     def _read(self) -> tuple[list[dict[str, Any]], bool]:
-        """The rows, and whether the last one was cut."""
+        """The rows, and whether the last one is incomplete."""
         file = self.path / "metrics.jsonl"
         lines = _text(file).split("\n")
         rows = []
@@ -56,67 +62,102 @@ class RunFolder:
 
     @property
     def rows(self) -> list[dict[str, Any]]:
-        """The whole rows of metrics.jsonl; a run at work may be in the middle of the last one."""
+        """The complete rows of metrics.jsonl; a running process may be writing the last one."""
         return self._read[0]
 
     @property
     def cut(self) -> bool:
-        """Whether the last row was left out, since it is not whole."""
+        """Whether the last row was left out, as it is incomplete."""
         return self._read[1]
 
     @cached_property
     def settings(self) -> dict[str, Any]:
-        """Every value of config.yaml by its full key, such as "env.reward"; none without a file."""
+        """The values of config.yaml by their full keys, such as "env.reward"; {} without a file."""
         file = self.path / "config.yaml"
         if not file.exists():
             return {}
         try:
-            read = yaml.load(_text(file), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+            values = yaml.load(_text(file), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
             line = f", line {mark.line + 1}" if mark else ""
             raise UsageError(f"{file}{line}: is not YAML") from error
-        if not isinstance(read, dict):
+        if not isinstance(values, dict):
             raise UsageError(f"{file}: is empty, or no group of keys")
-        return _flat(read)
+        return _flat(values)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """What summary.json holds; nothing before there is one."""
+        """What summary.json holds; {} before there is one."""
         file = self.path / "summary.json"
         if not file.exists():
             return {}
         try:
-            read = json.loads(_text(file))
+            values = json.loads(_text(file))
         except ValueError as error:
             raise UsageError(f"{file}: is not JSON") from error
-        if not isinstance(read, dict):
+        if not isinstance(values, dict):
             raise UsageError(f"{file}: is no group of keys")
-        return read
+        return values
 
     def word(self, key: str) -> str:
-        """The value at `key`, of a part its class; "null" where it has none."""
-        settings = self.settings
-        if key in settings:
-            return _shown(key, settings[key])
-        if f"{key}._target_" in settings:
-            return _shown("_target_", settings[f"{key}._target_"])
-        if key in self.summary:
-            return _shown(key, self.summary[key])
-        raise UsageError(f"group={key}: {self.path} says nothing of it in config.yaml")
+        """The value at `key` as a word, of a part its class; "null" for null.
+
+        Raises:
+            UsageError: if there is no such setting, or several with different values.
+        """
+        word = self._word(key, "group")
+        if word is None:
+            raise UsageError(f"group={key}: not in {self.path}/config.yaml{self._near(key)}")
+        return word
 
     def number(self, key: str) -> float:
-        """The number at `key`."""
-        value = self.settings.get(key)
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
+        """The number at `key`.
+
+        Raises:
+            UsageError: if there is none, or several that differ.
+        """
+        word = self._word(key, "x")
+        try:
+            return float(word or "")
+        except ValueError:
+            has = self._near(key) if word is None else f"; {self.path} has {word}"
+            line = f"x={key}: must be step, wall_s, or a number in every run's config.yaml"
+            raise UsageError(line + has) from None
+
+    def _word(self, key: str, argument: str) -> str | None:
+        """The value at `key`, which `argument` names; None if there is none."""
+        words = {name: _shown(name, value) for name, value in _matches(self.settings, key).items()}
+        if len(set(words.values())) > 1:
+            listed = ", ".join(f"{name}={word}" for name, word in words.items())
             raise UsageError(
-                f"x={key}: must be step, wall_s, or a number in every run's config.yaml"
+                f"{argument}={key}: has several values in {self.path}/config.yaml ({listed}); "
+                "give one of these keys"
             )
-        return float(value)
+        if not words and key in self.summary:
+            return _shown(key, self.summary[key])
+        return next(iter(words.values()), None)
+
+    def _near(self, key: str) -> str:
+        """A suggestion of keys that exist, for one that does not."""
+        last = key.rpartition(".")[2]
+        leaves = {name.rpartition(".")[2] for name in self.settings} - {"_target_"}
+        close = difflib.get_close_matches(last, leaves, n=1)
+        names = [name for name in self.settings if name.rpartition(".")[2] in close]
+        return f"; it has {', '.join(names[:MOST_SUGGESTED])}" if names else ""
+
+
+def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The setting with the full key `key`, or else those whose keys end with it."""
+    for end in (key, f"{key}._target_"):
+        if end in settings:
+            return {end: settings[end]}
+    ends = f".{key}", f".{key}._target_"
+    return {name: value for name, value in settings.items() if name.endswith(ends)}
 
 
 def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
-    """Run folders that match a glob, or that lie in the folders given."""
+    """Run folders that match a glob, or that lie in the given folders."""
     if isinstance(runs, (str, Path)):
         matches = [Path(match) for match in glob.glob(str(Path(runs).expanduser()), recursive=True)]
     else:
@@ -128,46 +169,60 @@ def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
 
 
 def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:
-    """Of each run the settings in which the runs differ: key -> value, as words.
+    """For each run the settings in which the runs differ: key -> value, as words.
 
-    Compared is what was built: the sections `env`, `episode`, `replay`, `controllers` and
-    `learners` of the resolved configuration, and its single keys; not the parts that the method
-    does not use. A value that is in several sections counts once, by the shortest key that has it.
-    expected: keys that may differ, with all that follows them.
+    The sections `env`, `episode`, `replay`, `controllers` and `learners` are compared, and the
+    single values at the root that all runs have; not the other parts that config.yaml of an older
+    version holds. A value that occurs in several sections counts once, by its shortest key.
+    expected: keys that may differ, with all settings that have the same values.
     """
     settings = [run.settings for run in runs]
     built = [_built(each) for each in settings]
-    known = {_column(settings, key) for key in expected}
-    differ = {key: column for key, column in _columns(built).items() if column not in known}
-    found = _columns(settings) if differ else {}
-    names: dict[tuple[str, tuple[str, ...]], str] = {}
+    names = {name for key in expected for each in settings for name in _matches(each, key)}
+    known = {_column(settings, name) for name in names | set(expected)}
+    differ = {
+        key: column
+        for key, column in _columns(built).items()
+        if column not in known and not ("." not in key and UNSET in column)
+    }
+    columns = _columns(settings) if differ else {}
+    shortest: dict[tuple[str, tuple[str, ...]], str] = {}
     for key, column in differ.items():
         if UNSET in column and any(parent in differ for parent in _parents(key)):
             continue  # a field of a part that the others do not have
         leaf = key.rpartition(".")[2]
-        same = [k for k, c in found.items() if c == column and k.rpartition(".")[2] == leaf]
+        same = [k for k, c in columns.items() if c == column and k.rpartition(".")[2] == leaf]
         part = _class(settings[0], key)
-        names[leaf, column] = min(
+        shortest[leaf, column] = min(
             same, key=lambda k: (_class(settings[0], k) != part, k.count("."), len(k))
         )
     return [
-        {name.removesuffix("._target_"): column[i] for (_, column), name in sorted(names.items())}
+        {
+            name.removesuffix("._target_"): column[i]
+            for (_, column), name in sorted(shortest.items())
+        }
         for i in range(len(runs))
     ]
 
 
 def short(differing: Sequence[Mapping[str, str]]) -> list[str]:
-    """A label for each set of settings: "reward=pybullet", or A, B, ... where that is long."""
+    """A label for each set of settings: "reward=pybullet", or A, B, ... if that would be long."""
     keys = list(dict.fromkeys(key for each in differing for key in each))
-    leaves = [key.rpartition(".")[2] for key in keys]
-    shown = {
-        k: leaf if leaves.count(leaf) == 1 else k for k, leaf in zip(keys, leaves, strict=True)
-    }
+    shown = {key: _ending(key, keys) for key in keys}
     labels = [" ".join(f"{shown[k]}={v}" for k, v in each.items()) for each in differing]
     if len(keys) <= MOST_KEYS and all(len(label) <= MOST_CHARACTERS for label in labels):
         return labels
     order = sorted(set(labels))
     return [_letters(order.index(label)) for label in labels]
+
+
+def _ending(key: str, keys: Sequence[str]) -> str:
+    """The fewest last names of `key` that no other of the keys ends with."""
+    names = key.split(".")
+    endings = [".".join(names[-number:]) for number in range(1, len(names) + 1)]
+    others = [other for other in keys if other != key]
+    unique = (end for end in endings if not any(f".{o}".endswith(f".{end}") for o in others))
+    return next(unique, key)
 
 
 def _letters(number: int) -> str:
@@ -186,17 +241,17 @@ def _text(file: Path) -> str:
 
 def _flat(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     """The values of a tree by their full keys."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, value in node.items():
         if isinstance(value, Mapping) and value:
-            found |= _flat(value, f"{where}{key}.")
+            values |= _flat(value, f"{where}{key}.")
         else:
-            found[f"{where}{key}"] = value
-    return found
+            values[f"{where}{key}"] = value
+    return values
 
 
 def _built(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings that a run was made of; all of them where it is no run of ours."""
+    """The settings of what a run built; all of them if it has no learners section."""
     ours = any(key.startswith("learners.") for key in settings)
     return {
         key: value
@@ -209,8 +264,8 @@ def _built(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 def _columns(settings: Sequence[Mapping[str, Any]]) -> dict[str, tuple[str, ...]]:
     """The keys whose values differ, and the value of each run."""
-    found = {key: _column(settings, key) for key in sorted(set().union(*settings))}
-    return {key: column for key, column in found.items() if len(set(column)) > 1}
+    columns = {key: _column(settings, key) for key in sorted(set().union(*settings))}
+    return {key: column for key, column in columns.items() if len(set(column)) > 1}
 
 
 def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:

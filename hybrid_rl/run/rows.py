@@ -21,8 +21,8 @@ class Gathered:
 
     def add(self, metrics: Metrics) -> None:
         """Append the metrics of the next rounds; `episode/...` is left out."""
-        kept = {name: m for name, m in metrics.items() if not name.startswith("episode/")}
-        self._parts.append(kept)
+        selected = {name: m for name, m in metrics.items() if not name.startswith("episode/")}
+        self._parts.append(selected)
 
     def take(self) -> Metrics:
         """All of it [rounds, S]; nothing is left."""
@@ -44,15 +44,15 @@ class Gathered:
 
 def infinite(metrics: Metrics, start: int, worlds: int) -> dict[int, tuple[int, str]]:
     """Learner -> (step, name) of its earliest infinite entry; the metrics begin after `start`."""
-    found: dict[int, tuple[int, str]] = {}
+    first: dict[int, tuple[int, str]] = {}
     for name, values in metrics.items():
         if name.startswith("episode/"):
             continue
         for i, s in np.argwhere(np.isinf(values)):
             step = start + (int(i) + 1) * worlds
-            if s not in found or step < found[s][0]:
-                found[int(s)] = step, name
-    return found
+            if s not in first or step < first[s][0]:
+                first[int(s)] = step, name
+    return first
 
 
 def episodes(
@@ -81,7 +81,7 @@ def means(
 
     ended: learners that diverged, which have no row.
     """
-    found = []
+    averages = []
     for s, seed in enumerate(seeds):
         if s in ended:
             continue
@@ -89,5 +89,5 @@ def means(
         for name, values in metrics.items():
             known = values[:, s][~np.isnan(values[:, s])]
             row |= {name: known.mean(dtype=np.float64)} if known.size else {}
-        found.append(row)
-    return found
+        averages.append(row)
+    return averages

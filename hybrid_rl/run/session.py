@@ -1,9 +1,9 @@
-"""The host's side of a run: decide, log, evaluate, save, until the end or a signal.
+"""The part of a run on the host: call the program, log, evaluate, save, until the end or a signal.
 
-Rows of means end at the multiples of `log_every`, `eval_every` and `checkpoint_every`. The
-compiled program is called for a second or two at a time, and a run can stop between two calls:
-its checkpoint has the metrics since the last row, so that a run that was stopped and resumed
-has the rows of one that was not.
+A row of means is written at the multiples of `log_every`, `eval_every` and `checkpoint_every`. One
+call of the compiled program takes a second or two, and a run can stop between two calls: its
+checkpoint holds the metrics since the last row, so a resumed run logs the same rows as an
+uninterrupted one.
 """
 
 from collections.abc import Mapping
@@ -21,9 +21,8 @@ from hybrid_rl.run import divergence, memory, provenance, rows
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.evaluations import Evaluations
 from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.pace import Pace, Speed
 from hybrid_rl.run.progress import Progress, clock, rate
-from hybrid_rl.run.schedule import Schedule
+from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.store import Store
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Controller, Params
@@ -34,7 +33,7 @@ SURE = 100  # decisions with learning after which the time of the whole run is e
 
 @dataclass
 class Session:
-    """One run on its way: `begin` or `resume`, then `compile`, then `run`."""
+    """One run: `begin` or `resume`, then `compile`, then `run`."""
 
     loop: Loop
     controllers: Mapping[str, Controller]  # mode -> controller without exploration
@@ -59,7 +58,7 @@ class Session:
     evaluations: Evaluations | None = None  # compiled
 
     def __post_init__(self) -> None:
-        """What the parts above make."""
+        """Create the store and the record of diverged learners."""
         folder = self.log.run_dir / "checkpoints"
         self.store = Store(folder, self.loop, self.schedule.checkpoint_replay)
         self.diverged = Diverged(self.loop, self.store)
@@ -85,13 +84,16 @@ class Session:
         """Start from the newest sound checkpoint.
 
         Raises:
-            CheckpointError: where there is none, or it is of another run.
+            CheckpointError: if there is none, or it belongs to another run.
         """
         self.state, self.gathered, meta, notes = self.store.restore()
         self.step = self.progress.step = meta["step"]
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
-            notes = [*notes, "no replay memory in checkpoints: it goes on, but not bit for bit"]
+            notes = [
+                *notes,
+                "no replay memory in checkpoints: it continues, but not bit for bit",
+            ]
         self.before_s = meta["wall_s"]
         self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
         self.final_eval = meta.get("final_eval", [None for _ in self.loop.seeds])
@@ -101,13 +103,13 @@ class Session:
         self.diverged.resume(meta.get("diverged", []))
         for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
             self.progress.note(note)
-        self.progress.note(f"going on from step {self.step:,}")
+        self.progress.note(f"continuing from step {self.step:,}")
 
     def compile(self) -> None:
-        """Make all programs that `run` calls.
+        """Compile all programs that `run` calls.
 
         Raises:
-            MemoryError: where a device has too little memory for the learners.
+            MemoryError: if a device has too little memory for the learners.
         """
         if self.finished:
             return
@@ -117,7 +119,7 @@ class Session:
             self.progress.note(f"{decisions}: random_steps={random}")
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle}")
         with self.progress.doing("compiling"):
-            import orbax.checkpoint  # noqa: F401  # 1 s, which a checkpoint at a signal has not
+            import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
 
             self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
@@ -129,16 +131,16 @@ class Session:
         self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
 
     def ask(self, number: int) -> None:
-        """Signal `number` asks for an end: with a checkpoint, after the call that is running."""
+        """End the run after the current call, with a checkpoint; number: of the signal."""
         self.stop = number
         self.progress.note("stopping, with a checkpoint ...")
 
     def run(self) -> None:
-        """Advance to the end or until `ask`; the last state is always saved.
+        """Advance to the end, or until `ask` was called; the last state is always saved.
 
         Raises:
-            DivergenceError: where the last learner reached NaN or infinity.
-            CheckpointError: where a checkpoint could not be written.
+            DivergenceError: if the last learner reached NaN or infinity.
+            CheckpointError: if a checkpoint could not be written.
         """
         plan, worlds = self.schedule, self.loop.agent.num_envs
         while not self.finished and self.stop is None:
@@ -166,13 +168,13 @@ class Session:
             self.pace = Pace()
         if start >= max(changes):
             self._count(rounds * worlds * self.diverged.left, took)
-        self._keep(metrics, start)
+        self._record(metrics, start)
         due = plan.due(plan.eval_every, self.step, worlds)
         self.unevaluated = bool(plan.eval_modes) and due
         self._show(say=False if self.unevaluated else None)
 
     def _count(self, decisions: int, seconds: float) -> None:
-        """Measure the speed of learning; say once how long the whole run takes."""
+        """Measure the speed of learning; print one estimate of the total time."""
         self.recent.add(decisions, seconds)
         self.learning.add(decisions, seconds)
         if self.trial is not None:
@@ -186,7 +188,7 @@ class Session:
                     "without the evaluations to come"
                 )
 
-    def _keep(self, metrics: rows.Metrics, start: int) -> None:
+    def _record(self, metrics: rows.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""
         seeds, worlds = self.loop.seeds, self.loop.agent.num_envs
         infinite = rows.infinite(metrics, start, worlds)
@@ -196,7 +198,7 @@ class Session:
             pair = (row["step"], float(row["train/return"]))
             self.returns[seeds.index(row["seed"])].append(pair)
         self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["seed"])))
-        self._go_on(bool(infinite))
+        self._continue(bool(infinite))
         self.gathered.add(metrics)
         if self.schedule.row_due(self.step, worlds):
             means = rows.means(self.gathered.take(), seeds, self.step, self.diverged.ends)
@@ -210,56 +212,56 @@ class Session:
         return {} if speed is None else {"perf/env_steps_per_s": speed}
 
     def _params(self) -> Params:
-        """What all learners know [S, ...]."""
+        """The parameters of all learners [S, ...]."""
         return jax.vmap(self.loop.agent.params)(self.state)
 
     def _evaluate(self) -> None:
         """The outcomes of every evaluated mode, unless a signal comes."""
         assert self.evaluations is not None
         with self.progress.doing("evaluating"):
-            found = self.evaluations(self._params(), lambda: self.stop is not None)
-        if found is None:
+            outcomes = self.evaluations(self._params(), lambda: self.stop is not None)
+        if outcomes is None:
             return
         self.unevaluated = False
         infinite = {
             s: (self.step, name)
-            for s, outcome in enumerate(found)
+            for s, outcome in enumerate(outcomes)
             for name in reversed(outcome)  # the first of them stays
             if not np.isfinite(outcome[name])
         }
         ended = self._end(infinite)
-        left = {s: found[s] for s in range(len(found)) if s not in self.diverged.ends}
-        place = [{"step": self.step, "seed": seed} for seed in self.loop.seeds]
-        rows_left = [place[s] | outcome for s, outcome in left.items()]
+        left = {s: o for s, o in enumerate(outcomes) if s not in self.diverged.ends}
+        seeds = self.loop.seeds
+        rows_left = [{"step": self.step, "seed": seeds[s]} | each for s, each in left.items()]
         self._write(sorted(rows_left + ended, key=lambda row: row["seed"]))
-        self._go_on(bool(ended))
+        self._continue(bool(ended))
         for s, outcome in left.items():
             self.final_eval[s] = outcome.get("eval/return")
-        means = {n: float(np.mean([each[n] for each in left.values()])) for n in found[0]}
+        means = {n: float(np.mean([each[n] for each in left.values()])) for n in outcomes[0]}
         self._show(means, say=True)
 
-    def _end(self, found: Mapping[int, tuple[int, str]]) -> list[rows.Row]:
-        """The rows of learners that diverged just now; found: learner -> (step, quantity)."""
-        new = self.diverged.add(found)
-        if left := self.diverged.left:  # else the error says it
+    def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[rows.Row]:
+        """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
+        new = self.diverged.add(failures)
+        if left := self.diverged.left:  # else the error names it
             for end in new:
-                self.progress.note(divergence.said(end, left))
+                self.progress.note(divergence.note(end, left))
         return [
             {"step": end["step"], "seed": end["seed"], "diverged": end["quantity"]} for end in new
         ]
 
-    def _go_on(self, mend: bool) -> None:
-        """Raise DivergenceError where no learner is left; mend those that are not sound."""
+    def _continue(self, repair: bool) -> None:
+        """Raise DivergenceError if no learner is left; repair those that have ended."""
         if not self.diverged.left:
             ends = list(self.diverged.ends.values())
             raise DivergenceError(divergence.line(ends, 0, self.store.newest))
-        if mend:
-            self.state = self.diverged.mended(self.state)
+        if repair:
+            self.state = self.diverged.repaired(self.state)
 
     def _save(self) -> None:
-        """A checkpoint of all that the run needs to go on."""
+        """Write a checkpoint."""
         self._write(self._end(divergence.unsound(self.state.learners, self.step)))
-        self._go_on(True)
+        self._continue(True)
         meta = {
             "wall_s": self.wall_s,
             "metrics_bytes": self.log.flush(),
@@ -273,8 +275,8 @@ class Session:
             self.store.save(self.step, self.state, self.gathered, meta)
         self.saved = self.step, self.unevaluated
 
-    def _write(self, found: list[rows.Row]) -> None:
-        self.log.write([{**row, "wall_s": self.wall_s} for row in found])
+    def _write(self, new: list[rows.Row]) -> None:
+        self.log.write([{**row, "wall_s": self.wall_s} for row in new])
 
     def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:
         newest = [p[-1][1] for s, p in enumerate(self.returns) if p and s not in self.diverged.ends]
@@ -284,12 +286,12 @@ class Session:
     def final_returns(self) -> list[float | None]:
         """Per seed the mean training return over the last tenth; None where it diverged."""
         tail = self.step - 0.1 * self.schedule.total_steps
-        found = []
+        means = []
         for s, pairs in enumerate(self.returns):
             values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
             sound = bool(values) and s not in self.diverged.ends
-            found.append(float(np.mean(values)) if sound else None)
-        return found
+            means.append(float(np.mean(values)) if sound else None)
+        return means
 
     def final_evaluations(self) -> list[float | None]:
         """Per seed the last evaluation of mode full; None where it diverged."""

@@ -21,20 +21,21 @@ class Store:
     loop: Loop
     replay: bool
     newest: int | None = None  # step of the checkpoint that was written or read last
-    known: set[int] = field(default_factory=set)  # checkpoints that this session may delete
+    known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
 
     def save(self, step: int, state: Any, gathered: Gathered, meta: dict) -> None:
-        """A checkpoint of all that the run needs to go on.
+        """Write a checkpoint of the run.
 
         Raises:
-            CheckpointError: where it could not be written.
+            CheckpointError: if it could not be written.
         """
         names, array = gathered.pack()
         leaves = {part.name: getattr(state, part.name) for part in fields(state)}
         leaves |= {} if self.replay else {"memory": None}
         leaves |= {} if array is None else {"gathered": array}
         shape = [] if array is None else list(array.shape)
-        here = {"step": step, "capacity": self.loop.agent.replay.capacity}
+        here = {"step": step, "seeds": list(self.loop.seeds)}
+        here |= {"capacity": self.loop.agent.replay.capacity}
         here |= {"gathered": {"names": names, "shape": shape}}
         checkpoint.save(self.folder, step, leaves, here | meta, known=self.known)
         self.known.add(step)
@@ -43,10 +44,10 @@ class Store:
     def restore(self) -> tuple[Any, Gathered, dict, list[str]]:
         """(state, metrics since the last row, meta, notes) of the newest sound checkpoint.
 
-        Where checkpoints have no replay memory it is empty.
+        The replay memory is empty if checkpoints do not hold it.
 
         Raises:
-            CheckpointError: where there is none, or it is of another run.
+            CheckpointError: if there is none, or it belongs to another run.
         """
         self.known = set(checkpoint.steps(self.folder))
         like = self._like().replace(memory=None)
@@ -80,8 +81,8 @@ class Store:
     def _memory(self, capacity: int) -> Any:
         """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
 
-        A longer run has a larger one. What was bounded by the run's length has not come round
-        yet, so that new rows at its end are all that it takes.
+        Extending a run may enlarge the memory. One that is bounded by the length of the run has not
+        wrapped, so padding suffices.
         """
         agent = self.loop.agent
         then = replace(agent, replay=replace(agent.replay, capacity=capacity))

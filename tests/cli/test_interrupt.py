@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 BEGIN = """
 import signal, sys, time
-from hybrid_rl import interrupt
+from hybrid_rl.cli import interrupt
 interrupt.install()
 interrupt.PATIENCE = 0.2
 def say(text):
@@ -105,7 +105,7 @@ def test_after_sigterm_a_second_one_changes_nothing():
 @pytest.mark.parametrize("number", WORDS)
 def test_a_job_cleans_up(number):
     code = """
-from hybrid_rl import command
+from hybrid_rl.cli import command
 def job():
     try:
         say('ready')

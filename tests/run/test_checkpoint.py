@@ -159,7 +159,7 @@ def test_a_damaged_newest_is_passed_over_and_named(three, harm):
     assert (step, meta) == (20, {"offset": 20})
     assert_same(found, state_at(20))
     (note,) = notes
-    assert "checkpoint 30 is passed over" in note
+    assert "checkpoint 30 is skipped" in note
     assert reason in note
 
 
@@ -205,7 +205,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.training import checkpoint, leaves
+from hybrid_rl.run import checkpoint, leaves
 folder = Path(sys.argv[1])
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
 checkpoint._rename = lambda draft, place: os.kill(os.getpid(), signal.SIGKILL)
@@ -227,7 +227,7 @@ BETWEEN = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.training import checkpoint
+from hybrid_rl.run import checkpoint
 folder = Path(sys.argv[1])
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
 rename = Path.rename

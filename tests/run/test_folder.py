@@ -17,12 +17,13 @@ from tiny import TINY, call, call_train, contents, run
 from hybrid_rl import evaluate, render
 from hybrid_rl.cli import command
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.lock import locked
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from hybrid_rl import run_folder
-with run_folder.locked(Path(sys.argv[1]), "run_dir"):
+from hybrid_rl.run.lock import locked
+with locked(Path(sys.argv[1]), "run_dir"):
     print("held", flush=True)
     time.sleep(60)
 """
@@ -73,7 +74,7 @@ def test_a_second_process_is_refused_and_names_the_first(holder, capfd):
 
 
 def test_a_run_that_is_being_written_is_not_resumed(copied, trained, capfd):
-    with run_folder.locked(copied, "run_dir"):
+    with locked(copied, "run_dir"):
         assert call_train(f"resume={copied}", "total_steps=200") == 2
         assert "is being written by process" in only_line(capfd)
         (copied / "lock").unlink()
@@ -85,7 +86,7 @@ def test_a_file_that_a_killed_process_left_is_no_lock(holder):
     process.send_signal(signal.SIGKILL)
     process.wait()
     assert (folder / "lock").read_text().startswith(f"process {process.pid}")
-    with run_folder.locked(folder, "run_dir"):
+    with locked(folder, "run_dir"):
         pass
     assert contents(folder) == {}
 
@@ -95,12 +96,12 @@ def test_one_at_a_time_has_a_folder(tmp_path):
     code = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from hybrid_rl import run_folder\n"
-        "from hybrid_rl.config import UsageError\n"
+        "from hybrid_rl.run.lock import locked\n"
+        "from hybrid_rl.errors import UsageError\n"
         "folder, done = Path(sys.argv[1]), 0\n"
         "while done < 200:\n"
         "    try:\n"
-        "        with run_folder.locked(folder, 'run_dir'):\n"
+        "        with locked(folder, 'run_dir'):\n"
         "            (folder / 'alone').mkdir()\n"  # raises where another one is inside
         "            (folder / 'alone').rmdir()\n"
         "            done += 1\n"
@@ -119,9 +120,9 @@ def test_a_disk_without_locks_is_one_line(tmp_path, monkeypatch, capsys):
         raise OSError(errno.ENOLCK, "No locks available")
 
     monkeypatch.setattr(fcntl, "flock", none)
-    with run_folder.locked(tmp_path, "run_dir"):
+    with locked(tmp_path, "run_dir"):
         line = capsys.readouterr().out
-    assert line == f"{tmp_path}: no locks on this disk; let no other process write there\n"
+    assert line == f"{tmp_path}: this disk has no locks; let no other process write there\n"
 
 
 def test_two_fresh_runs_of_one_folder_do_not_both_begin(tmp_path):
@@ -171,7 +172,14 @@ def without_physics(path):
 
 def other_seeds(path):
     path.write_text(path.read_text().replace("num_seeds: 2", "num_seeds: 7"))
-    return "config.yaml says 7 seeds, its checkpoint holds 2"
+    return (
+        "config.yaml: seed=0 num_seeds=7: its checkpoint holds the learners of seed 0, 1; put back"
+    )
+
+
+def edited_seed(path):
+    path.write_text(path.read_text().replace("\nseed: 0\n", "\nseed: 1\n"))
+    return "config.yaml: seed=1 num_seeds=2: its checkpoint holds the learners of seed 0, 1; put"
 
 
 def other_value(path):
@@ -180,7 +188,7 @@ def other_value(path):
 
 
 def other_network(path):
-    path.write_text(re.sub(r"(?m)^(  +)- 16$", r"\1- 8", path.read_text()))
+    path.write_text(path.read_text().replace("hidden: [16]", "hidden: [8]"))
     return "does not fit this run: learners.policy"
 
 
@@ -190,7 +198,7 @@ def other_module(path):
 
 
 HARM = [broken_yaml, random_bytes, empty, a_word, without_env, without_physics, other_seeds]
-HARM += [other_value, other_network, other_module]
+HARM += [edited_seed, other_value, other_network, other_module]
 
 
 @pytest.mark.parametrize("harm", HARM, ids=[harm.__name__ for harm in HARM])

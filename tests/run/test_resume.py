@@ -12,6 +12,7 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call_train, contents, run
 
+from hybrid_rl import __version__
 from hybrid_rl.run import checkpoint
 
 pytestmark = pytest.mark.xdist_group("resume")
@@ -114,13 +115,15 @@ def test_a_run_made_longer_is_the_longer_run(interrupt, whole, halves, tmp_path)
     shutil.copytree(halves[0], folder)
     assert call_train(f"resume={folder}", "total_steps=600") == 0
     assert interrupt.difference(folder, whole) == ""
-    kept = OmegaConf.load(folder / "config.yaml")
-    assert (kept.total_steps, kept.resume) == (600, None)
+    config = OmegaConf.load(folder / "config.yaml")
+    assert (config.total_steps, config.resume, config.version) == (600, None, __version__)
 
 
-def test_a_finished_run_stays_as_it_is(whole, capsys):
+@pytest.mark.parametrize("given", [HYBRID, [*TINY, *HYBRID, "policy.hidden=[16]"]])
+def test_a_finished_run_stays_as_it_is(whole, capsys, given):
+    """Also if settings are repeated: keys of config.yaml, or the whole command line."""
     before = contents(whole)
-    assert call_train(f"resume={whole}", *HYBRID, "policy.hidden=[16]") == 0
+    assert call_train(f"resume={whole}", *given) == 0
     assert "finished already at 600; raise total_steps to go on" in capsys.readouterr().out
     assert contents(whole) == before
 

@@ -13,11 +13,10 @@ from tiny import call_train, run
 
 from hybrid_rl import train
 from hybrid_rl.errors import DivergenceError
-from hybrid_rl.run import checkpoint, integrity, pace
+from hybrid_rl.run import checkpoint, integrity, schedule
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.pace import Pace, Speed
 from hybrid_rl.run.rows import Gathered
-from hybrid_rl.run.schedule import Schedule
+from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop
 
@@ -76,8 +75,8 @@ def test_a_call_takes_about_a_second_and_a_half_whatever_the_speed():
             rounds = pace_.rounds(10**6)
             took.append(rounds * each)
             pace_.took(rounds, rounds * each)
-        assert max(took) <= max(pace.CALL, each) + 1e-9
-        assert took[-1] >= min(max(pace.CALL - each, each), 10**6 * each)
+        assert max(took) <= max(schedule.CALL, each) + 1e-9
+        assert took[-1] >= min(max(schedule.CALL - each, each), 10**6 * each)
 
 
 def test_a_call_ends_at_marks_and_where_decisions_change():

@@ -274,9 +274,9 @@ def test_groups_are_tasks_and_algorithms_or_any_key(tmp_path):
     assert "replay.capacity=null" in [
         curve.label for curve in curves(tmp_path, group="replay.capacity")
     ]
-    with pytest.raises(UsageError, match=r"group=replay.capacity.more: .* says nothing of it"):
+    with pytest.raises(UsageError, match=r"group=replay.capacity.more: not in .*config.yaml"):
         curves(tmp_path, group="replay.capacity.more")
-    with pytest.raises(UsageError, match=r"group=nothing: .* says nothing of it"):
+    with pytest.raises(UsageError, match=r"group=nothing: not in .*config.yaml"):
         curves(tmp_path, group="nothing")
 
 

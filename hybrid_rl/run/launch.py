@@ -1,0 +1,184 @@
+"""A run from its configuration to its summary: a new one, or one that is resumed."""
+
+import json
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from omegaconf import DictConfig, OmegaConf
+
+from hybrid_rl import config as configuration
+from hybrid_rl.config import Run
+from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.run import checkpoint, distributed, folder, integrity, memory, provenance
+from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.lock import locked
+from hybrid_rl.run.log import RunLog
+from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.schedule import Schedule
+from hybrid_rl.run.session import Session
+from hybrid_rl.training.loop import Loop
+
+NOTHING: Mapping[str, str] = MappingProxyType({})
+UNKNOWN = object()  # the value of a key that a configuration does not have
+OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed")
+
+Handler = Callable[[Callable[[int], None]], AbstractContextManager]
+
+
+def train(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dict[str, Any]:
+    """Run `config` to its end, or to a signal; returns what summary.json holds.
+
+    given: the overrides of the user, key -> value; of a resumed run, whose settings come from its
+    folder, only total_steps may differ. handled: `handled(f)` is a context in which the first
+    signal calls f(number).
+
+    Raises:
+        UsageError: if the configuration makes no run.
+        DivergenceError: if every learner reached NaN or infinity.
+        CheckpointError: if a checkpoint could not be written or read.
+    """
+    if config.get("distributed"):
+        configuration.check(config)
+        prepare(config)
+        config = distributed.share(config)
+        given = {key: value for key, value in given.items() if key != "distributed"}
+    if config.resume is not None:
+        return _resume(config, given, handled)
+    run = configuration.build(config)
+    prepare(config)
+    size = memory.replay(run)
+    with folder.fresh(config) as run_dir:
+        return _run(run, run_dir, size, handled)
+
+
+def _resume(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dict[str, Any]:
+    """The same for the run in the folder `config.resume`."""
+    run_dir = Path(str(config.resume))
+    if done := _done(_settings(config, given), run_dir):
+        print(f"{run_dir}: finished already at {done['total_steps']:,}; raise total_steps to go on")
+        return done | {"signal": None}
+    with locked(folder.writable(run_dir, "resume"), "resume"):
+        config = _settings(config, given)  # again, as another process may have continued the run
+        with folder.blamed(run_dir):
+            run = configuration.build(config)
+            prepare(config)
+        return _run(run, run_dir, memory.replay(run), handled)
+
+
+def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]:
+    """Run a session in `run_dir`; size: a line about the replay memory."""
+    config = run.config
+    label = f"{config.task} {config.algo}"
+    with (
+        integrity.naming(run_dir),
+        RunLog(run_dir, run.seeds) as log,
+        _progress(run, label) as progress,
+    ):
+        progress.note(f"{label}: run folder {run_dir}\n{size}")
+        loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
+        session = Session(loop, run.controllers, _schedule(config), log, progress)
+        if config.resume is None:
+            session.begin()
+        else:
+            with folder.blamed(run_dir):
+                session.resume()
+        folder.write(run_dir, config)  # also of a resumed run, which may be longer now
+        session.compile()
+        with handled(session.ask):
+            try:
+                session.run()
+            except DivergenceError:
+                log.summary(_summary(config, session))
+                raise
+            summary = _summary(config, session)
+            log.summary(summary)
+        return summary
+
+
+def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
+    """The configuration of the run that `config` resumes, with the total_steps of the user.
+
+    Raises:
+        UsageError: if the user gave another key a new value, or lowered total_steps.
+    """
+    run_dir = Path(str(config.resume))
+    old = folder.read(run_dir, "resume")
+    if not checkpoint.steps(run_dir / "checkpoints"):
+        raise UsageError(f"resume={run_dir}: holds no checkpoint; start the run again")
+    for key in given.keys() - {"resume", "total_steps"}:
+        before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
+        if _same(old, config) if before is UNKNOWN else before == now:
+            continue
+        has = "" if before is UNKNOWN else f"; the run in resume={run_dir} has {before}"
+        raise UsageError(f"{key}={given[key]}: with resume only total_steps can be changed{has}")
+    if "total_steps" in given:
+        steps = configuration.whole(config, "total_steps")
+        with folder.blamed(run_dir):
+            before = configuration.whole(old, "total_steps")
+        if steps < before:
+            raise UsageError(
+                f"total_steps={steps}: the run in resume={run_dir} has {before}; it can be "
+                "raised, not lowered"
+            )
+        old.total_steps = steps
+    old.resume = config.resume
+    return old
+
+
+def _same(old: DictConfig, config: DictConfig) -> bool:
+    """Whether the whole configuration that the user gave is that of the run."""
+    keys = folder.pruned(config).keys() - set(OF_A_SESSION)
+    return all(old.get(key, UNKNOWN) == config[key] for key in keys)
+
+
+def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
+    """summary.json of a run that has reached its end and has a checkpoint there; None else."""
+    try:
+        summary = json.loads((run_dir / "summary.json").read_text(encoding="utf-8"))
+        done = summary["finished"] and summary["total_steps"] >= config.total_steps
+        newest = run_dir / "checkpoints" / str(summary["total_steps"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    return summary if done and integrity.verify(newest) is None else None
+
+
+def _progress(run: Run, label: str) -> Progress:
+    """The display of a run, whose last round may end beyond total_steps."""
+    config = run.config
+    rounds = -(-config.total_steps // config.num_envs)
+    steady = max(run.agent.changes())
+    return Progress(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
+
+
+def _schedule(config: DictConfig) -> Schedule:
+    """When the run logs, evaluates and saves."""
+    values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
+    values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
+    return Schedule(**values)
+
+
+def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
+    """What summary.json holds."""
+    return {
+        "task": config.task,
+        "algo": config.algo,
+        "seeds": list(session.loop.seeds),
+        "total_steps": session.step,
+        "finished": session.finished,
+        "final_return": session.final_returns(),
+        "final_eval": session.final_evaluations(),
+        "diverged": list(session.diverged.ends.values()),
+        "wall_s": session.wall_s,
+        "compile_s": session.loop.compile_s,
+        "env_steps_per_s": session.learning.rate,
+        "physics": configuration.physics(config),
+        "device": provenance.device(),
+        "matmul_precision": config.matmul_precision,
+        "versions": provenance.versions(),
+        "git_commit": provenance.git_commit(),
+        "run_dir": str(session.log.run_dir),
+        "signal": session.stop,
+    }

@@ -1,0 +1,198 @@
+"""config.yaml of a run: what was built, by which version, and enough to build it again."""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+from omegaconf import OmegaConf
+from tiny import TINY, call, call_train, contents, demonstrate, run
+
+from hybrid_rl import __version__, config, evaluate, figures, render
+from hybrid_rl import demonstrate as recording
+from hybrid_rl.cli import command
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.results import RunFolder
+
+METHODS = {
+    "sac": "halfcheetah",
+    "nn_mppi": "halfcheetah",
+    "hybrid_stochastic": "halfcheetah",
+    "kle3": "pendulum",
+    "bc": "cartpole",
+}
+READERS = {"evaluate": evaluate.main, "render": render.main, "demonstrate": recording.main}
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    """A run that is done."""
+    folder = tmp_path_factory.mktemp("trained") / "run"
+    run(folder, "algo=sac", "total_steps=100", "checkpoint_every=50", "eval_every=100")
+    return folder
+
+
+@pytest.fixture
+def old(trained, tmp_path):
+    """The same, as if version 0.1.0 had made it, whose config.yaml named no version."""
+    folder = shutil.copytree(trained, tmp_path / "run")
+    file = folder / "config.yaml"
+    file.write_text(re.sub(r"(?m)^version: .*\n", "", file.read_text()))
+    summary = json.loads((folder / "summary.json").read_text())
+    summary["versions"]["hybrid_rl"] = "0.1.0"
+    (folder / "summary.json").write_text(json.dumps(summary))
+    return folder
+
+
+def only_line(capfd):
+    """The one line on stderr."""
+    line = capfd.readouterr().err
+    assert line.startswith("hybrid_rl: ")
+    assert line.count("\n") == 1
+    return line
+
+
+@pytest.mark.parametrize("algo", METHODS)
+def test_it_is_short_and_builds_the_same_run(algo, tmp_path):
+    overrides = [f"task={METHODS[algo]}", f"algo={algo}", "total_steps=100"]
+    composed = config.load(overrides)
+    if algo == "bc":
+        composed = config.load([*overrides, demonstrate(tmp_path, composed)])
+    run_folder.write(tmp_path, composed)
+    text = (tmp_path / "config.yaml").read_text()
+    assert text.startswith(f"version: {__version__}\n")
+    assert "${" not in text
+    assert len(text.splitlines()) < 200
+    written = run_folder.read(tmp_path, "run")
+    assert not set(written) - {"version", *config.READ, "demonstrations", "num_demonstrations"}
+    assert config.build(written).agent == config.build(composed).agent
+
+
+def test_a_word_that_reads_as_a_number_stays_a_word(tmp_path):
+    values = {"a": "1e-3", "b": "12", "c": "on", "d": 1e-3, "e": None, "f": ["1", 2], "g": True}
+    part = {"_target_": "a.B", **values}
+    text = run_folder.as_yaml(OmegaConf.create({"x": part, "y": {"x": part}, "z": [[1], [2]]}))
+    assert text.count("&x") == text.count("*x") == 1
+    again = OmegaConf.create(text)
+    assert again == {"x": part, "y": {"x": part}, "z": [[1], [2]]}
+    assert all(type(again.x[key]) is type(value) for key, value in values.items() if key != "f")
+
+
+def test_equal_keys_of_different_parts_have_anchors_of_their_own():
+    one, two = {"_target_": "a.One"}, {"_target_": "a.Two"}
+    tree = {"part": one, "second": {"part": two}, "third": [0], "again": {"a": one, "b": two}}
+    text = run_folder.as_yaml(OmegaConf.create(tree))
+    assert OmegaConf.create(text) == tree
+    assert "&part_2" in text
+
+
+def test_a_fresh_process_evaluates_and_resumes(trained, tmp_path):
+    folder = shutil.copytree(trained, tmp_path / "run")
+    for line in (f"evaluate run={folder} episodes=1", f"train resume={folder} total_steps=150"):
+        name, *arguments = line.split()
+        whole = [sys.executable, "-m", f"hybrid_rl.{name}", *arguments]
+        done = subprocess.run(whole, cwd=tmp_path, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads((folder / "summary.json").read_text())["total_steps"] == 150
+
+
+@pytest.mark.parametrize("command_name", [*READERS, "train"])
+def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, command_name):
+    def refuse():
+        if command_name == "train":
+            assert call_train(f"resume={old}", "total_steps=200") == 2
+        else:
+            out = [] if command_name == "evaluate" else [f"out={tmp_path}/a.npz"]
+            out = [f"out={tmp_path}/a.mp4"] if command_name == "render" else out
+            main = READERS[command_name]
+            assert call(lambda: command.guarded(main), f"run={old}", *out) == 2
+        assert contents(tmp_path) == before
+        return only_line(capfd)
+
+    before = contents(tmp_path)
+    key = "resume" if command_name == "train" else "run"
+    line = refuse()
+    assert line == (
+        f"hybrid_rl: {key}={old}: made by hybrid_rl 0.1.0, and this is {__version__}; "
+        "pip install hybrid_rl==0.1.0, or train again\n"
+    )
+    (old / "summary.json").unlink()
+    before = contents(tmp_path)
+    line = refuse()
+    assert f"made by hybrid_rl older than 0.2, and this is {__version__}; train again" in line
+
+
+def test_a_run_of_another_minor_version_is_refused(trained, tmp_path):
+    folder = shutil.copytree(trained, tmp_path / "run")
+    file = folder / "config.yaml"
+    for version, fits in (("0.2.9", True), ("0.3.1", False), ("1.2.0", False)):
+        file.write_text(re.sub(r"(?m)^version: .*$", f"version: {version}", file.read_text()))
+        if fits:
+            assert run_folder.read(folder, "run").version == version
+            continue
+        with pytest.raises(config.UsageError, match=f"made by hybrid_rl {version}, and this is"):
+            run_folder.read(folder, "run")
+
+
+def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path, capsys):
+    """They are one curve: keys that older versions wrote are no settings."""
+    with (old / "config.yaml").open("a") as file:
+        file.write("planner: {horizon: 5}\ndemonstrations: demonstrations/pendulum.npz\n")
+    before = contents(old)
+    out = tmp_path / "curves.png"
+    for runs, seeds in ((old, 1), (f"{tmp_path}/*", 1)):
+        line = [f"runs={runs}", "metric=eval/return", f"out={out}"]
+        assert call(lambda line=line: command.guarded(figures.main), *line) == 0
+        (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
+        assert (curve["label"], len(curve["seeds"])) == ("sac", seeds)
+    shutil.copytree(trained, tmp_path / "both" / "new")
+    shutil.copytree(old, tmp_path / "both" / "old")
+    line = [f"runs={tmp_path}/both", "metric=eval/return", f"out={out}"]
+    assert call(lambda: command.guarded(figures.main), *line) == 0
+    (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
+    assert (curve["label"], curve["seeds"]) == ("sac", [0, 0])
+    assert contents(old) == before
+
+
+def test_a_setting_is_named_by_its_last_names(trained):
+    settings = RunFolder(trained)
+    assert settings.word("env") == "Pendulum"
+    assert settings.word("full.policy") == settings.word("learners.policy.policy")
+    assert settings.number("learners.policy.batch_size") == settings.number("batch_size") == 16
+    for key, words in (
+        ("hiden", "it has controllers.full.policy.hidden, "),
+        ("_target_", "has several values in "),
+    ):
+        with pytest.raises(config.UsageError, match=f"group={key}: .*{words}"):
+            settings.word(key)
+    with pytest.raises(config.UsageError, match=r"x=batch_sise: must be .*batch_size"):
+        settings.number("batch_sise")
+
+
+def test_every_copy_of_the_world_has_the_same_physics(tmp_path):
+    """Also the one in a part, for which `auto` is resolved with the number of worlds."""
+    line = ["task=cartpole", "algo=bc", "total_steps=100"]
+    composed = config.load([*line, demonstrate(tmp_path, config.load(line))])
+    agent = config.build(composed).agent
+    worlds = [agent.episode.env, agent.replay.demonstrations.world]
+    worlds.append(agent.learners["cloning"].demonstrations.world)
+    assert [world.physics for world in worlds] == ["native"] * 3
+    assert worlds[0] == worlds[1] == worlds[2]
+    assert composed.env.physics == "auto"
+
+
+def test_two_learners_of_one_field_are_one_line(tmp_path, capfd):
+    """Of a method of the user; the line names both learners and the field of `Params`."""
+    (tmp_path / "algo").mkdir()
+    (tmp_path / "algo" / "twice.yaml").write_text(
+        "# @package _global_\ndefaults: [sac, _self_]\nalgo: twice\n"
+        "learners: {first: '${policy_learner}', policy: '${policy_learner}'}\n"
+    )
+    line = [*TINY, "algo=twice", f"run_dir={tmp_path / 'run'}"]
+    assert call_train("--config-dir", tmp_path, *line) == 2
+    message = only_line(capfd)
+    assert "first" in message
+    assert "policy" in message
+    assert not (tmp_path / "run").exists()
