@@ -25,9 +25,9 @@ from hybrid_rl.overrides import (
     refuse_unused,
     search_path,
 )
+from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Controller
 
 HERE = Path(__file__).parent
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())

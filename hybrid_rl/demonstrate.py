@@ -27,10 +27,11 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.errors import UsageError
+from hybrid_rl.protocols import Controller
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
-from hybrid_rl.types import Controller, Params, Transition
+from hybrid_rl.types import Params, Transition
 
 ARGUMENTS = (
     Argument("task", "", "a task with a scripted expert"),
@@ -116,7 +117,8 @@ def main() -> None:
     recording = record(world, controller, params, episodes, seed)
     save(out, task, world.spec.dt, recording.decisions, recording.episode)
     line = f"{out}: {episodes} episodes, {len(recording.episode):,} decisions, seed {seed}, return "
-    line += f"{recording.returns.mean():,.1f} ({recording.returns.min():,.1f} to {recording.returns.max():,.1f})"
+    returns = recording.returns
+    line += f"{returns.mean():,.1f} ({returns.min():,.1f} to {returns.max():,.1f})"
     if recording.success is not None:
         line += f", {int(recording.success.sum())} succeeded"
     print(line)

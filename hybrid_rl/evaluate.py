@@ -33,6 +33,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, read, whole
 from hybrid_rl.errors import UsageError
+from hybrid_rl.protocols import Controller
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.integrity import write_text
@@ -40,7 +41,7 @@ from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
-from hybrid_rl.types import Controller, Params, Spec
+from hybrid_rl.types import Params, Spec
 
 ARGUMENTS = (
     Argument("run", "", "folder of the run", needed="run=DIR, a folder that training wrote"),

@@ -20,7 +20,9 @@ METHOD = """\
 # @package _global_
 # Planning around the plan, no policy.
 defaults:
+  - /family@_global_: hybrid
   - override /proposal: noise
+  - _self_
 algo: toy
 planner:
   policy: null  # none is learned

@@ -20,15 +20,16 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
-LAYER_FILES = {"types", "networks", "errors", "config", "overrides"}
-SHARED = {"types", "core", "networks"}
-CONFIG = {"types", "errors", "envs", "training", "config", "overrides"}
+LAYER_FILES = {"types", "protocols", "networks", "errors", "config", "overrides"}
+SHARED = {"types", "protocols", "core", "networks"}
+CONFIG = {"types", "protocols", "errors", "envs", "training", "config", "overrides"}
 ALLOWED = {
     "types": set(),
     "errors": set(),
-    "core": {"types", "core"},
+    "protocols": {"types"},
+    "core": {"types", "protocols", "core"},
     "networks": {"types", "core"},
-    "envs": {"types", "envs"},
+    "envs": {"types", "protocols", "envs"},
     "training": {*SHARED, "data", "training"},
     "overrides": {"errors"},
     "config": CONFIG,  # builds the parts that YAML names

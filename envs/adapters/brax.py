@@ -23,7 +23,8 @@ import jax.numpy as jnp
 from brax.envs import base
 from jax import Array
 
-from hybrid_rl.types import Env, EnvState
+from hybrid_rl.protocols import Env
+from hybrid_rl.types import EnvState
 
 
 class BraxEnv(base.Env):

@@ -27,7 +27,8 @@ from gymnasium.vector.utils import batch_space
 from jax import Array
 
 from hybrid_rl.envs.mujoco.offscreen import Canvas, check_drawable
-from hybrid_rl.types import Env, EnvState
+from hybrid_rl.protocols import Env
+from hybrid_rl.types import EnvState
 
 
 def _spaces(env: Env) -> tuple[Box, Box]:

@@ -21,16 +21,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, lyapunov, sampling
-from hybrid_rl.types import (
-    Model,
-    Objective,
-    Params,
-    Path,
-    Policy,
-    Return,
-    Spec,
-    StabilizingPolicy,
-)
+from hybrid_rl.protocols import Model, Objective, Policy, StabilizingPolicy
+from hybrid_rl.types import Params, Path, Return, Spec
 
 APPLY = ("first", "horizon", "search")
 WINDOWS = 8  # values of tau, and of lambda, that a search compares

@@ -15,7 +15,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.types import Params, Spec, StabilizingPolicy, Target
+from hybrid_rl.protocols import StabilizingPolicy, Target
+from hybrid_rl.types import Params, Spec
 
 
 class GoalState(NamedTuple):

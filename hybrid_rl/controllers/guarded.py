@@ -11,7 +11,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import lyapunov
-from hybrid_rl.types import Controller, Model, Params, Spec, StabilizingPolicy
+from hybrid_rl.protocols import Controller, Model, StabilizingPolicy
+from hybrid_rl.types import Params, Spec
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Controller, Params, Spec
+from hybrid_rl.protocols import Controller
+from hybrid_rl.types import Params, Spec
 
 KINDS = ("normal", "uniform", "ou", "held")
 

@@ -6,7 +6,8 @@ import jax
 from jax import Array
 
 from hybrid_rl.core.lifting import lift
-from hybrid_rl.types import Model, Params, Policy, Spec
+from hybrid_rl.protocols import Model, Policy
+from hybrid_rl.types import Params, Spec
 
 
 @dataclass(frozen=True)

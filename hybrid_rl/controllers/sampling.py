@@ -14,7 +14,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, sampling
-from hybrid_rl.types import Model, Params, Path, Policy, Proposal, Spec, Staged
+from hybrid_rl.protocols import Model, Policy, Proposal, Staged
+from hybrid_rl.types import Params, Path, Spec
 
 EXECUTE = ("mean", "sample")
 

@@ -7,7 +7,7 @@ import jax
 import numpy as np
 from jax import Array
 
-from hybrid_rl.types import AnalyticEnv
+from hybrid_rl.protocols import AnalyticEnv
 
 
 def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tuple[Array, Array]:

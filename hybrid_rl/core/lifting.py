@@ -4,7 +4,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Batch, Model, PyTree, Spec
+from hybrid_rl.protocols import Model
+from hybrid_rl.types import Batch, PyTree, Spec
 
 
 def lift(model: Model | None, params: PyTree, obs: Array) -> Array:

@@ -21,7 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.types import Env, Transition
+from hybrid_rl.protocols import Env
+from hybrid_rl.types import Transition
 
 PACKAGE = Path(__file__).parents[1]
 PACKAGED = (PACKAGE, PACKAGE.parent)  # `demonstrations/` lies in one: of a wheel, of a checkout

@@ -12,7 +12,8 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.types import Batch, Demonstrations, Spec, Transition
+from hybrid_rl.protocols import Demonstrations
+from hybrid_rl.types import Batch, Spec, Transition
 
 
 @struct.dataclass

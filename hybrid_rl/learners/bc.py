@@ -16,7 +16,8 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.lifting import lift, lifted_spec
-from hybrid_rl.types import Batch, Demonstrations, LearnedPolicy, Model, Params, Spec
+from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @struct.dataclass

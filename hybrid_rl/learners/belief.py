@@ -7,7 +7,8 @@ import jax
 from jax import Array
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.types import Batch, Belief, Params, Spec
+from hybrid_rl.protocols import Belief
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @dataclass(frozen=True)

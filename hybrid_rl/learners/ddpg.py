@@ -18,7 +18,8 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.types import Batch, Critic, LearnedPolicy, Model, Params, Spec
+from hybrid_rl.protocols import Critic, LearnedPolicy, Model
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @struct.dataclass

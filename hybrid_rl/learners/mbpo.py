@@ -17,7 +17,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.types import Batch, Params, Policy, Reward, Spec, Trainable, UniformLearner
+from hybrid_rl.protocols import Policy, Reward, Trainable, UniformLearner
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @dataclass(frozen=True)

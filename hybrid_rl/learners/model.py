@@ -18,7 +18,8 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.types import Batch, Params, Reward, Spec, Trainable
+from hybrid_rl.protocols import Reward, Trainable
+from hybrid_rl.types import Batch, Params, Spec
 
 
 @struct.dataclass

@@ -14,7 +14,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Spec, Trainable
+from hybrid_rl.protocols import Trainable
+from hybrid_rl.types import Spec
 
 
 @dataclass(frozen=True)

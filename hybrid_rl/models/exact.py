@@ -6,7 +6,8 @@ from typing import Any
 from jax import Array
 
 from hybrid_rl.core import analytic
-from hybrid_rl.types import AnalyticEnv, Spec
+from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.types import Spec
 
 
 @dataclass(frozen=True)

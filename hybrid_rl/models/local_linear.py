@@ -11,7 +11,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import analytic
-from hybrid_rl.types import AnalyticEnv, Spec
+from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.types import Spec
 
 
 @dataclass(frozen=True)

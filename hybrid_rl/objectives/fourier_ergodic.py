@@ -13,7 +13,8 @@ from jax import Array
 
 from hybrid_rl.core import fourier
 from hybrid_rl.core.domain import Box
-from hybrid_rl.types import Params, Path, Return, Spec, Target
+from hybrid_rl.protocols import Target
+from hybrid_rl.types import Params, Path, Return, Spec
 
 
 class FourierState(NamedTuple):

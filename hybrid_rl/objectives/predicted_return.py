@@ -11,7 +11,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Critic, Params, Path, Policy, Return, Reward, Spec
+from hybrid_rl.protocols import Critic, Policy, Reward
+from hybrid_rl.types import Params, Path, Return, Spec
 
 
 @dataclass(frozen=True)

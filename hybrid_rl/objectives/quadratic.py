@@ -10,7 +10,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import analytic
-from hybrid_rl.types import AnalyticEnv, Params, Path, Return, Spec
+from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.types import Params, Path, Return, Spec
 
 
 @dataclass(frozen=True)

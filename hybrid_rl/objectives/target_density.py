@@ -11,7 +11,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.types import Params, Path, Return, Spec, Target
+from hybrid_rl.protocols import Target
+from hybrid_rl.types import Params, Path, Return, Spec
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import ergodic
-from hybrid_rl.types import Critic, Params, Path, Policy, Return, Spec, Trainable
+from hybrid_rl.protocols import Critic, Policy, Trainable
+from hybrid_rl.types import Params, Path, Return, Spec
 
 
 @dataclass(frozen=True)

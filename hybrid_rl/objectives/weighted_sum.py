@@ -8,7 +8,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Objective, Params, Path, Return, Spec
+from hybrid_rl.protocols import Objective
+from hybrid_rl.types import Params, Path, Return, Spec
 
 
 class SumState(NamedTuple):

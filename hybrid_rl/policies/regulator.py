@@ -17,7 +17,8 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core import analytic, riccati
-from hybrid_rl.types import AnalyticEnv, Spec
+from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.types import Spec
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,8 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Params, Proposal, Spec
+from hybrid_rl.protocols import Proposal
+from hybrid_rl.types import Params, Spec
 
 
 @dataclass(frozen=True)

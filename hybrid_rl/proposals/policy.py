@@ -5,7 +5,8 @@ from typing import Any
 
 from jax import Array
 
-from hybrid_rl.types import Params, Policy, Spec
+from hybrid_rl.protocols import Policy
+from hybrid_rl.types import Params, Spec
 
 
 @dataclass(frozen=True)

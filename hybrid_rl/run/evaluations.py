@@ -9,10 +9,11 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
 from hybrid_rl.training.loop import SAME, SEEDS, Loop
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
-from hybrid_rl.types import Controller, Params
+from hybrid_rl.types import Params
 
 EVALUATED = {  # mode -> what its outcomes' names begin with
     "full": "eval/",

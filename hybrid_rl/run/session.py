@@ -17,6 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.errors import DivergenceError
+from hybrid_rl.protocols import Controller
 from hybrid_rl.run import divergence, memory, provenance, rows
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.evaluations import Evaluations
@@ -25,7 +26,7 @@ from hybrid_rl.run.progress import Progress, clock, rate
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.store import Store
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.types import Controller, Params
+from hybrid_rl.types import Params
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
 SURE = 100  # decisions with learning after which the time of the whole run is estimated

@@ -11,7 +11,8 @@ from jax import Array
 
 from hybrid_rl.core import analytic
 from hybrid_rl.core.domain import Box
-from hybrid_rl.types import AnalyticEnv, Params, Uncertain
+from hybrid_rl.protocols import AnalyticEnv, Uncertain
+from hybrid_rl.types import Params
 
 
 @dataclass(frozen=True)

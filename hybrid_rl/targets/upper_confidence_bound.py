@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from jax import Array
 
-from hybrid_rl.types import Belief, Params
+from hybrid_rl.protocols import Belief
+from hybrid_rl.types import Params
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.data.replay import Memory, Replay, as_batch
+from hybrid_rl.protocols import Controller
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Batch, Controller, EnvState, Params, Spec, Transition
+from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
 
 @struct.dataclass

@@ -8,7 +8,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.branching import when_any
-from hybrid_rl.types import Env, EnvState, Spec
+from hybrid_rl.protocols import Env
+from hybrid_rl.types import EnvState, Spec
 
 # A world is exact, whatever precision the networks' products have on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")

@@ -4,8 +4,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.protocols import Controller
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Controller, EnvState, Params
+from hybrid_rl.types import EnvState, Params
 
 
 def begin(episode: Episode, controller: Controller, keys: Array) -> tuple:

@@ -12,7 +12,8 @@ from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
-from hybrid_rl.types import Params, Proposal, Spec
+from hybrid_rl.protocols import Proposal
+from hybrid_rl.types import Params, Spec
 
 SPEC = Spec(obs=2, act=1, dt=0.1)
 K, T = 8, 5

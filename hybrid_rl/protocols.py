@@ -1,0 +1,281 @@
+"""The protocols that parts follow; shapes as in hybrid_rl.types.
+
+Parts inherit nothing: a class that has these methods and fields is a part.
+"""
+
+from typing import Protocol
+
+from jax import Array
+
+from hybrid_rl.types import Batch, EnvState, Params, Path, PyTree, Return, Spec, Transition
+
+
+class Env(Protocol):
+    """An environment. Frozen and hashable; everything that changes is in EnvState."""
+
+    spec: Spec
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state of an episode."""
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later. action: [m] in [-1, 1]."""
+
+    def scene(self) -> str:
+        """MJCF text, for drawing."""
+
+    def pose(self, state: EnvState) -> Array:
+        """Qpos [nq] of `scene` at `state`."""
+
+
+class AnalyticEnv(Env, Protocol):
+    """An environment with known dynamics whose observation is its whole state.
+
+    Near its equilibrium it has local coordinates e [d], zero there, in which it is linearised.
+    """
+
+    def dynamics(self, x: Array, u: Array) -> Array:
+        """The observation [o] that follows x [o] under u [m]."""
+
+    def equilibrium(self) -> tuple[Array, Array]:
+        """x [o] and u [m] with dynamics(x, u) = x."""
+
+    def to_local(self, x: Array) -> Array:
+        """Local coordinates e [d] of x [o]."""
+
+    def from_local(self, e: Array) -> Array:
+        """x [o] of local coordinates e [d]."""
+
+
+class Model(Protocol):
+    """x' = f(x, u)."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters."""
+
+    def lift(self, params: PyTree, obs: Array) -> Array:
+        """The planning state x [n] of an observation [o]; x[:o] is the observation."""
+
+    def step(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Mean of the next planning state [n]."""
+
+
+class Trainable(Model, Protocol):
+    """A model that learns by gradients of its "weights", an entry of its parameters."""
+
+    members: int  # models in an ensemble, each with a batch of its own
+
+    def observe(self, params: PyTree, obs: Array, next_obs: Array) -> PyTree:
+        """Parameters with statistics updated by observations [B, o] and their successors."""
+
+    def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
+        """Mean loss [] of transitions [members * B, ...]."""
+
+    def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """Random next planning states [B, n] for noise [B, n] ~ N(0, I)."""
+
+
+class Uncertain(Model, Protocol):
+    """A model with a predictive standard deviation."""
+
+    def std(self, params: PyTree, x: Array) -> Array:
+        """Standard deviation [n] of the change at x [n], in running standard deviations."""
+
+
+class Policy(Protocol):
+    """u = pi(x), stochastic."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def mean(self, params: PyTree, x: Array) -> Array:
+        """The action [m] without noise."""
+
+    def sample(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array]:
+        """The action [m] for noise [m] ~ N(0, I), and its log-density []."""
+
+    def variance(self, params: PyTree, x: Array) -> Array:
+        """Variance [m] of the action."""
+
+
+class LearnedPolicy(Policy, Protocol):
+    """A policy that learns by gradients."""
+
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
+
+    def log_prob(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Log-density [...] of actions u [..., m] at x [..., n]."""
+
+
+class StabilizingPolicy(Policy, Protocol):
+    """A policy that holds an analytic environment at its equilibrium."""
+
+    world: AnalyticEnv
+
+    def towards(self, x: Array, goal: Array) -> Array:
+        """The action [m] at x [n] that leads to `goal` [o] instead of the equilibrium."""
+
+    def lyapunov(self, x: Array) -> Array:
+        """V(x) [], a Lyapunov function under the policy."""
+
+
+class Critic(Protocol):
+    """Q(x, u), an ensemble."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def all(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Q [members, ...] at x [..., n] and u [..., m]."""
+
+    def value(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Q [...], reduced over the members."""
+
+
+class Reward(Protocol):
+    """r(x, u), learned; its parameters hold "weights" as a Trainable's do."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
+
+    def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
+        """The reward [] of u [m] at x [n], and the logit [] that the episode ends there."""
+
+    def loss(self, params: PyTree, x: Array, u: Array, target: Array, ended: Array) -> Array:
+        """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
+
+
+class Objective(Protocol):
+    """J(path): the return that a planner maximises. It may couple all times, and the past."""
+
+    def init(self, spec: Spec) -> PyTree:
+        """Memory before the first decision of an episode."""
+
+    def prepare(
+        self, params: Params, memory: PyTree, x: Array, u_before: Array, key: Array
+    ) -> tuple[Return, PyTree]:
+        """J of paths that begin at the planning state x [n], and the memory after this decision.
+
+        u_before: [m] the action of the decision before, 0 at the first. J is a plain function,
+        which holds whatever was drawn from `key`; the memory holds only what is remembered.
+        """
+
+
+class Staged(Objective, Protocol):
+    """An objective that is a sum over time."""
+
+    def rewards(self, params: Params, path: Path) -> Array:
+        """r [T] of each decision of the path."""
+
+    def reward_to_go(self, params: Params, path: Path) -> Array:
+        """S [T+1]: the return from each time on. S[0] is J, S[T] the value of the last state."""
+
+
+class Target(Protocol):
+    """p(s): where in the search space there is something to learn."""
+
+    def log_density(self, params: Params, s: Array) -> Array:
+        """log p(s) [] at s [v], up to a constant."""
+
+
+class Belief(Protocol):
+    """What measurements y at s say about an unknown function, updated recursively."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """The belief before any measurement."""
+
+    def add(self, state: PyTree, s: Array, y: Array, key: Array) -> PyTree:
+        """The belief after y [] was measured at s [v]."""
+
+    def predict(self, state: PyTree, s: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation [] of the function at s [v]."""
+
+    def loss(self, state: PyTree, s: Array, y: Array) -> Array:
+        """Negative log-likelihood [] of y [] at s [v], before it is added."""
+
+    def report(self, state: PyTree) -> dict[str, Array]:
+        """Metrics, name -> []."""
+
+
+class Proposal(Protocol):
+    """The distribution that a sampling planner draws its candidates from."""
+
+    def init(self, spec: Spec, quantile: Array) -> PyTree:
+        """Carry of one imagined path before its first action; `quantile` [] in [0, 1) is k / K."""
+
+    def __call__(
+        self, params: Params, carry: PyTree, x: Array, plan: Array, noise: Array
+    ) -> tuple[Array, Array, PyTree]:
+        """A candidate v [m] at x [n] near the plan [m], its log-density [], the next carry.
+
+        All randomness is in `noise` [m] ~ N(0, I), which the planner draws for all candidates.
+        """
+
+
+class Controller(Protocol):
+    """obs -> action."""
+
+    def init(self, spec: Spec) -> PyTree:
+        """State at the start of an episode."""
+
+    def act(
+        self, params: Params, state: PyTree, obs: Array, key: Array
+    ) -> tuple[Array, PyTree, dict[str, Array]]:
+        """Action [m] in [-1, 1], next state, metrics (name -> [], NaN where one does not apply)."""
+
+    def greedy(self) -> "Controller":
+        """The same controller without exploration, for evaluation."""
+
+
+class Demonstrations(Protocol):
+    """An expert's decisions."""
+
+    def load(self) -> Transition:
+        """All of them [N, ...], in order."""
+
+
+class Learner(Protocol):
+    """data -> parameters.
+
+    `data` says which transitions an update gets:
+
+        uniform   a batch drawn from the replay memory; see UniformLearner
+        latest    this step's transitions [E, ...], each one once; see LatestLearner
+    """
+
+    data: str
+    owns: tuple[str, ...]  # the fields of `Params` that it learns
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial state: parameters, optimisers, targets."""
+
+    def params(self, state: PyTree) -> dict[str, PyTree]:
+        """The fields of `Params` that this learner owns."""
+
+    def update(
+        self, state: PyTree, params: Params, batch: Batch, key: Array
+    ) -> tuple[PyTree, dict[str, Array]]:
+        """One update; `params` of all learners before it, metrics name -> []."""
+
+
+class UniformLearner(Learner, Protocol):
+    """A learner whose updates get batches [batches * batch_size] of the replay memory."""
+
+    batch_size: int  # transitions of a batch
+    batches: int  # batches of one update, concatenated
+    updates: float  # per decision
+    early: bool  # whether it also learns while decisions are random
+
+
+class LatestLearner(Learner, Protocol):
+    """A learner that takes each decision once, with its true next observation.
+
+    Its updates get the transitions [E] of the step that just ended, without a delay, from the
+    first decision of the run on, random ones included.
+    """
+
+    every: int  # decisions of each environment between two updates; 1: none is left out
