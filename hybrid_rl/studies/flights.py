@@ -74,7 +74,8 @@ def first(label: str, memory: Any, trials: int, length: int) -> Flight:
     """The first `length` decisions of the first `trials` in `memory` [S, ...]."""
     count = jnp.minimum(memory.count[:trials], length)
     memory = memory.replace(rows=memory.rows[:trials, :length], count=count)
-    made = unpack(np.asarray(memory.rows)[:, :, 0], QuadcopterSE3().spec)
+    made: Any = unpack(memory.rows[:, :, 0], QuadcopterSE3().spec)
+    made = jax.tree.map(np.asarray, made)
     return Flight(label, memory, made.obs, made.action, made.next_obs, made.terminated)
 
 
