@@ -1,4 +1,4 @@
-"""The figure of a study, with its numbers as JSON next to it.
+"""Learning curves and other studies: a picture, with its numbers as JSON next to it.
 
     python -m hybrid_rl.figures runs="runs/halfcheetah/*/*" metric=train/return out=figure.png
     python -m hybrid_rl.figures study=model_learning runs="runs/quadcopter_se3/*/*"
@@ -16,6 +16,7 @@ if __name__ == "__main__":
 import ast
 import difflib
 import inspect
+import itertools
 import json
 import math
 import sys
@@ -62,9 +63,8 @@ class Study(Protocol):
 def studies() -> dict[str, str]:
     """Name of every study -> first line of its docstring; no study is imported."""
     lines = {}
-    for path in (
-        path for folder in hybrid_rl.studies.__path__ for path in Path(folder).glob("*.py")
-    ):
+    files = [Path(folder).glob("*.py") for folder in hybrid_rl.studies.__path__]
+    for path in itertools.chain(*files):
         module = ast.parse(path.read_text(encoding="utf-8"))
         functions = {node.name for node in module.body if isinstance(node, ast.FunctionDef)}
         if "figure" in functions:

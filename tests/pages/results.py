@@ -19,7 +19,7 @@ def of(task: str, label: str) -> list[float]:
     return curve(FILE, label, task=task).at(100_000)
 
 
-def beside(task: str, header: str) -> Table:
+def returns_at(task: str, header: str) -> Table:
     """One task's table: a row each, evaluations side by side."""
 
     def values(label: str, column: str) -> Sequence[float]:
@@ -61,11 +61,11 @@ def highest(label: str) -> float:
 
 GYM, OURS = "sb3_sac_gymnasium", "sb3_sac_ours"
 CITED = [
-    beside(
+    returns_at(
         "halfcheetah",
         "half-cheetah, IQM and 95% band at | 50,000 | 60,000 | 80,000 | 100,000",
     ),
-    beside("hopper", "hopper, IQM and 95% band at | 50,000 | 80,000 | 100,000"),
+    returns_at("hopper", "hopper, IQM and 95% band at | 50,000 | 80,000 | 100,000"),
     Text(
         "end equal: # and # at 100,000 (Mann-Whitney p #)",
         [of("halfcheetah", "sac")[0], of("halfcheetah", OURS)[0], p(100_000, OURS)],

@@ -30,7 +30,7 @@ def numbers_of(drawn, metric="train/return", x="step"):
     return {"metric": metric, "x": x, "curves": [to_numbers(one) for one in drawn]}
 
 
-def test_a_panel_a_task_and_a_line_a_label_of_one_colour():
+def test_a_panel_per_task_and_a_line_per_label_of_one_colour():
     drawn = [curve("ant", "sac", 1), curve("hopper", "nn_mppi", 5), curve("hopper", "sac", 3)]
     axes = plot(drawn).axes
     assert [panel.get_title() for panel in axes] == ["ant", "hopper"]
@@ -58,7 +58,7 @@ def test_labels_carry_units_and_thousands():
 
 
 def test_several_metrics_are_rows_without_a_blank():
-    """One column a task; where a task lacks a metric the panels close up."""
+    """One column per task; if a task lacks a metric, no panel is empty."""
     metrics = ("train/return", "planner/mode_insertion_gradient")
     drawn = [curve(task, metric=metric) for metric in metrics for task in ("ant", "hopper")]
     axes = plot(drawn).axes
@@ -72,7 +72,7 @@ def test_several_metrics_are_rows_without_a_blank():
 
 @pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
 def test_legends_and_notes_cover_no_axes(tasks, labels):
-    """In the boxes that the picture has when it is drawn; and none leaves the picture."""
+    """By their boxes in the rendered picture; and all are inside the picture."""
     names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
     drawn = [
         replace(
@@ -97,7 +97,7 @@ def test_legends_and_notes_cover_no_axes(tasks, labels):
 
 
 def test_notes_are_on_the_picture():
-    """Many are cut short, and say so."""
+    """Beyond eight, their number is there."""
     (text,) = [plot([replace(curve(), notes=("seed 3 diverged",))])._supxlabel.get_text()]
     assert text == "seed 3 diverged"
     many = replace(curve(), notes=tuple(f"note {i}" for i in range(20)))
