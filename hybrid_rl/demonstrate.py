@@ -74,7 +74,7 @@ def record(
     )
 
 
-def by_hand(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Params]:
+def scripted(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Params]:
     """A task, as `changes` make it, and its scripted expert, which has no parameters.
 
     Raises:
@@ -94,7 +94,7 @@ def _expert(
     if bool(given["task"]) == bool(given["run"]):
         raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
     if given["task"]:
-        return given["task"], *by_hand(given["task"], changes)
+        return given["task"], *scripted(given["task"], changes)
     if changes:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     from hybrid_rl.evaluate import load
@@ -116,8 +116,13 @@ def main() -> None:
     out = output("out", given["out"] or f"demonstrations/{task}.npz", (".npz",))
     recording = record(world, controller, params, episodes, seed)
     save(out, task, world.spec.dt, recording.decisions, recording.episode)
+<<<<<<< HEAD
     line = f"{out}: {episodes} episodes, {len(recording.episode):,} decisions, seed {seed}, return "
     returns = recording.returns
+=======
+    count, returns = len(recording.episode), recording.returns
+    line = f"{out}: {episodes} episodes, {count:,} decisions, seed {seed}, return "
+>>>>>>> w/host
     line += f"{returns.mean():,.1f} ({returns.min():,.1f} to {returns.max():,.1f})"
     if recording.success is not None:
         line += f", {int(recording.success.sum())} succeeded"

@@ -1,7 +1,7 @@
-"""What the user typed: keys that do not exist, keys that nothing reads, values as they were typed.
+"""Overrides of the user: keys that do not exist, keys that nothing reads, values as typed.
 
-A run reads the keys `config.READ`, and whatever these name by interpolation. An override of any
-other key would change nothing, so it is refused; a YAML file may set such keys, since it serves
+A run reads the keys `config.READ` and the keys to which they refer by interpolation. An override of
+any other key would have no effect and is refused; a YAML file may set such keys, as it serves
 several methods.
 """
 
@@ -19,7 +19,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.errors import UsageError
 
-REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, by the key that it names
+REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
 MOST = 4  # keys that one line suggests
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
 LACKING: Any = object()  # the value of a key that does not exist
@@ -39,7 +39,7 @@ def given(texts: Iterable[str]) -> dict[str, str]:
 
 
 def key(override: Override) -> str:
-    """Where in the configuration an override acts."""
+    """The key of the configuration that an override changes."""
     return override.package or override.key_or_group
 
 
@@ -61,7 +61,7 @@ def source(raw: dict[str, Any], path: str) -> str:
 
 
 def select(raw: dict[str, Any], path: str) -> Any:
-    """The value at `path`, LACKING where there is none."""
+    """The value at `path`, LACKING if there is none."""
     node: Any = raw
     for name in source(raw, path).split("."):
         node = node.get(name, LACKING) if isinstance(node, dict) else LACKING
@@ -124,7 +124,7 @@ def _instead(read: dict[str, Any], path: str, value: Any) -> list[str]:
 
 
 def near(config: DictConfig, path: str) -> str:
-    """Keys that whoever typed `path`, which does not exist, may have meant; "" where there is none.
+    """Existing keys similar to `path`, which does not exist; "" if there is none.
 
     config: any node of the composed configuration.
     """
@@ -141,16 +141,16 @@ def near(config: DictConfig, path: str) -> str:
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """A question after the one of `known` that is close to `word`; empty where none is."""
+    """ "; did you mean X?" with the closest of the `known`; "" if none is close."""
     close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {close[0]}?" if close else ""
 
 
 def as_typed(line: str, texts: Sequence[str]) -> str:
-    """A message that begins with a part's FIELD=VALUE, with the key and the value that were typed.
+    """A message that begins with FIELD=VALUE of a part, with the key and the value as typed.
 
-    Parts know their fields alone: `reward='foo': ...` was typed as env.reward=foo; and YAML reads
-    1e4 as 10000.0.
+    A part names only its field: `reward='foo': ...` was typed as env.reward=foo. YAML reads 1e4 as
+    10000.0.
     """
     head = re.match(r"([\w.]+)=(.*?): ", line)
     if head is None:
@@ -187,10 +187,10 @@ def new(texts: Sequence[str], known: DictConfig) -> list[str]:
 
 
 def search_path(config_dir: str | Path) -> str:
-    """The override by which Hydra finds the groups in a folder of the user's.
+    """The override by which Hydra finds the groups in a folder of the user.
 
     Raises:
-        UsageError: where there is no such folder.
+        UsageError: if there is no such folder.
     """
     folder = Path(config_dir).expanduser().resolve()
     if not folder.is_dir():
@@ -199,7 +199,7 @@ def search_path(config_dir: str | Path) -> str:
 
 
 def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
-    """Raise UsageError for `+key=value` where conf/ has no such key: nothing would read it.
+    """Raise UsageError for `+key=value` if conf/ has no such key, as nothing would read it.
 
     more: overrides of Hydra's own keys, of which the search path matters here.
     """
@@ -216,7 +216,7 @@ def refuse_unused(
 ) -> None:
     """Raise UsageError for an override that none of the configurations reads.
 
-    composed: with their interpolations, several where a sweep makes several jobs. roots: the keys
+    composed: with their interpolations, one for each job of a sweep. roots: the keys
     that a run reads. A resumed run has settings of its own, so there nothing is refused here.
     """
     if any(config.resume is not None for config in composed):

@@ -91,10 +91,10 @@ def _shown(
     from hybrid_rl.envs.mujoco.offscreen import check_drawable
 
     if given["task"]:
-        from hybrid_rl.demonstrate import by_hand
+        from hybrid_rl.demonstrate import scripted
         from hybrid_rl.training.rollout import evaluation_keys
 
-        whole, controller, params = by_hand(given["task"], changes)
+        whole, controller, params = scripted(given["task"], changes)
         _check(check_drawable, whole.env)
         world = replace(whole, steps=steps or whole.steps)
         return (
@@ -138,7 +138,7 @@ def main() -> None:
     width, height, steps, seed = (
         given[name] for name in ("width", "height", "episode_steps", "seed")
     )
-    offscreen.backend()  # before minutes of work: nothing is lost where nothing can draw
+    offscreen.backend()  # raises before minutes of work
     _check(offscreen.check_size, width, height)
 
     world, by, shown = _shown(given, changes, seed, steps)

@@ -8,6 +8,8 @@ import os
 from importlib.metadata import version
 from pathlib import Path
 
+import pytest
+
 CACHE = Path(__file__).resolve().parents[1] / ".cache" / "jax"
 # A third less to compile, same mathematics.
 FLAGS = ["--xla_backend_optimization_level=0"]
@@ -27,3 +29,17 @@ SETTINGS = {
 
 for name, value in SETTINGS.items():
     os.environ.setdefault(name, value)
+
+
+@pytest.fixture
+def can_draw():
+    """Whether this machine can draw; if not, it names the packages to install."""
+    from hybrid_rl.envs.mujoco import offscreen
+
+    try:
+        offscreen.backend()
+    except offscreen.NoGraphicsError:
+        with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
+            offscreen.backend()
+        return False
+    return True

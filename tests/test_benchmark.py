@@ -47,8 +47,8 @@ def test_the_command_measures_every_part(tmp_path, capsys):
     small = ["tasks=cartpole", "worlds=2", "learners=1", "plans=4x2", "rounds=1"]
     world = ["experiment=thesis/fig_3_2_pendulum", "parts=physics,plan,loop"]
     assert run(*small, *world, f"out={out}") == 0
-    said = capsys.readouterr().out
-    assert "bare mujoco.rollout" in said
+    printed = capsys.readouterr().out
+    assert "bare mujoco.rollout" in printed
     tables = json.loads(out.read_text())["tables"]
     assert [table["part"] for table in tables] == ["physics", "plan", "loop"]
     assert all(row["rate"] > 0 for table in tables for row in table["rows"])
@@ -67,9 +67,9 @@ def test_a_bare_loop_steps_the_model_of_our_world(implementation, monkeypatch):
         return load(asset)
 
     def made(asset, implementation, worlds=1):
-        found = template(asset, implementation, worlds)
-        stepped.append(id(found[0]))
-        return found
+        result = template(asset, implementation, worlds)
+        stepped.append(id(result[0]))
+        return result
 
     def traced(name, run, *given, work):
         jax.eval_shape(run, *given)
@@ -137,7 +137,7 @@ def test_pictures_fit_a_screen_and_bars_begin_at_zero(tmp_path):
 def test_bad_usage_is_one_line_and_code_2(tmp_path, monkeypatch, capsys, given, line):
     monkeypatch.chdir(tmp_path)
     assert run(*given.split()) == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert line in said
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1
+    assert line in printed
     assert list(tmp_path.iterdir()) == []

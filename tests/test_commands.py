@@ -43,11 +43,11 @@ def trained(tmp_path_factory):
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory):
     """The folder in which two methods ran, two seeds each."""
-    place = tmp_path_factory.mktemp("swept")
+    parent = tmp_path_factory.mktemp("swept")
     with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(place)
+        patch.chdir(parent)
         assert call_train("-m", *TINY, "algo=sac,nn_mppi", "seed=range(2)") == 0
-    return place
+    return parent
 
 
 def rows(folder):
@@ -59,25 +59,25 @@ def summary(folder):
 
 
 def test_a_run_folder_holds_what_it_should(trained):
-    found = {path.name for path in trained.iterdir()}
-    assert found == {"config.yaml", "metrics.jsonl", "tensorboard", "checkpoints", "summary.json"}
+    result = {path.name for path in trained.iterdir()}
+    assert result == {"config.yaml", "metrics.jsonl", "tensorboard", "checkpoints", "summary.json"}
     assert checkpoint.steps(trained / "checkpoints") == [500, 600]
 
 
 def test_the_configuration_is_resolved_and_builds(trained):
     text = (trained / "config.yaml").read_text()
     assert "${" not in text
-    kept = OmegaConf.load(trained / "config.yaml")
-    assert (kept.task, kept.algo, kept.total_steps, kept.resume) == (
+    written = OmegaConf.load(trained / "config.yaml")
+    assert (written.task, written.algo, written.total_steps, written.resume) == (
         "cartpole",
         "hybrid_stochastic",
         600,
         None,
     )
-    assert config.build(kept).agent.episode.steps == 40
+    assert config.build(written).agent.episode.steps == 40
 
 
-def test_rows_have_a_place_and_known_names(trained):
+def test_rows_have_coordinates_and_known_names(trained):
     steps = [row["step"] for row in rows(trained)]
     assert steps == sorted(steps)
     for row in rows(trained):
@@ -88,11 +88,11 @@ def test_rows_have_a_place_and_known_names(trained):
         assert np.isfinite([row[name] for name in names]).all()
 
 
-def test_rows_tell_what_they_promise(trained):
-    told = {name for row in rows(trained) for name in row}
-    assert told >= {*MODES.values(), "train/return", "train/length"}
-    assert told >= {"model/loss", "model/reward_loss", "perf/env_steps_per_s", "sac/q"}
-    assert "planner/effective_samples" in told
+def test_rows_have_the_documented_names(trained):
+    names = {name for row in rows(trained) for name in row}
+    assert names >= {*MODES.values(), "train/return", "train/length"}
+    assert names >= {"model/loss", "model/reward_loss", "perf/env_steps_per_s", "sac/q"}
+    assert "planner/effective_samples" in names
     ends = [row for row in rows(trained) if "train/return" in row]
     assert [(row["step"], row["train/length"]) for row in ends] == [
         (step, 40) for step in range(40, 601, 40)
@@ -106,18 +106,22 @@ def test_the_board_has_the_same_names(trained):
     assert all(name.encode() in data for name in names)
 
 
-def test_the_summary_says_what_was_done(trained):
-    said = summary(trained)
-    assert said.keys() >= {
+def test_the_summary_describes_the_run(trained):
+    values = summary(trained)
+    assert values.keys() >= {
         *("task", "algo", "seeds", "total_steps", "finished", "final_return", "wall_s"),
         *("env_steps_per_s", "physics", "device", "versions", "git_commit"),
     }
-    assert (said["task"], said["algo"], said["seeds"]) == ("cartpole", "hybrid_stochastic", [0])
-    assert (said["total_steps"], said["finished"], said["physics"]) == (600, True, "native")
+    assert (values["task"], values["algo"], values["seeds"]) == (
+        "cartpole",
+        "hybrid_stochastic",
+        [0],
+    )
+    assert (values["total_steps"], values["finished"], values["physics"]) == (600, True, "native")
     last = [row["train/return"] for row in rows(trained) if row["step"] > 540 and len(row) == 5]
-    assert said["final_return"] == [pytest.approx(np.mean(last))]
-    assert 0 < said["compile_s"] < said["wall_s"]
-    assert {"jax", "mujoco", "python", "hybrid_rl"} <= said["versions"].keys()
+    assert values["final_return"] == [pytest.approx(np.mean(last))]
+    assert 0 < values["compile_s"] < values["wall_s"]
+    assert {"jax", "mujoco", "python", "hybrid_rl"} <= values["versions"].keys()
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -126,11 +130,16 @@ def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
         lambda: command.guarded(evaluate.main), f"run={trained}", "episodes=1", f"mode={mode}"
     )
     assert code == 0
-    said = json.loads((trained / f"evaluation_{mode}.json").read_text())
-    assert (said["mode"], said["step"], said["seeds"], said["episodes"]) == (mode, 600, [0], 1)
-    assert said["mean"] == [row[0] for row in said["returns"]]
+    values = json.loads((trained / f"evaluation_{mode}.json").read_text())
+    assert (values["mode"], values["step"], values["seeds"], values["episodes"]) == (
+        mode,
+        600,
+        [0],
+        1,
+    )
+    assert values["mean"] == [row[0] for row in values["returns"]]
     last = [row[MODES[mode]] for row in rows(trained) if MODES[mode] in row][-1]
-    assert said["mean"] == [pytest.approx(last, rel=1e-4)]
+    assert values["mean"] == [pytest.approx(last, rel=1e-4)]
     table = capsys.readouterr().out
     assert f"mode {mode}, step 600" in " ".join(table.split())
     assert f"{last:,.1f}" in table
@@ -138,16 +147,16 @@ def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
 
 def test_a_trained_policy_gets_what_the_evaluation_says(trained):
     """Driven from Python, one observation at a time."""
-    found = evaluate.load(str(trained))
-    expected = evaluate.evaluate(found, "policy", 1)["return"][0, 0]
-    episode, policy = found.episode, found.policy(mode="policy")
+    result = evaluate.load(str(trained))
+    expected = evaluate.evaluate(result, "policy", 1)["return"][0, 0]
+    episode, policy = result.episode, result.policy(mode="policy")
     state = episode.reset(jax.random.split(evaluation_keys(0, 1)[0])[0])
     step = jax.jit(episode.step)
     policy.reset()
     while not state.done:
         state = step(state, policy(np.asarray(state.obs)))
     assert float(state.info["return"]) == pytest.approx(float(expected), rel=1e-3)
-    planned = found.policy()(np.asarray(state.obs))
+    planned = result.policy()(np.asarray(state.obs))
     assert planned.shape == (1,)
     assert np.abs(planned).max() <= 1
 
@@ -169,15 +178,15 @@ def test_render_draws_an_episode(trained, tmp_path, capfd):
 
 def test_a_sweep_makes_a_folder_each(swept):
     folders = sorted((swept / "runs" / "pendulum").glob("*/*"))
-    said = [summary(folder) for folder in folders]
-    assert sorted((each["algo"], *each["seeds"]) for each in said) == [
+    values = [summary(folder) for folder in folders]
+    assert sorted((each["algo"], *each["seeds"]) for each in values) == [
         ("nn_mppi", 0),
         ("nn_mppi", 1),
         ("sac", 0),
         ("sac", 1),
     ]
-    assert all(each["finished"] for each in said)
-    assert [each["algo"] for each in said] == [folder.parent.name for folder in folders]
+    assert all(each["finished"] for each in values)
+    assert [each["algo"] for each in values] == [folder.parent.name for folder in folders]
 
 
 def test_a_sweep_goes_to_a_cluster_by_one_override(tmp_path, monkeypatch):
@@ -185,17 +194,17 @@ def test_a_sweep_goes_to_a_cluster_by_one_override(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     line = [*TINY, "algo=sac", "total_steps=300", "seed=0,1", "hydra/launcher=submitit_local"]
     assert call_train("-m", *line) == 0
-    found = [summary(path) for path in (tmp_path / "runs" / "pendulum" / "sac").iterdir()]
-    assert sorted(said["seeds"] for said in found) == [[0], [1]]
-    assert all(said["finished"] for said in found)
+    result = [summary(path) for path in (tmp_path / "runs" / "pendulum" / "sac").iterdir()]
+    assert sorted(printed["seeds"] for printed in result) == [[0], [1]]
+    assert all(printed["finished"] for printed in result)
 
 
 def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:
-    place = tmp_path / "runs" / "pendulum" / "sac"
+    folder = tmp_path / "runs" / "pendulum" / "sac"
     with ThreadPoolExecutor(16) as pool:
-        made = list(pool.map(lambda _: run_folder.writable(place, "run_dir"), range(2000)))
-    assert set(made) == {place}
-    assert not list(place.iterdir())
+        made = list(pool.map(lambda _: run_folder.writable(folder, "run_dir"), range(2000)))
+    assert set(made) == {folder}
+    assert not list(folder.iterdir())
 
 
 def test_figures_draw_a_sweep(swept, monkeypatch, capsys):
@@ -216,25 +225,25 @@ def test_a_method_without_a_planner_skips_that_evaluation(swept):
 
 
 def test_python_does_what_the_commands_do(tmp_path):
-    said = run(tmp_path / "run", "algo=sac")
+    values = run(tmp_path / "run", "algo=sac")
     before = contents(tmp_path)
-    assert said == summary(tmp_path / "run")
-    trained = evaluate.load(Path(said["run_dir"]))
+    assert values == summary(tmp_path / "run")
+    trained = evaluate.load(Path(values["run_dir"]))
     assert (trained.seeds, trained.step, trained.notes) == ((0,), 600, ())
     got = evaluate.evaluate(trained, "policy", episodes=1)
     assert list(got) == ["return"]
     assert got["return"].shape == (1, 1)
     assert np.isfinite(got["return"]).all()
-    (curve,) = curves(said["run_dir"])
+    (curve,) = curves(values["run_dir"])
     assert (curve.label, list(curve.x)) == ("sac", [200, 400, 600])
     assert contents(tmp_path) == before
 
 
 def test_the_list_names_every_task_and_method(capsys):
     assert call(lambda: command.guarded(listed.main)) == 0
-    said = capsys.readouterr().out
+    printed = capsys.readouterr().out
     for group in ("task", "algo", "experiment"):
-        assert all(f"  {name}  " in said for name in command.options(group))
+        assert all(f"  {name}  " in printed for name in command.options(group))
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are read from /proc")

@@ -29,18 +29,18 @@ def trained(tmp_path_factory) -> Path:
 
 def test_a_hand_made_expert_is_recorded_as_it_acted():
     """Decisions follow each other, rewards add up, and a push that ends has succeeded."""
-    found = demonstrate.record(
+    result = demonstrate.record(
         Episode(SawyerPush("native"), 100), PushController(), Params(), episodes=3, seed=5
     )
-    rows, episode = found.decisions, found.episode
+    rows, episode = result.decisions, result.episode
     within = np.flatnonzero(episode[1:] == episode[:-1])
     np.testing.assert_array_equal(rows.next_obs[within], rows.obs[within + 1])
     totals = [rows.reward[episode == i].sum() for i in range(3)]
-    np.testing.assert_allclose(found.returns, totals, rtol=1e-5)
+    np.testing.assert_allclose(result.returns, totals, rtol=1e-5)
     ends = np.flatnonzero(np.diff(episode, append=3))
-    np.testing.assert_array_equal(rows.terminated[ends], found.success > 0)
+    np.testing.assert_array_equal(rows.terminated[ends], result.success > 0)
     np.testing.assert_array_equal(rows.terminated.sum() + rows.truncated.sum(), 3)
-    assert found.success.sum() >= 2
+    assert result.success.sum() >= 2
     assert (np.bincount(episode) <= 100).all()
 
 
@@ -65,15 +65,15 @@ def test_the_task_is_changed_as_in_training(tmp_path, capsys):
     out = tmp_path / "short.npz"
     line = ["task=sawyer_push", "episodes=1", "episode.steps=3", "env.speed=0.05", f"out={out}"]
     assert call(lambda: command.guarded(demonstrate.main), *line) == 0
-    found = load(out)
-    assert len(found["reward"]) == 3
-    moved = np.linalg.norm(np.diff(found["obs"][:, :2] / 10, axis=0), axis=1)
+    result = load(out)
+    assert len(result["reward"]) == 3
+    moved = np.linalg.norm(np.diff(result["obs"][:, :2] / 10, axis=0), axis=1)
     assert (moved < 0.05 * np.sqrt(2) * 0.1).all()  # [m] in a decision
     for wrong in ("env.sped=1", "planner.samples=3"):
         assert call(lambda: command.guarded(demonstrate.main), *line, wrong) == 2
-    said = capsys.readouterr().err
-    assert "env.sped: unknown key" in said
-    assert "planner.samples=3: unknown argument; give key=value with task" in said
+    printed = capsys.readouterr().err
+    assert "env.sped: unknown key" in printed
+    assert "planner.samples=3: unknown argument; give key=value with task" in printed
 
 
 def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
@@ -87,6 +87,6 @@ def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
     after = evaluate.evaluate(evaluate.load(folder), "policy", 2)["return"]
     np.testing.assert_array_equal(after, before)
     assert call_train(f"resume={folder}", "total_steps=40") == 2
-    said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    assert f"{file}: no such file" in said
+    printed = capsys.readouterr().err
+    assert printed.count("\n") == 1
+    assert f"{file}: no such file" in printed

@@ -13,6 +13,7 @@ from hybrid_rl.cli import arguments, command
 from hybrid_rl.cli.arguments import Argument, several, whole
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.jax_settings import cache_folder
 
 NAMES = sorted(set(commands.commands()) - {"train"})
 
@@ -24,24 +25,24 @@ def test_every_command_explains_itself(name, flag, capsys):
     package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
     module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
     assert call(lambda: command.guarded(module.main), flag) == 0
-    said, err = capsys.readouterr()
+    printed, err = capsys.readouterr()
     assert err == ""
-    assert said.startswith(module.__doc__.splitlines()[0])
-    assert f"python -m hybrid_rl.{name}" in said
+    assert printed.startswith(module.__doc__.splitlines()[0])
+    assert f"python -m hybrid_rl.{name}" in printed
     for argument in module.ARGUMENTS:
-        assert f"  {argument.name}=" in said
-        assert argument.about in said
+        assert f"  {argument.name}=" in printed
+        assert argument.about in printed
 
 
 def test_train_shows_the_keys_that_every_run_has(capsys):
     assert call_train("--help") == 0
-    said = capsys.readouterr().out
-    assert "python -m hybrid_rl.train task=pendulum" in said
+    printed = capsys.readouterr().out
+    assert "python -m hybrid_rl.train task=pendulum" in printed
     for key in ("task=halfcheetah", "num_seeds=1 ", "total_steps=null", "resume=null", "run_dir="):
-        (line,) = [each for each in said.splitlines() if each.startswith(f"  {key}")]
+        (line,) = [each for each in printed.splitlines() if each.startswith(f"  {key}")]
         assert len(line.split()) > 3, "a key without its meaning"
-    assert "--cfg job" in said
-    assert len(said.splitlines()) < 60
+    assert "--cfg job" in printed
+    assert len(printed.splitlines()) < 60
 
 
 def test_the_package_lists_its_commands():
@@ -107,7 +108,9 @@ def test_an_output_is_probed_without_a_trace(tmp_path):
 
 
 def test_a_cache_that_cannot_be_written_is_one_line(capsys):
-    assert command._cache("/dev/null/cache") is None
-    said = capsys.readouterr().err
-    assert said.startswith("hybrid_rl: compile_cache=/dev/null/cache: cannot be written to (Not a")
-    assert said.count("\n") == 1
+    assert cache_folder("/dev/null/cache") is None
+    printed = capsys.readouterr().err
+    assert printed.startswith(
+        "hybrid_rl: compile_cache=/dev/null/cache: cannot be written to (Not a"
+    )
+    assert printed.count("\n") == 1

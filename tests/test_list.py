@@ -46,11 +46,11 @@ def test_each_name_has_the_first_comment_of_its_file(conf):
 
 def test_the_command_prints_one_line_each(monkeypatch, capsys):
     assert call(monkeypatch) == 0
-    said = capsys.readouterr().out.splitlines()
+    printed = capsys.readouterr().out.splitlines()
     for group in listed.GROUPS:
         for path in (CONF / group).rglob("*.yaml"):
             name = path.relative_to(CONF / group).with_suffix("").as_posix()
-            assert [line for line in said if line.split()[:1] == [name]], f"{group}={name}"
+            assert [line for line in printed if line.split()[:1] == [name]], f"{group}={name}"
 
 
 def test_every_one_says_what_it_is():
@@ -65,9 +65,9 @@ def test_every_one_says_what_it_is():
 
 def test_arguments_are_refused(monkeypatch, capsys):
     assert call(monkeypatch, "task=hopper") == 2
-    said = capsys.readouterr().err
+    printed = capsys.readouterr().err
     line = "task=hopper: unknown argument; give key=value with config_dir"
-    assert said == f"hybrid_rl: {line}\n"
+    assert printed == f"hybrid_rl: {line}\n"
 
 
 @pytest.mark.parametrize("given", [["config_dir={}"], ["--config-dir", "{}"]])
@@ -76,12 +76,12 @@ def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
         "# Kettle: boils.\nenv:\n  _target_: kettle.Kettle\n"
     )
     assert call(monkeypatch, *(text.format(conf) for text in given)) == 0
-    said = capsys.readouterr().out
-    assert "  kettle " in said
-    assert "Kettle: boils." in said
-    (ours,) = [line for line in said.splitlines() if line.startswith("  pendulum ")]
+    printed = capsys.readouterr().out
+    assert "  kettle " in printed
+    assert "Kettle: boils." in printed
+    (ours,) = [line for line in printed.splitlines() if line.startswith("  pendulum ")]
     assert ours.endswith("[analytic]")
-    assert "  halfcheetah " in said
+    assert "  halfcheetah " in printed
 
 
 @pytest.mark.parametrize("algo", ["sac", "bc", "ddpg", "kle3", "kle3_ddpg", "bayesopt", "ou_noise"])

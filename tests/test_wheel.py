@@ -44,8 +44,8 @@ def python(wheel, tmp_path_factory):
     # A path in a .pth file is searched, but the .pth files there are not read: among them
     # the one that leads to this checkout.
     site = run(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))", cwd=venv)
-    places = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
-    Path(site.strip(), "dependencies.pth").write_text("\n".join(places))
+    folders = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
+    Path(site.strip(), "dependencies.pth").write_text("\n".join(folders))
     return python
 
 

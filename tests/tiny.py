@@ -61,3 +61,11 @@ def contents(folder: Path) -> dict[str, str]:
         else ""
         for path in sorted(folder.rglob("*"))
     }
+
+
+def only_line(capfd: pytest.CaptureFixture[str]) -> str:
+    """What a command wrote to stderr, which is one line of ours."""
+    line = capfd.readouterr().err
+    assert line.startswith("hybrid_rl: ")
+    assert line.count("\n") == 1
+    return line

@@ -70,7 +70,7 @@ def tidily(patience: float = PATIENCE) -> Iterator[None]:
 def answered(ask: Ask) -> Iterator[None]:
     """Within, the first signal calls ask(number), in another thread than the main one.
 
-    Where nothing is installed a second Ctrl-C raises KeyboardInterrupt.
+    Without `install` a second Ctrl-C raises KeyboardInterrupt.
     """
     if _State.installed:
         _State.first, _State.ask = None, ask
@@ -152,7 +152,7 @@ def _act(number: int) -> None:
 
 
 def _unraisable(problem: Any) -> None:
-    """End the process where Python would swallow a KeyboardInterrupt: in a destructor, in gc."""
+    """End the process if Python swallows a KeyboardInterrupt in a destructor or in gc."""
     if issubclass(problem.exc_type, KeyboardInterrupt):
         leave()
     sys.__unraisablehook__(problem)

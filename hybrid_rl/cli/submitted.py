@@ -1,4 +1,4 @@
-"""Jobs that Submitit runs in other processes, on this machine or by Slurm, shown as they go."""
+"""Progress of jobs that Submitit runs in other processes, on this machine or by Slurm."""
 
 import math
 import os
@@ -19,9 +19,9 @@ PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted
 
 @contextmanager
 def watched(results: dict[int, Result]) -> Iterator[None]:
-    """Jobs that Submitit sends are named on the console as they are sent, begin and end.
+    """Print a line when a job of Submitit is sent, begins and ends.
 
-    One that is lost, as where its process was killed, is a failed one.
+    A lost job, whose process was killed, for example, counts as failed.
     """
     import submitit
 
@@ -55,12 +55,12 @@ class _Ended:
         self.result = result
 
     def results(self) -> list[JobReturn]:
-        """What Hydra's launcher asks for."""
+        """The result in the form that Hydra's launcher expects."""
         return [JobReturn(_return_value=self.result, status=JobStatus.COMPLETED)]
 
 
 def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.inf) -> None:
-    """Wait for the end of all jobs, `most` seconds at most, and say when each begins and ends."""
+    """Wait for the end of all jobs, at most `most` [s], and print when each begins and ends."""
     began, running = time.monotonic(), set()
     while len(results.keys() & jobs.keys()) < len(jobs) and time.monotonic() - began < most:
         for number, job in jobs.items():

@@ -25,16 +25,16 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import refuse_new_keys, refuse_unused
 from hybrid_rl.run.folder import made
 
-ACCELERATED = ("auto", "mjx", "warp")  # physics that would set up a GPU, were a world built here
+ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 
 
 class Task:
-    """A job of a sweep as Hydra calls it: what goes wrong in it becomes its result."""
+    """A job of a sweep as Hydra calls it; its errors become its result."""
 
     def __init__(self, job: Callable[[DictConfig], Any]) -> None:
         self.job = job
         self.results: dict[int, Result] = {}  # number of a job -> its result
-        self.labels: list[str] = []  # what sets each job apart from the others
+        self.labels: list[str] = []  # the overrides in which the jobs differ
 
     def __call__(self, config: DictConfig) -> Result:
         """Run one job."""
@@ -64,7 +64,7 @@ def _here(hydra: Any) -> bool:
 
 
 def _outcome(summary: Any) -> Result:
-    """What the table shows of a run that came to its end."""
+    """The result of a finished run in the table."""
     if not isinstance(summary, dict):
         return {}
     for name, called in (("final_eval", "evaluation"), ("final_return", "training return")):
@@ -75,7 +75,7 @@ def _outcome(summary: Any) -> Result:
 
 
 class Sweeper(BasicSweeper):
-    """Every combination of the values that were given, checked, run and reported."""
+    """Checks, runs and reports every combination of the given values."""
 
     def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
         """Hydra's: what to run, and by which launcher."""
@@ -83,10 +83,10 @@ class Sweeper(BasicSweeper):
         super().setup(hydra_context=hydra_context, task_function=self.task, config=config)
 
     def sweep(self, arguments: list[str]) -> Any:
-        """Run all jobs; ends the process where one of them failed.
+        """Run all jobs; end the process with the highest exit code if one failed.
 
         Raises:
-            UsageError: where one of them cannot run; then none of them does.
+            UsageError: if one of them cannot run; then none runs.
         """
         assert self.config is not None
         assert self.launcher is not None
@@ -147,10 +147,10 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
     """The overrides of each job, with a run folder of its own.
 
     Jobs with the same run_dir=X write into X/0, X/1, ...; jobs without one into
-    runs/TASK/ALGO/TIME_0, ..., which are made here, so that no other sweep takes them.
+    runs/TASK/ALGO/TIME_0, ..., which are created here, so that no other sweep uses them.
 
     Raises:
-        UsageError: where such a folder holds a run already.
+        UsageError: if such a folder holds a run already.
     """
     given = [config.run_dir for config in configs]
     complete = []
@@ -182,7 +182,7 @@ def _report(
     jobs: Sequence[Sequence[str]],
     results: dict[int, Result],
 ) -> None:
-    """Print the table of a sweep, and write what it says to jobs.json."""
+    """Print the table of a sweep, and write it to jobs.json."""
     rows = []
     for number, (label, overrides) in enumerate(zip(labels, jobs, strict=True)):
         given = [text for text in overrides if text.startswith(("run_dir=", "resume="))]

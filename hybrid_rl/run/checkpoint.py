@@ -1,7 +1,7 @@
 """Checkpoints that are complete or absent, and are restored bit for bit.
 
     FOLDER/STEP/state/         the leaves of the state, written by Orbax
-               /leaves.json    name -> shape, dtype, and PRNG kind where it is a key
+               /leaves.json    name -> shape, dtype, and PRNG implementation of a key
                /meta.json      further values of the caller
                /manifest.json  every file above with its size and SHA-256
 

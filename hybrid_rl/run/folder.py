@@ -1,4 +1,4 @@
-"""A run folder: where it is made, and its config.yaml, which holds what the run was built from.
+"""A run folder and its config.yaml, which holds what the run was built from.
 
 config.yaml names the version that wrote it, the single values of the configuration, and the
 SECTIONS with every interpolation resolved. A part that occurs several times, such as a model that

@@ -105,7 +105,7 @@ def _empty(leaf: jax.Array) -> dict:
 
 
 def _match(path: Path, kinds: dict[str, dict], wanted: dict, part: bool) -> None:
-    """Raises where a sound checkpoint is of another run than `wanted`."""
+    """Raise MisfitError if a sound checkpoint belongs to another run than `wanted`."""
     for name, leaf in wanted.items():
         here = f"{leaf.dtype}{list(leaf.shape)}"
         there = f"{kinds[name]['dtype']}{kinds[name]['shape']}" if name in kinds else "absent"

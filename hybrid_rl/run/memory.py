@@ -1,4 +1,4 @@
-"""How much memory a run takes, and whether the machine has it."""
+"""The memory that a run needs, and that the machine has."""
 
 import os
 from typing import Any
@@ -11,13 +11,13 @@ from hybrid_rl.training.loop import Loop
 
 
 def available() -> float:
-    """[bytes] of a device, or of the machine where the CPU is the device."""
+    """Memory of a device [bytes]; of the machine if the CPU is the device."""
     stats = jax.local_devices()[0].memory_stats() or {}
     return stats.get("bytes_limit") or os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def check(loop: Loop, program: Any) -> None:
-    """Raise MemoryError, with how many learners would fit, where the compiled program does not."""
+    """Raise MemoryError, with the number of learners that fit, if the program needs too much."""
     need, have = loop.memory(program), available()
     if need > have:
         learners = len(loop.seeds)
@@ -28,10 +28,10 @@ def check(loop: Loop, program: Any) -> None:
 
 
 def replay(run: Run) -> str:
-    """The size of the replay memories, in one line.
+    """A line about the size of the replay memories.
 
     Raises:
-        UsageError: where it is more than the machine has.
+        UsageError: if the machine has too little.
     """
     replay, learners = run.agent.replay, len(run.seeds)
     each = replay.nbytes(run.agent.spec)

@@ -1,4 +1,4 @@
-"""How a run is doing, on the terminal: a live bar, or plain lines in a file."""
+"""Progress of a run on the terminal: a live bar, or plain lines in a file."""
 
 import sys
 import threading
@@ -17,7 +17,7 @@ from rich.text import Text
 
 WINDOW = 30.0  # [s] over which the speed is measured
 PAUSE = 8.0  # [s] between two plain lines
-SHOWN = {  # scalar -> how it reads
+SHOWN = {  # scalar -> its format
     "train/return": "return {:,.1f}",
     "eval/return": "eval {:,.1f}",
     "eval/success": "success {:.0%}",
@@ -26,9 +26,9 @@ SHOWN = {  # scalar -> how it reads
 
 
 class Progress:
-    """Steps done of `total`, the latest scalars, speed, time left; a line at least every 10 s.
+    """Steps of `total`, the latest scalars, speed, time left; a line at least every 10 s.
 
-    unit: what a step is; steady: the step from which on the speed says how long the rest takes.
+    unit: of a step; steady: the step from which the speed is representative.
 
     with Progress(total, start, "halfcheetah sac") as progress:
         with progress.doing("compiling"):
@@ -43,8 +43,8 @@ class Progress:
         self.unit, self.steady = unit, steady
         self._scalars: dict[str, tuple[float, int]] = {}  # name -> value, step
         self._clock: deque[tuple[float, int]] = deque()  # ([s], step), the last WINDOW
-        self._spoke: float | None = None  # [s] latest plain line, or the start
-        self._unsaid = False
+        self._printed: float | None = None  # [s] latest plain line, or the start
+        self._pending = False
         self._task_now: tuple[str, float] | None = None  # what is going on, since when [s]
         self._live: Live | None = None
         self._lock = threading.RLock()
@@ -79,13 +79,13 @@ class Progress:
         if self._live is not None:
             self._live.stop()
             self._live = None
-        elif self._unsaid:
-            self._say()
+        elif self._pending:
+            self._print()
 
     def update(self, step: int, scalars: dict[str, float], say: bool | None = None) -> None:
-        """Shows where the run is; a scalar that is not given keeps its latest value.
+        """Show the step and scalars; a scalar that is not given keeps its latest value.
 
-        say: whether a plain line is due; None: where the last one is PAUSE ago.
+        say: whether to print a plain line; None: if the last one was PAUSE ago.
         """
         now = time.monotonic()
         self.step = step
@@ -97,13 +97,13 @@ class Progress:
         if self._live is not None:
             self._bar.update(self._task, completed=step)
             return
-        self._unsaid = True
-        if say or (say is None and (self._spoke is None or now - self._spoke >= PAUSE)):
-            self._say()
+        self._pending = True
+        if say or (say is None and (self._printed is None or now - self._printed >= PAUSE)):
+            self._print()
 
     @contextmanager
     def doing(self, what: str) -> Iterator[None]:
-        """What goes on meanwhile, for lines that come without an update."""
+        """Name the current activity in lines that are printed during the block."""
         self._task_now = what, time.monotonic()
         try:
             yield
@@ -111,7 +111,7 @@ class Progress:
             self._task_now = None
 
     def note(self, text: str) -> None:
-        """A line that stays."""
+        """Print a line above the display."""
         if self._live is not None:
             self._live.console.print(text, markup=False, highlight=False)
         else:
@@ -119,28 +119,28 @@ class Progress:
                 print(text, flush=True)
 
     def seconds_left(self) -> float | None:
-        """[s] to go at the present speed; None before there is one, and at the end."""
+        """Time left at the present speed [s]; None before the first update and at the end."""
         if len(self._clock) < 2 or self.step >= self.total:
             return None
         (then, before), (now, step) = self._clock[0], self._clock[-1]
         return (self.total - step) * (now - then) / (step - before) if step > before else None
 
     def _beat(self) -> None:
-        """A plain line whenever none came for PAUSE, also while a slow call is running."""
+        """Print a plain line whenever the last one was PAUSE ago, also during a slow call."""
         while not self._ended.wait(1.0):
-            if time.monotonic() - (self._spoke or self._began) >= PAUSE:
-                self._say()
+            if time.monotonic() - (self._printed or self._began) >= PAUSE:
+                self._print()
 
-    def _say(self) -> None:
-        """One plain line."""
+    def _print(self) -> None:
+        """Print a plain line."""
         with self._lock:
             share = self.step / self.total if self.total else 1.0
             count = f"{self.step:,}/{self.total:,} ({share:.0%})"
             print("  ".join([self.label, count, *self._numbers(False)]).strip(), flush=True)
-            self._spoke, self._unsaid = time.monotonic(), False
+            self._printed, self._pending = time.monotonic(), False
 
     def _numbers(self, old: bool) -> list[str]:
-        """The latest of everything, in words. old: also an evaluation of an earlier step."""
+        """The latest values as words. old: include an evaluation of an earlier step."""
         known = []
         for name, text in SHOWN.items():
             value, at = self._scalars.get(name, (None, 0))

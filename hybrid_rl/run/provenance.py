@@ -14,7 +14,7 @@ PACKAGES = ("jax", "jaxlib", "mujoco", "mujoco-mjx", "flax", "optax")
 
 
 def versions() -> dict[str, str | None]:
-    """Python's and each package's version; None where it is not installed."""
+    """Versions of Python and of each package; None if it is not installed."""
     installed: dict[str, str | None] = {
         "hybrid_rl": __version__,
         "python": platform.python_version(),

@@ -14,7 +14,7 @@ Row = dict[str, Any]
 
 
 class Gathered:
-    """The metrics since the last row of means; they come in parts and are averaged as one."""
+    """The metrics since the last row of means; added in parts and averaged together."""
 
     def __init__(self) -> None:
         self._parts: list[Metrics] = []
@@ -25,12 +25,12 @@ class Gathered:
         self._parts.append(selected)
 
     def take(self) -> Metrics:
-        """All of it [rounds, S]; nothing is left."""
+        """Return and remove all of it [rounds, S]."""
         parts, self._parts = self._parts, []
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def pack(self) -> tuple[list[str], np.ndarray | None]:
-        """Names [M] and one array [M, rounds, S], for a checkpoint; None where there is nothing."""
+        """Names [M] and one array [M, rounds, S], for a checkpoint; None if there are none."""
         if not self._parts:
             return [], None
         whole = self.take()
@@ -38,7 +38,7 @@ class Gathered:
         return list(whole), np.stack([np.asarray(m, np.float32) for m in whole.values()])
 
     def unpack(self, names: list[str], array: np.ndarray) -> None:
-        """Take up what `pack` gave."""
+        """Restore what `pack` returned."""
         self._parts = [dict(zip(names, np.asarray(array), strict=True))]
 
 
@@ -60,7 +60,7 @@ def episodes(
 ) -> list[Row]:
     """A row per episode that ended in the rounds after `start`.
 
-    ended: learner -> the step at which it diverged; from there on it has no rows.
+    ended: learner -> the step at which it diverged; it has no rows from there on.
     """
     return [
         {

@@ -285,7 +285,7 @@ class Session:
         self.progress.update(self.step, {**shown, **self._speed(), **scalars}, say)
 
     def final_returns(self) -> list[float | None]:
-        """Per seed the mean training return over the last tenth; None where it diverged."""
+        """Mean training return over the last tenth, per seed; None if it diverged."""
         tail = self.step - 0.1 * self.schedule.total_steps
         means = []
         for s, pairs in enumerate(self.returns):
@@ -295,5 +295,5 @@ class Session:
         return means
 
     def final_evaluations(self) -> list[float | None]:
-        """Per seed the last evaluation of mode full; None where it diverged."""
+        """Last evaluation of mode full, per seed; None if it diverged."""
         return [v if s not in self.diverged.ends else None for s, v in enumerate(self.final_eval)]

@@ -32,7 +32,7 @@ def start(*arguments):
 
 
 def ended(process, number):
-    """What was said on stdout, of a process that ended by `number`, with one line on stderr."""
+    """What was printed on stdout, of a process that ended by `number`, with one line on stderr."""
     out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (128 + number, f"hybrid_rl: {WORDS[number]}\n"), out
     return out
@@ -88,7 +88,7 @@ def press(code, *numbers):
 
 def test_a_run_is_asked_once_and_a_second_ctrl_c_ends_it():
     code = "with interrupt.answered(say):\n    say('ready')\n    time.sleep(60)\n"
-    process = press(code, signal.SIGINT, signal.SIGINT)  # the second one after it said 2
+    process = press(code, signal.SIGINT, signal.SIGINT)  # the second one after it printed 2
     ended(process, signal.SIGINT)
 
 

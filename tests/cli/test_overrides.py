@@ -1,4 +1,4 @@
-"""Which keys a run reads, and what is said of those that it does not read."""
+"""Which keys a run reads, and what is printed of those that it does not read."""
 
 import pytest
 from omegaconf import OmegaConf

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train, contents, demonstrate, run
+from tiny import TINY, call, call_train, contents, demonstrate, only_line, run
 
 from hybrid_rl import __version__, config, evaluate, figures, render
 from hybrid_rl import demonstrate as recording
@@ -44,14 +44,6 @@ def old(trained, tmp_path):
     summary["versions"]["hybrid_rl"] = "0.1.0"
     (folder / "summary.json").write_text(json.dumps(summary))
     return folder
-
-
-def only_line(capfd):
-    """The one line on stderr."""
-    line = capfd.readouterr().err
-    assert line.startswith("hybrid_rl: ")
-    assert line.count("\n") == 1
-    return line
 
 
 @pytest.mark.parametrize("algo", METHODS)

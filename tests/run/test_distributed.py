@@ -31,10 +31,10 @@ def together(*overrides):
 
 def rows(folder, seed):
     """What was measured of a learner, without times."""
-    found = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    result = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
     return [
         {name: value for name, value in row.items() if name not in TIMES}
-        for row in found
+        for row in result
         if row["seed"] == seed
     ]
 
@@ -45,8 +45,8 @@ def test_each_process_trains_its_share_and_goes_on_with_it(tmp_path, monkeypatch
     ends = together(*LINE, "num_seeds=3", f"run_dir={folder}")
     assert [code for _, code in ends] == [0, 0], ends
     shares = [folder / f"process_{i}" for i in range(2)]
-    kept = [json.loads((share / "summary.json").read_text()) for share in shares]
-    assert [summary["seeds"] for summary in kept] == [[0, 1], [2]]
+    summaries = [json.loads((share / "summary.json").read_text()) for share in shares]
+    assert [summary["seeds"] for summary in summaries] == [[0, 1], [2]]
     run(tmp_path / "alone", *LINE, "seed=2")
     assert rows(shares[1], 2) == rows(tmp_path / "alone", 2)
     monkeypatch.setattr("hybrid_rl.run.distributed.processes", lambda: (1, 2))

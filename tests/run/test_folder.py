@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 import pytest
-from tiny import TINY, call, call_train, contents, run
+from tiny import TINY, call, call_train, contents, only_line, run
 
 from hybrid_rl import evaluate, render
 from hybrid_rl.cli import command
@@ -54,14 +54,6 @@ def holder(tmp_path):
         assert process.stdout.readline() == "held\n"
         yield process, folder
         process.kill()
-
-
-def only_line(capfd):
-    """The one line on stderr."""
-    line = capfd.readouterr().err
-    assert line.startswith("hybrid_rl: ")
-    assert line.count("\n") == 1
-    return line
 
 
 def test_a_second_process_is_refused_and_names_the_first(holder, capfd):

@@ -1,4 +1,4 @@
-"""Rows are there once; what is said on the terminal; where numbers come from."""
+"""Rows are there once; what is printed on the terminal; where numbers come from."""
 
 import json
 import os
@@ -28,14 +28,14 @@ def lines(folder):
 
 def events(folder):
     """Every event of one TensorBoard folder, oldest file first."""
-    found = []
+    result = []
     for path in sorted(folder.glob("events*")):
         data = path.read_bytes()
         while data:
             (size,) = struct.unpack("<Q", data[:8])  # then 4 bytes of checksum, before and after
-            found.append(Event.FromString(data[12 : 12 + size]))
+            result.append(Event.FromString(data[12 : 12 + size]))
             data = data[16 + size :]
-    return found
+    return result
 
 
 def scalars(folder):
@@ -173,10 +173,12 @@ def test_plain_lines_come_at_once_and_then_every_few_seconds(capsys, now):
         for step in range(1010, 1200, 10):  # one second each
             now[0] += 1
             shown.update(step, {"train/return": 12.34, "perf/env_steps_per_s": 5e4, "x": 1.0})
-    said = capsys.readouterr().out.splitlines()
-    assert said[0] == "hopper sac  1,010/2,000 (50%)  return 12.3  50,000 decisions/s"
-    assert said[1] == "hopper sac  1,090/2,000 (55%)  return 12.3  50,000 decisions/s  0:01:31 left"
-    assert [line.split()[2] for line in said[2:]] == ["1,170/2,000", "1,190/2,000"]
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[0] == "hopper sac  1,010/2,000 (50%)  return 12.3  50,000 decisions/s"
+    assert (
+        printed[1] == "hopper sac  1,090/2,000 (55%)  return 12.3  50,000 decisions/s  0:01:31 left"
+    )
+    assert [line.split()[2] for line in printed[2:]] == ["1,170/2,000", "1,190/2,000"]
 
 
 def test_a_line_comes_within_ten_seconds_also_in_a_long_run(capsys, now):

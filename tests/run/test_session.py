@@ -120,9 +120,9 @@ def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp
                 assert call_train(*line) == 128 + signal.SIGTERM
             else:
                 assert run(folder, *SAC)["signal"] == signal.SIGTERM
-        found, line = summary(folder), [f"resume={folder}"]
-        assert step <= found["total_steps"] < step + 7
-        assert not found["finished"]
+        result, line = summary(folder), [f"resume={folder}"]
+        assert step <= result["total_steps"] < step + 7
+        assert not result["finished"]
     assert call_train(*line) == 0
     assert interrupt.difference(folder, whole) == ""
     assert summary(folder)["finished"]
@@ -151,15 +151,15 @@ def break_learner(patch, number, step):
 def finite(folder):
     """Whether the newest checkpoint is."""
     step = checkpoint.steps(folder / "checkpoints")[-1]
-    place = folder / "checkpoints" / str(step)
-    kinds = json.loads((place / "leaves.json").read_text())
+    parent = folder / "checkpoints" / str(step)
+    kinds = json.loads((parent / "leaves.json").read_text())
     like = {
         name: jax.ShapeDtypeStruct(tuple(kind["shape"]), kind["dtype"])
         for name, kind in kinds.items()
         if kind["dtype"] == "float32" and name.startswith("learners")
     }
-    found = checkpoint.restore(folder / "checkpoints", like, step, part=True)[1]
-    return bool(found) and all(np.isfinite(leaf).all() for leaf in found.values())
+    result = checkpoint.restore(folder / "checkpoints", like, step, part=True)[1]
+    return bool(result) and all(np.isfinite(leaf).all() for leaf in result.values())
 
 
 def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
@@ -185,9 +185,11 @@ def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
     assert others[0] == others[1]
     assert finite(folder)
     assert call_train(f"resume={folder}", "total_steps=700") == 1  # and it stays out
-    said = capfd.readouterr().err
-    assert said.startswith(f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the oth")
-    assert said.count("\n") == 1
+    printed = capfd.readouterr().err
+    assert printed.startswith(
+        f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the oth"
+    )
+    assert printed.count("\n") == 1
     assert {row["seed"] for row in rows(folder) if row["step"] > 251} == {0}
     assert rows(folder)[-1]["step"] == 700
     assert finite(folder)
@@ -201,8 +203,8 @@ def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path, capfd):
         patch.setattr(Evaluations, "__call__", lambda *given: [r | bad for r in call(*given)])
         with pytest.raises(DivergenceError) as error:
             run(folder, "algo=sac")
-    said = str(error.value)
-    assert said.startswith("seed 0, step 300: eval/return is not finite; checkpoint 200 is whole")
+    values = str(error.value)
+    assert values.startswith("seed 0, step 300: eval/return is not finite; checkpoint 200 is whole")
     assert checkpoint.steps(folder / "checkpoints") == [100, 200]
     assert integrity.verify(folder / "checkpoints" / "200") is None
     assert rows(folder)[-1]["diverged"] == "eval/return"
@@ -233,12 +235,12 @@ def test_the_speed_is_that_of_learning(whole):
 def test_a_run_says_what_to_expect(tmp_path, capsys):
     run(tmp_path / "a", "algo=sac", "total_steps=40")
     assert "all 40 decisions are random: random_steps=50" in capsys.readouterr().out
-    found = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
-    said = capsys.readouterr().out
-    assert "random:" not in said
-    assert said.count("for the whole run at ") == 1
-    assert "301/301 (100%)" in said
-    assert found["finished"]
+    result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
+    printed = capsys.readouterr().out
+    assert "random:" not in printed
+    assert printed.count("for the whole run at ") == 1
+    assert "301/301 (100%)" in printed
+    assert result["finished"]
 
 
 def test_the_last_line_has_both_returns():

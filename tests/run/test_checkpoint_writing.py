@@ -1,0 +1,185 @@
+"""Checkpoints are written while processes are killed, disks are full, and others read them."""
+
+import errno
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+from threading import Thread
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from states import assert_same, state_at
+
+from hybrid_rl.errors import CheckpointError
+from hybrid_rl.run import checkpoint, leaves
+
+
+@pytest.fixture
+def three(tmp_path):
+    for step in (10, 20, 30):
+        checkpoint.save(tmp_path, step, state_at(step), {"offset": step})
+    return tmp_path
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+import jax.numpy as jnp
+from hybrid_rl.run import checkpoint, leaves
+folder = Path(sys.argv[1])
+checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
+checkpoint._rename = lambda draft, path: os.kill(os.getpid(), signal.SIGKILL)
+checkpoint.save(folder, 2, {"x": jnp.zeros(3)}, {})
+"""
+
+
+def test_a_kill_before_the_rename_leaves_the_one_before(tmp_path):
+    done = subprocess.run([sys.executable, "-c", KILLED, str(tmp_path)], check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert (tmp_path / ".2.tmp").is_dir()
+    step, result, _, notes = checkpoint.restore(tmp_path, {"x": jnp.zeros(3)})
+    assert (step, result["x"].tolist(), notes) == (1, [1, 1, 1], [])
+    checkpoint.save(tmp_path, 3, {"x": jnp.zeros(3)}, {})
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "3"]
+
+
+BETWEEN = """
+import os, signal, sys
+from pathlib import Path
+import jax.numpy as jnp
+from hybrid_rl.run import checkpoint
+folder = Path(sys.argv[1])
+checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
+rename = Path.rename
+
+
+def killed(path, target):
+    rename(path, target)
+    if target.name == ".1.replaced.tmp":
+        os.kill(os.getpid(), signal.SIGKILL)
+Path.rename = killed
+checkpoint.save(folder, 1, {"x": jnp.zeros(3)}, {})
+"""
+
+
+def test_a_kill_between_the_renames_leaves_the_replaced_one(tmp_path):
+    done = subprocess.run([sys.executable, "-c", BETWEEN, str(tmp_path)], check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert not (tmp_path / "1").exists()
+    assert checkpoint.steps(tmp_path) == [1]
+    step, result, _, notes = checkpoint.restore(tmp_path, {"x": jnp.zeros(3)})
+    assert (step, result["x"].tolist(), notes) == (1, [1, 1, 1], [])
+    checkpoint.save(tmp_path, 2, {"x": jnp.zeros(3)}, {})
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["1", "2"]
+
+
+def test_what_another_process_wrote_stays(three):
+    """A session deletes what it saw at its start and what it wrote, also beyond its step."""
+    checkpoint.save(three, 60, state_at(60), {}, known={20, 30})
+    assert checkpoint.steps(three) == [30, 60]
+    checkpoint.save(three, 25, state_at(25), {}, known={30, 20})
+    assert checkpoint.steps(three) == [25, 60]
+    checkpoint.save(three, 40, state_at(40), {}, keep=1, known={25})
+    assert checkpoint.steps(three) == [40, 60]
+
+
+def test_a_folder_is_read_while_its_checkpoints_are_deleted(three, monkeypatch):
+    """Each time that one was read in part, its writer deletes it; a newer one is there."""
+    read, behind = leaves.read, [30, 40, 50]
+
+    def overtaken(path, like, part):
+        got = read(path, like, part)
+        if behind:
+            checkpoint.save(three, behind.pop(0) + 10, state_at(0), {}, keep=1)
+        return got
+
+    monkeypatch.setattr(leaves, "read", overtaken)
+    step, _, _, notes = checkpoint.restore(three, state_at(0))
+    assert (step, notes) == (60, [])
+
+
+def test_a_folder_is_read_while_a_thread_saves_and_deletes(tmp_path):
+    """Every state that is read is one that was saved, whole."""
+    states = {step: {"x": jnp.full(1000, step)} for step in range(1, 16)}
+    checkpoint.save(tmp_path, 1, states[1], {"step": 1}, keep=1)
+
+    def go_on():
+        for step in range(2, 16):
+            checkpoint.save(tmp_path, step, states[step], {"step": step}, keep=1)
+
+    writer = Thread(target=go_on)
+    writer.start()
+    seen = []
+    while writer.is_alive() or not seen:
+        step, result, meta, notes = checkpoint.restore(tmp_path, states[1])
+        assert (meta["step"], notes) == (step, [])
+        assert np.all(result["x"] == step)
+        seen.append(step)
+    writer.join()
+    assert seen == sorted(seen)
+    assert checkpoint.steps(tmp_path) == [15]
+
+
+def assert_untouched(folder):
+    assert sorted(path.name for path in folder.iterdir()) == ["20", "30"]
+    assert_same(checkpoint.restore(folder, state_at(0))[1], state_at(30))
+
+
+def test_a_write_that_fails_halfway_leaves_what_was_there(three, capfd):
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    big = state_at(40)._replace(replay={"obs": jnp.ones((1000, 100)), "none": jnp.zeros(1)})
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, limits[1]))  # [bytes] of any one file
+    try:
+        with pytest.raises(CheckpointError) as caught:
+            checkpoint.save(three, 40, big, {})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert "not written: File too large; checkpoint 30 is whole" in str(caught.value)
+    assert capfd.readouterr() == ("", "")
+    assert_untouched(three)
+
+
+def test_a_full_disk_is_one_clear_line(three, monkeypatch):
+    def full(path, leaves):
+        path.mkdir()
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(leaves, "write", full)
+    with pytest.raises(CheckpointError) as caught:
+        checkpoint.save(three, 40, state_at(40), {})
+    assert str(caught.value) == (
+        f"checkpoint 40 in {three} was not written: [Errno 28] No space left on device; "
+        "checkpoint 30 is whole"
+    )
+    assert_untouched(three)
+
+
+def test_a_disk_too_small_is_not_filled(three, monkeypatch):
+    usage = shutil.disk_usage(three)._replace(free=100)
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: usage)
+    monkeypatch.setattr(leaves, "write", lambda *_: pytest.fail("it was written to"))
+    with pytest.raises(CheckpointError, match="it needs 0 MB and the disk has 0 MB left"):
+        checkpoint.save(three, 40, state_at(40), {})
+    assert_untouched(three)
+
+
+def test_an_interrupt_leaves_no_draft(three, monkeypatch):
+    def interrupted(path, leaves):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(leaves, "write", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        checkpoint.save(three, 40, state_at(40), {})
+    assert_untouched(three)
+
+
+def test_it_says_nothing_on_the_terminal(tmp_path):
+    code = KILLED.replace("checkpoint._rename = ", "_ = ") + (
+        "checkpoint.restore(folder, {'x': jnp.zeros(3)})\n"
+    )
+    command = [sys.executable, "-c", code, str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

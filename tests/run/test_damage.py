@@ -1,0 +1,170 @@
+"""Damaged checkpoints, full disks, worlds and learners that break: one line, and nothing lost."""
+
+import json
+import re
+import resource
+import shutil
+
+import jax
+import jax.numpy as jnp
+import pytest
+from tiny import TINY, call, call_train, contents, only_line, run
+
+from hybrid_rl import evaluate
+from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.run import checkpoint, integrity, memory, rows, session
+from hybrid_rl.run.evaluations import Evaluations
+
+pytestmark = pytest.mark.xdist_group("damage")
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    """A run that is done."""
+    folder = tmp_path_factory.mktemp("trained") / "run"
+    run(folder, "algo=sac")
+    return folder
+
+
+@pytest.fixture
+def copied(trained, tmp_path):
+    """A run that is done, to harm."""
+    return shutil.copytree(trained, tmp_path / "run")
+
+
+def harm(folder):
+    """Change one byte in the middle of the largest file."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    largest = max(files, key=lambda path: path.stat().st_size)
+    data = bytearray(largest.read_bytes())
+    data[len(data) // 2] ^= 1
+    largest.write_bytes(data)
+
+
+def cut(folder):
+    """Leave half of the largest file."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    largest = max(files, key=lambda path: path.stat().st_size)
+    largest.write_bytes(largest.read_bytes()[: largest.stat().st_size // 2])
+
+
+@pytest.mark.parametrize("damage", [harm, cut])
+def test_a_damaged_checkpoint_is_passed_over(copied, capfd, damage):
+    damage(copied / "checkpoints" / "600")
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
+    assert "checkpoint 600 is skipped" in " ".join(capfd.readouterr().out.split())
+    assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
+    assert call_train(f"resume={copied}") == 0
+    printed = capfd.readouterr()
+    assert "checkpoint 600 is skipped" in printed.out
+    assert "continuing from step 500" in printed.out
+    assert printed.err == ""
+    assert integrity.verify(copied / "checkpoints" / "600") is None
+
+
+def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
+    for step in (500, 600):
+        harm(copied / "checkpoints" / str(step))
+    before = contents(copied)
+    assert call_train(f"resume={copied}") == 1
+    assert "holds no sound checkpoint" in only_line(capfd)
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}") == 1
+    assert "holds no sound checkpoint" in only_line(capfd)
+    assert contents(copied) == before
+
+
+def test_a_full_disk_leaves_the_last_checkpoint(copied, monkeypatch, capfd):
+    """The system refuses files beyond 1 kB, as on a full disk."""
+    before = contents(copied / "checkpoints")
+    save, limits = checkpoint.save, resource.getrlimit(resource.RLIMIT_FSIZE)
+
+    def save_on_a_full_disk(*arguments, **known):
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+        try:
+            save(*arguments, **known)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+    monkeypatch.setattr(checkpoint, "save", save_on_a_full_disk)
+    assert call_train(f"resume={copied}", "total_steps=700") == 1
+    printed = only_line(capfd)
+    assert "checkpoint 700" in printed
+    assert "File too large; checkpoint 600 is whole" in printed
+    assert contents(copied / "checkpoints") == before
+
+
+def test_a_full_disk_is_named(copied, capfd):
+    """Also where the system itself names no file: it refuses any longer than 1,000 bytes."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, limits[1]))
+    try:
+        assert call_train(f"resume={copied}", "total_steps=700") == 1
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    printed = only_line(capfd)
+    assert f"File too large: '{copied}/config.yaml'" in printed
+    assert checkpoint.steps(copied / "checkpoints") == [500, 600]
+    assert not list(copied.glob(".*"))
+
+
+def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, capfd):
+    """From decision 50 of an episode on, its reward is no number."""
+    sound = Pendulum.step
+
+    def step(world, state, action):
+        now = sound(world, state, action)
+        broken = state.info["decision"] >= 50
+        return now.replace(reward=jnp.where(broken, jnp.nan, now.reward))
+
+    folder = copied.with_name("broken")
+    with monkeypatch.context() as patch:
+        patch.setattr(Pendulum, "step", step)
+        line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
+        assert call_train(*line) == 1
+    assert only_line(capfd) == (
+        "hybrid_rl: seed 0, step 51: world/reward is not finite; checkpoint 50 is whole: "
+        "evaluate or resume it, or begin again with a lower learning rate\n"
+    )
+    assert not json.loads((folder / "summary.json").read_text())["finished"]
+    assert checkpoint.steps(folder / "checkpoints") == [50]
+    assert call_train(f"resume={folder}") == 0
+    theirs, ours = (copied / "metrics.jsonl", folder / "metrics.jsonl")
+    last = [json.loads(path.read_text().splitlines()[-1]) for path in (theirs, ours)]
+    assert last[0]["eval/return"] == pytest.approx(last[1]["eval/return"], rel=1e-3)
+
+
+def test_a_learner_that_breaks_is_named(copied, monkeypatch, capfd):
+    """A parameter that is no number is not saved."""
+    advance = session.Session._advance
+
+    def spoilt(self):
+        advance(self)
+        if self.step == 650:
+            leaves, form = jax.tree.flatten(self.state.learners)
+            leaves = [jnp.full_like(x, jnp.nan) if x.dtype == jnp.float32 else x for x in leaves]
+            self.state = self.state.replace(learners=jax.tree.unflatten(form, leaves))
+
+    monkeypatch.setattr(session.Session, "_advance", spoilt)
+    monkeypatch.setattr(rows, "infinite", lambda *_: {})
+    monkeypatch.setattr(Evaluations, "__call__", lambda *_: [{"eval/return": 0.0}])
+    assert call_train(f"resume={copied}", "total_steps=700") == 1
+    printed = only_line(capfd)
+    assert printed.startswith("hybrid_rl: seed 0, step 700: policy.")
+    assert " is not finite; checkpoint 600 is whole" in printed
+    assert checkpoint.steps(copied / "checkpoints") == [500, 600]
+
+
+def test_learners_that_do_not_fit_are_counted(tmp_path, monkeypatch, capfd):
+    """Before the first decision, from what the compiled program needs."""
+    monkeypatch.setattr(memory, "available", lambda: 2e5)  # 16 replay memories, but no more
+    line = [*TINY, "algo=sac", "num_seeds=16", f"run_dir={tmp_path / 'many'}"]
+    assert call_train(*line) == 1
+    printed = capfd.readouterr().err
+    assert printed.count("\n") == 1
+    result = re.search(r"num_seeds=16: the program would take .*; about (\d+) would fit", printed)
+    assert result is not None, printed
+    fits = int(result[1])
+    assert 0 < fits < 16
+    monkeypatch.chdir(tmp_path)
+    assert call_train(*line[:-1], f"num_seeds={fits}", "run_dir=few", "total_steps=50") == 0
