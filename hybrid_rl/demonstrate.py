@@ -116,13 +116,8 @@ def main() -> None:
     out = output("out", given["out"] or f"demonstrations/{task}.npz", (".npz",))
     recording = record(world, controller, params, episodes, seed)
     save(out, task, world.spec.dt, recording.decisions, recording.episode)
-<<<<<<< HEAD
     line = f"{out}: {episodes} episodes, {len(recording.episode):,} decisions, seed {seed}, return "
     returns = recording.returns
-=======
-    count, returns = len(recording.episode), recording.returns
-    line = f"{out}: {episodes} episodes, {count:,} decisions, seed {seed}, return "
->>>>>>> w/host
     line += f"{returns.mean():,.1f} ({returns.min():,.1f} to {returns.max():,.1f})"
     if recording.success is not None:
         line += f", {int(recording.success.sum())} succeeded"
