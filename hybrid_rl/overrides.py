@@ -142,11 +142,7 @@ def near(config: DictConfig, path: str) -> str:
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-<<<<<<< HEAD
-    """The question "; did you mean X?" with the closest of the `known`; "" if none is close."""
-=======
     """The end of a message: a hint at the closest of the `known`, or "" if none is close."""
->>>>>>> w/host
     close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {close[0]}?" if close else ""
 
