@@ -13,18 +13,19 @@ if __name__ == "__main__":
     interrupt.install()
 
 import sys
-from functools import cache
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import Any, cast
 
 from hydra import compose, initialize_config_dir
-from omegaconf import DictConfig, OmegaConf
+from hydra.errors import HydraException
+from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, read
 from hybrid_rl.config import CONF, analytic_tasks
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import plain, reached
+from hybrid_rl.overrides import plain, reached, search_path
 
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
 ARGUMENTS = (Argument("config_dir", "", "folder with configuration groups of yours"),)
@@ -53,30 +54,20 @@ def about(path: Path) -> str:
 def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
     """Group -> name -> what restricts it: analytic tasks, and methods that need one."""
     tasks = dict.fromkeys(analytic_tasks(conf), "analytic")
-    methods = {
-        path.stem: "analytic tasks"
-        for path in sorted((conf / "algo").glob("*.yaml"))
-        if _needs_an_analytic_world(path)
-    }
+    names = [path.stem for path in sorted((conf / "algo").glob("*.yaml"))]
+    more = [] if conf == CONF else [search_path(conf)]
+    with initialize_config_dir(str(CONF), version_base="1.3"):
+        methods = {name: "analytic tasks" for name in names if _needs_an_analytic_task(name, more)}
     return {"task": tasks, "algo": methods, "experiment": {}}
 
 
-def _needs_an_analytic_world(path: Path) -> bool:
-    """Whether a part of the method in a YAML file, demonstrations aside, holds the world."""
-    own: Any = OmegaConf.load(path)
-    raw = plain(cast(DictConfig, OmegaConf.merge(_parts(), own)))
-    read = reached(raw, ("controllers", "learners"))
-    return any(value == "${env}" and key != "recorded.world" for key, value in read.items())
-
-
-@cache
-def _parts() -> DictConfig:
-    """All parts with their defaults, as they are composed."""
-    with initialize_config_dir(str(CONF), version_base="1.3"):
-        parts = compose("train")
-    OmegaConf.set_struct(parts, False)
-    parts.controllers, parts.learners = {}, {}  # those of the default method
-    return parts
+def _needs_an_analytic_task(algo: str, more: Sequence[str]) -> bool:
+    """Whether a part of the method, demonstrations aside, holds the environment."""
+    with suppress(HydraException, OmegaConfBaseException):  # a file that the user has not finished
+        raw = plain(compose("train", [*more, f"algo={algo}"]))
+        read = reached(raw, ("controllers", "learners"))
+        return any(value == "${env}" and key != "recorded.world" for key, value in read.items())
+    return False
 
 
 def main() -> None:

@@ -102,25 +102,26 @@ def unused(config: DictConfig, typed: Iterable[Override], roots: Iterable[str]) 
         if select(raw, at) is LACKING:  # a group that spreads over the whole configuration
             continue
         if at not in read and not any(name.startswith(f"{at}.") for name in read):
-            lost[path] = ", ".join(_instead(read, at, select(raw, at)))
+            lost[path] = ", ".join(_instead(raw, read, at))
     return lost
 
 
-def _instead(read: dict[str, Any], path: str, value: Any) -> list[str]:
-    """Keys that are read and have the last name of `path`: a part for a part, a value for a value.
+def _instead(raw: dict[str, Any], read: dict[str, Any], path: str) -> list[str]:
+    """Keys that are read in place of `path`: a part for a part, a value for a value.
 
-    The ones that hold a value of their own, or else the ones that name another key.
+    They have its last name and a value of their own, or else they are what such a key refers to.
     """
-    last = path.rsplit(".", 1)[-1]
-    same = {
-        name: each
-        for name, each in read.items()
-        if name.rsplit(".", 1)[-1] == last
-        and each is not None
-        and isinstance(each, dict) == isinstance(value, dict)
-    }
-    own = [name for name, each in same.items() if not REFERENCE.fullmatch(str(each))]
-    return (own or list(same))[:MOST]
+    last, part = path.rsplit(".", 1)[-1], isinstance(select(raw, path), dict)
+    own, referred = [], []
+    for name, value in read.items():
+        link = REFERENCE.fullmatch(str(value))
+        at = source(raw, link[1]) if link else name
+        target = select(raw, at)
+        if name.rsplit(".", 1)[-1] != last or target in (None, LACKING) or at == path:
+            continue
+        if isinstance(target, dict) == part:
+            (referred if link else own).append(at)
+    return list(dict.fromkeys(own or referred))[:MOST]
 
 
 def near(config: DictConfig, path: str) -> str:
@@ -141,7 +142,7 @@ def near(config: DictConfig, path: str) -> str:
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """The question "; did you mean X?" with the closest of the `known`; "" if none is close."""
+    """The end of a message: a hint at the closest of the `known`, or "" if none is close."""
     close = difflib.get_close_matches(word, list(known), n=1)
     return f"; did you mean {close[0]}?" if close else ""
 

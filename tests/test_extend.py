@@ -125,7 +125,7 @@ def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path, capfd):
         ),
         (
             ["algo=nn_mppi", "proposal=toy"],
-            "proposal: nn_mppi does not use it; it uses model_planner",
+            "proposal: nn_mppi does not use it; it uses model_proposal",
         ),
     ],
     ids=lambda given: given[-1] if isinstance(given, list) else "",
