@@ -1,4 +1,4 @@
-"""Every part through a model whose planning state is not the observation: x = (o, o^2)."""
+"""Every part with a model whose planning state is not the observation: x = (o, o^2)."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -87,13 +87,13 @@ class Scale:
 
 
 @dataclass(frozen=True)
-class Shown:
-    """Demonstrations that are random."""
+class RandomDemonstrations:
+    """Random demonstrations."""
 
     def load(self) -> Transition:
         rng = np.random.default_rng(0)
-        obs, no = rng.normal(size=(20, SPEC.obs)), np.zeros(20)
-        return Transition(obs, rng.uniform(-1, 1, (20, SPEC.act)), no, no, no, obs)
+        obs, zero = rng.normal(size=(20, SPEC.obs)), np.zeros(20)
+        return Transition(obs, rng.uniform(-1, 1, (20, SPEC.act)), zero, zero, zero, obs)
 
 
 MODEL = Squares()
@@ -107,7 +107,7 @@ LEARNERS = {
     "model": ModelLearner(MODEL, REWARD, batch_size=2),
     "sac": SAC(POLICY, CRITIC, MODEL, batch_size=2),
     "ddpg": DDPG(POLICY, CRITIC, MODEL, batch_size=2),
-    "bc": BehaviourCloning(POLICY, Shown(), MODEL, batch_size=2, updates=1),
+    "bc": BehaviourCloning(POLICY, RandomDemonstrations(), MODEL, batch_size=2, updates=1),
     "mbpo": MBPO(SAC(POLICY, CRITIC, batch_size=2), MODEL, REWARD, POLICY, steps=2),
 }
 
@@ -145,14 +145,10 @@ CONTROLLERS = {
 }
 
 
-def agent(controller: Any, *learners: str) -> Agent:
-    """A controller at work while the model, a policy and a critic learn."""
+def final(controller: str, *learners: str) -> tuple[Params, dict[str, Array]]:
+    """The parameters after eight decisions of a controller, and the last metrics."""
     parts = {name: LEARNERS[name] for name in learners}
-    return Agent(Episode(WORLD, 10), controller, parts, Replay(50), random_steps=2)
-
-
-def final(agent: Agent) -> tuple[Params, dict[str, Array]]:
-    """The parameters after eight decisions, and the last metrics."""
+    agent = Agent(Episode(WORLD, 10), CONTROLLERS[controller], parts, Replay(50), random_steps=2)
 
     def run(key: Array) -> tuple:
         state, metrics = jax.lax.scan(agent.step, agent.init(key), jnp.arange(8))
@@ -161,20 +157,49 @@ def final(agent: Agent) -> tuple[Params, dict[str, Array]]:
     return jax.jit(run)(jax.random.key(0))
 
 
+@pytest.fixture(scope="module")
+def params() -> Params:
+    """Those of the model, the reward, a policy and a critic, after a few updates."""
+    return final("actor", "model", "sac")[0]
+
+
+def follow(controller: Any, params: Params, decisions: int = 3) -> tuple:
+    """Actions [T, m] and metrics [T] of a controller."""
+
+    def decide(carry: tuple, key: Array) -> tuple:
+        env, state = carry
+        u, state, metrics = controller.act(params, state, env.obs, key)
+        return (WORLD.step(env, u), state), (u, metrics)
+
+    def run(key: Array) -> tuple:
+        keys = jax.random.split(key, decisions)
+        first = (WORLD.reset(key), controller.init(SPEC))
+        return jax.lax.scan(decide, first, keys)[1]
+
+    return jax.jit(run)(jax.random.key(0))
+
+
 @pytest.mark.parametrize("name", CONTROLLERS)
-def test_controllers_see_the_planning_state(name) -> None:
-    """While the model and soft actor-critic learn; actions and metrics are finite."""
-    params, metrics = final(agent(CONTROLLERS[name], "model", "sac"))
-    assert params.model["weights"].shape == (N, N + SPEC.act)
-    assert params.policy["state"].mean.shape == (N,)
-    for metric, value in metrics.items():
-        assert np.isfinite(value).all() or (name == "stages" and np.isnan(value)), metric
+def test_controllers_see_the_planning_state(name: str, params: Params) -> None:
+    """Actions are finite, and so are all metrics that apply; also without exploration."""
+    controller = CONTROLLERS[name]
+    greedy = controller.greedy()
+    for each in [controller] if greedy == controller else [controller, greedy]:
+        u, metrics = follow(each, params)
+        assert np.isfinite(u).all()
+        for metric, values in metrics.items():
+            last = values[-1]
+            assert np.isfinite(last) or (name == "stages" and np.isnan(last)), metric
 
 
-@pytest.mark.parametrize("name", ["sac", "ddpg", "bc", "mbpo"])
-def test_learners_see_the_planning_state(name) -> None:
+@pytest.mark.parametrize(
+    ("name", "controller"),
+    [("sac", "actor"), ("ddpg", "noisy"), ("bc", "actor"), ("mbpo", "stages")],
+)
+def test_learners_see_the_planning_state(name: str, controller: str) -> None:
     """Networks have its size, and statistics its mean: squares are positive."""
-    params, metrics = final(agent(CONTROLLERS["actor"], "model", name))
+    params, metrics = final(controller, "model", name)
+    assert params.model["weights"].shape == (N, N + SPEC.act)
     assert params.policy["state"].mean.shape == params.reward["state"].mean.shape == (N,)
     assert float(params.policy["state"].mean[SPEC.obs :].min()) > 0
     first = jax.tree.leaves(params.policy["trunk"])[1]
@@ -182,12 +207,3 @@ def test_learners_see_the_planning_state(name) -> None:
     learned = [value for key, value in metrics.items() if key.startswith((f"{name}/", "model/"))]
     assert learned
     assert np.isfinite(learned).all()
-
-
-def test_greedy_controllers_act_as_well() -> None:
-    """Evaluation uses them."""
-    params = final(agent(CONTROLLERS["actor"], "model", "sac"))[0]
-    for name, controller in CONTROLLERS.items():
-        greedy = controller.greedy()
-        u = greedy.act(params, greedy.init(SPEC), jnp.ones(SPEC.obs), jax.random.key(0))[0]
-        assert np.isfinite(u).all(), name

@@ -1,4 +1,4 @@
-"""The Gaussian process against its formula in NumPy."""
+"""The Gaussian process against its equations in NumPy."""
 
 import jax
 import jax.numpy as jnp
@@ -23,7 +23,7 @@ def measured(count: int) -> tuple:
 
 
 def by_hand(s, y, at) -> tuple[float, float]:
-    """Mean and deviation at `at` [2]."""
+    """Mean and standard deviation at `at` [2]."""
 
     def k(a, b):
         return 0.49 * np.exp(-((a[:, None] - b[None]) ** 2).sum(-1) / (2 * 0.09))
@@ -33,8 +33,8 @@ def by_hand(s, y, at) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("count", [0, 3, 8, 11])
-def test_prediction_is_the_formula(count) -> None:
-    """Empty, half full, full, and with the oldest gone."""
+def test_predictions_follow_the_equations(count) -> None:
+    """With an empty, a partly filled and a full ring, and after the oldest are overwritten."""
     with jax.enable_x64(True):
         state, s, y = measured(count)
         at = np.array([0.1, -0.2])
@@ -45,8 +45,8 @@ def test_prediction_is_the_formula(count) -> None:
         assert float(best) == pytest.approx(y.max())
 
 
-def test_loss_is_the_likelihood_of_what_comes() -> None:
-    """Of y with the noise of a measurement."""
+def test_loss_is_the_negative_log_likelihood_of_the_next_measurement() -> None:
+    """Its variance includes the noise of a measurement."""
     with jax.enable_x64(True):
         state, s, y = measured(5)
         at = np.array([0.3, 0.3])

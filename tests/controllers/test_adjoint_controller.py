@@ -1,4 +1,4 @@
-"""The adjoint controller on problems whose answer is known."""
+"""The adjoint controller on problems with known solutions."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -30,7 +30,7 @@ class Cart:
 
 @dataclass(frozen=True)
 class Speed:
-    """J = sum of speeds, less a price of action."""
+    """J = sum of speeds - price * sum of u^2."""
 
     price: float = 0.0
 
@@ -57,19 +57,19 @@ class Half:
 
 
 def act(controller: AdjointController, decisions: int = 0, key: int = 0) -> tuple:
-    """One decision at rest."""
+    """One decision of a cart at rest."""
     params = Params(decisions=jnp.asarray(decisions))
     return controller.act(params, controller.init(SPEC), jnp.zeros(2), jax.random.key(key))
 
 
 def actions(controller: AdjointController, keys: int, decisions: int = 0) -> Array:
-    """The actions [keys] that as many random keys give."""
+    """Actions [keys], one for each of as many random keys."""
     one = jax.vmap(lambda key: act(controller, decisions, key)[0][0])
     return jax.jit(one)(jnp.arange(keys))
 
 
 def test_one_step_is_the_closed_form() -> None:
-    """U = mu + Sigma g: each of T decisions after it is 0.1 faster, so g = 0.1 T."""
+    """The action is mu + Sigma g: an action adds 0.1 to T later speeds, so g = 0.1 T."""
     for horizon in (1, 5):
         controller = AdjointController(Cart(), Speed(), Half(), horizon)
         u, _, metrics = act(controller)
@@ -80,7 +80,7 @@ def test_one_step_is_the_closed_form() -> None:
 
 
 def test_shooting_finds_the_optimum() -> None:
-    """sum of speeds - u^2: u_t = 0.1 (T - t) / 2, by many small steps."""
+    """For sum of speeds - u^2: u_t = 0.1 (T - t) / 2, after many small steps."""
     horizon = 6
     controller = AdjointController(
         Cart(), Speed(price=1.0), horizon=horizon, iterations=200, gain=0.1
@@ -92,13 +92,13 @@ def test_shooting_finds_the_optimum() -> None:
 
 
 def test_actions_stay_within_bounds() -> None:
-    """For any slope of the return."""
+    """Also for a large gain."""
     controller = AdjointController(Cart(), Speed(), Half(), 20, iterations=5, gain=100.0)
     assert float(jnp.abs(actions(controller, 20)).max()) <= 1
 
 
-def test_corrections_fade_with_the_decisions_of_the_episode() -> None:
-    """W is decay^decisions times itself, however long the run."""
+def test_corrections_decay_with_the_decisions_of_the_episode() -> None:
+    """W is multiplied by decay^decisions of the episode, not of the run."""
     controller = AdjointController(Cart(), Speed(), Half(), 1, gain_decay=0.5)
     state, params = controller.init(SPEC), Params(decisions=jnp.asarray(1000))
     for decision in range(3):
@@ -106,8 +106,8 @@ def test_corrections_fade_with_the_decisions_of_the_episode() -> None:
         assert float(u[0]) == pytest.approx(-0.2 + 0.5**decision * 0.25 * 0.1, abs=1e-6)
 
 
-def test_the_objective_gets_the_action_of_the_decision_before() -> None:
-    """Zero at the first decision."""
+def test_the_objective_gets_the_previous_action() -> None:
+    """It is zero at the first decision."""
 
     @dataclass(frozen=True)
     class Before(Speed):

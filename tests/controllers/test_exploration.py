@@ -1,4 +1,4 @@
-"""KL-E3: the adjoint controller around an equilibrium."""
+"""Controllers around an equilibrium: KL-E3, its guard, and the goal controller."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -27,10 +27,10 @@ START = jnp.array([0.3, 0.02, -0.01, 0.0, 0.1, 0.0])
 
 @dataclass(frozen=True)
 class Right:
-    """J = cart position, summed; its memory counts the decisions."""
+    """J = sum of the cart's positions; its memory counts the decisions."""
 
     def init(self, spec: Spec) -> Array:
-        """None yet."""
+        """No decision yet."""
         return jnp.zeros(())
 
     def prepare(self, params: Any, memory: Array, x: Array, u_before: Array, key: Array) -> tuple:
@@ -46,7 +46,7 @@ KLE3 = AdjointController(LocalLinear(WORLD), Right(), PI, 8, gain=5.0, lyapunov=
 
 
 def follow(controller: Any, decisions: int, x: Array = START) -> tuple:
-    """Observations [T, 6], actions [T, 1], states and metrics [T] in the world."""
+    """Observations [T, 6], actions [T, 1], controller states and metrics [T]."""
 
     def decide(carry: tuple, key: Array) -> tuple:
         x, state = carry
@@ -63,7 +63,7 @@ def own(x: Array) -> Array:
     return jax.vmap(lambda x: PI.mean((), x))(x)
 
 
-def test_correction_is_the_printed_formula() -> None:
+def test_the_correction_is_that_of_the_thesis() -> None:
     """u = pi + R^-1 h' rho, with h the model's control directions over a decision."""
     model = LocalLinear(WORLD)
 
@@ -71,14 +71,14 @@ def test_correction_is_the_printed_formula() -> None:
         return model.step((), x, u)
 
     path = adjoint.roll(step, lambda x: PI.mean((), x), START, jnp.zeros((8, 1)))
-    found = adjoint.adjoint(step, lambda x: PI.mean((), x), Right().value, path)
+    around = adjoint.adjoint(step, lambda x: PI.mean((), x), Right().value, path)
     h = jax.jacfwd(step, argnums=1)(START, path.u[0])
     u = KLE3.act(Params(), KLE3.init(WORLD.spec), START, jax.random.key(0))[0]
-    np.testing.assert_allclose(u, path.u[0] + 5.0 * h.T @ found.costate[1], rtol=1e-5)
+    np.testing.assert_allclose(u, path.u[0] + 5.0 * h.T @ around.costate[1], rtol=1e-5)
 
 
-def test_horizon_holds_its_corrections_around_the_measured_state() -> None:
-    """They are planned every 8 decisions, and added to the policy at the measured state."""
+def test_horizon_adds_its_plan_to_the_policy_at_the_measured_state() -> None:
+    """A plan is made every 8 decisions and then followed."""
     x, u, state, _ = follow(replace(KLE3, apply="horizon"), 16)
     np.testing.assert_array_equal(state.count, np.arange(1, 17))
     np.testing.assert_array_equal(state.memory, np.arange(1, 17))
@@ -90,7 +90,7 @@ def test_horizon_holds_its_corrections_around_the_measured_state() -> None:
 
 
 def test_search_keeps_the_best_window() -> None:
-    """It earns no less than the whole plan, by the model, and is one part of it."""
+    """By the model its return is at least that of the whole plan, of which it is one part."""
     searching = replace(KLE3, apply="search")
     plans = {
         name: c.act(Params(), c.init(WORLD.spec), START, jax.random.key(0))
@@ -104,8 +104,8 @@ def test_search_keeps_the_best_window() -> None:
     assert np.sum(np.diff(on.astype(int)) == 1) <= 1  # one window
 
 
-def test_search_earns_no_less_than_no_correction() -> None:
-    """Where every part of the plan overshoots, none of it acts."""
+def test_search_is_never_worse_than_no_correction() -> None:
+    """If every part of the plan overshoots, none is executed."""
 
     @dataclass(frozen=True)
     class Gentle(Right):
@@ -125,8 +125,8 @@ def test_search_earns_no_less_than_no_correction() -> None:
         assert float(metrics["planner/planned_return"]) == pytest.approx(wanted, abs=1e-6)
 
 
-def test_record_by_hand() -> None:
-    """V, its change under the policy, and the bound, of the exact model."""
+def test_lyapunov_metrics_follow_their_definitions() -> None:
+    """V, its change under the policy, and the bound, with the exact model."""
     controller = replace(KLE3, model=Exact(WORLD), horizon=3)
     begin = controller.init(WORLD.spec)
     _, state, metrics = jax.jit(controller.act)(Params(), begin, START, jax.random.key(0))
@@ -150,15 +150,15 @@ def test_record_by_hand() -> None:
     assert float(metrics["planner/lyapunov_bound"]) == pytest.approx(max(apart), abs=0.02)
 
 
-def test_value_falls_under_the_regulator() -> None:
-    """V decreases at every decision of the exact world."""
+def test_the_lyapunov_function_decreases_under_the_regulator() -> None:
+    """At every decision of the nonlinear environment."""
     quiet = replace(KLE3, gain=1e-9)
     values = np.asarray(follow(quiet, 300)[3]["planner/lyapunov"])
     assert (np.diff(values) < 0).all()
 
 
-def test_level_is_never_left() -> None:
-    """Guarded, V stays below the level and corrections still act; unguarded it exceeds it."""
+def test_the_guard_keeps_the_state_in_its_level_set() -> None:
+    """With the guard V stays below the level and corrections still act; without it V exceeds it."""
     level = 100.0
     free = replace(KLE3, model=Exact(WORLD), gain=10.0, horizon=3)
     guarded = GuardedController(free, free.model, PI, level)
@@ -172,8 +172,8 @@ def test_level_is_never_left() -> None:
     assert np.nanmax(follow(free, 300, near)[3]["planner/lyapunov"]) > level
 
 
-def test_the_goal_is_the_maximum_for_a_number_of_decisions() -> None:
-    """Without a policy the action is the goal; a policy leads there."""
+def test_the_goal_is_the_maximum_of_the_target() -> None:
+    """Without a policy the action is the goal; a policy drives there and gets a new one in time."""
 
     @dataclass(frozen=True)
     class Peak:

@@ -22,16 +22,16 @@ class Still:
         return jnp.zeros(())
 
     def act(self, params: Any, state: Array, obs: Array, key: Array) -> tuple:
-        """The same action everywhere."""
+        """The constant action."""
         return jnp.full(SPEC.act, 0.2), state + 1, {"planner/count": state}
 
     def greedy(self) -> "Still":
-        """Itself."""
+        """The same controller."""
         return self
 
 
 def noise(controller: Any, count: int = 20_000) -> np.ndarray:
-    """What was added to the inner action [count, m]."""
+    """The noise [count, m] that was added to the inner action."""
 
     def decide(state: Any, at: tuple[Array, Array]) -> tuple:
         key, decisions = at
@@ -44,26 +44,26 @@ def noise(controller: Any, count: int = 20_000) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("kind", "std", "greatest"), [("normal", 0.1, 0.55), ("uniform", 0.1 / 3**0.5, 0.1)]
+    ("kind", "std", "largest"), [("normal", 0.1, 0.55), ("uniform", 0.1 / 3**0.5, 0.1)]
 )
-def test_white_noise_has_its_standard_deviation(kind, std, greatest) -> None:
+def test_white_noise_has_its_standard_deviation(kind, std, largest) -> None:
     """It is uncorrelated in time, and the uniform one is bounded."""
     e = noise(NoisyController(Still(), kind, level=0.1))
     np.testing.assert_allclose(e.std(0), std, rtol=0.03)
     np.testing.assert_allclose(e.mean(0), 0, atol=0.004)
     assert np.abs(np.mean(e[1:] * e[:-1], 0)).max() < 0.03 * std**2
-    assert np.abs(e).max() <= greatest + 1e-6
+    assert np.abs(e).max() <= largest + 1e-6
 
 
-def test_ou_noise_has_its_variance_and_its_memory() -> None:
-    """level^2 / (2 theta), forgotten by exp(-theta t); theta t is 0.1 a decision here."""
+def test_ou_noise_has_its_variance_and_its_correlation() -> None:
+    """level^2 / (2 theta), with correlation exp(-theta t); theta dt = 0.1 here."""
     e = noise(NoisyController(Still(), "ou", level=0.3, theta=5.0), 100_000)
     variance = 0.09 * 0.02 / (1 - 0.9**2)
     np.testing.assert_allclose(e.var(0), variance, rtol=0.06)
     np.testing.assert_allclose(np.mean(e[7:] * e[:-7], 0), variance * 0.9**7, rtol=0.1)
 
 
-def test_it_decays_and_is_bounded() -> None:
+def test_noise_decays_and_actions_are_bounded() -> None:
     """Linearly to zero after `until` decisions, or by `decay`; actions stay within -1 and 1."""
     e = noise(NoisyController(Still(), "normal", level=0.1, until=1000), 2000)
     np.testing.assert_allclose(e[1000:], 0, atol=1e-7)
@@ -74,15 +74,15 @@ def test_it_decays_and_is_bounded() -> None:
 
 
 def test_held_noise_is_drawn_every_few_decisions() -> None:
-    """Five equal values in a row, and others after them."""
+    """Five equal values in sequence, then five others."""
     e = noise(NoisyController(Still(), "held", level=0.1, hold=5), 1000)[:, 0].reshape(200, 5)
     np.testing.assert_array_equal(e, e[:, :1] * np.ones(5))
     assert e[:, 0].std() == pytest.approx(0.1, rel=0.15)
     assert len(np.unique(e[:, 0])) == 200
 
 
-def test_it_keeps_the_inner_controller_and_evaluation_has_only_that() -> None:
-    """Its state and metrics come through; `greedy` leaves the noise out."""
+def test_noise_keeps_the_inner_controller_and_evaluation_removes_the_noise() -> None:
+    """Its state and metrics are passed on; `greedy` returns only that controller."""
     controller = NoisyController(Still())
     _, state, metrics = controller.act(
         Params(), controller.init(SPEC), jnp.zeros(1), jax.random.key(0)

@@ -1,4 +1,4 @@
-"""The sampling controller on candidates that are known."""
+"""The sampling controller with known candidates."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -36,33 +36,33 @@ class Cart:
 
 @dataclass(frozen=True)
 class Grid:
-    """Candidate k does u = k / K all along."""
+    """Candidate k has u = k / K at all times."""
 
     def init(self, spec: Spec, quantile: Array) -> Array:
         """The action."""
         return quantile
 
     def __call__(self, params: Params, carry: Array, x: Array, plan: Array, noise: Array) -> tuple:
-        """The same action again."""
+        """The constant action."""
         return jnp.full(1, carry), jnp.zeros(()), carry
 
 
 @dataclass(frozen=True)
 class Closing:
-    """A policy at rest, and a critic that says 250 of it."""
+    """A policy of zero action, and a critic of constant value 250."""
 
     def mean(self, params: Any, x: Array) -> Array:
         """No action."""
         return jnp.zeros(1)
 
     def value(self, params: Any, x: Array, u: Array) -> Array:
-        """Much."""
+        """A constant."""
         return jnp.full((), 250.0)
 
 
 @pytest.mark.parametrize("ends", [False, True])
 def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
-    """The reward network's output at x and u, whatever the chance that the episode ends there."""
+    """The reward network's output at x and u, whether or not episodes end."""
     reward = RewardNetwork(hidden=(8,), ends=ends)
     objective = PredictedReturn(reward, discount=0.9, critic=Closing(), policy=Closing())
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
@@ -82,7 +82,7 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
 
 
 def test_densities_of_several_distributions_are_refused() -> None:
-    """They would be compared."""
+    """The weights would compare them."""
     mixture = MixtureProposal(Grid(), Grid())
     objective = PredictedReturn(RewardNetwork())
     SamplingController(Cart(), objective, mixture)

@@ -48,7 +48,7 @@ def follow(controller: Any, decisions: int) -> tuple[Array, dict[str, Array]]:
 
 
 def test_each_stage_acts_for_its_decisions_and_the_last_to_the_end() -> None:
-    """Three of a, then b, whose own state begins when it begins to act."""
+    """Three decisions of a, then b, whose state starts when it starts to act."""
     np.testing.assert_array_equal(follow(STAGES, 6)[0], [0, 1, 2, 10, 11, 12])
     np.testing.assert_array_equal(follow(STAGES.greedy(), 5)[0], [0, 1, 2, -10, -9])
     alone = StagesController({"a": Counts("a", 4.0)})
@@ -56,7 +56,7 @@ def test_each_stage_acts_for_its_decisions_and_the_last_to_the_end() -> None:
 
 
 def test_a_metric_of_another_stage_does_not_apply() -> None:
-    """It is NaN, which a mean over environments leaves out; what all have is a number."""
+    """It is NaN, which a mean over environments omits; metrics of all stages are numbers."""
     metrics = follow(STAGES, 4)[1]
     np.testing.assert_array_equal(metrics["planner/both"], [0, -1, -2, -10])
     np.testing.assert_array_equal(metrics["planner/a"], [0, 1, 2, np.nan])
@@ -68,7 +68,7 @@ def test_a_metric_of_another_stage_does_not_apply() -> None:
 
 
 @pytest.mark.parametrize("decisions", [(), (1, 2), (0,)])
-def test_bad_numbers_of_decisions_are_named(decisions) -> None:
-    """One for each stage but the last."""
+def test_bad_numbers_of_decisions_are_refused(decisions) -> None:
+    """Each stage but the last needs one."""
     with pytest.raises(ValueError, match=r"stages.decisions=.* needs 1 whole numbers above 0"):
         StagesController(STAGES.stages, decisions)

@@ -10,8 +10,8 @@ from hybrid_rl.core.domain import Box
 BOX = Box(coordinates=(2, 0), low=(-1.0, 0.0), high=(1.0, 4.0))
 
 
-def test_points_and_coordinates_of_a_box() -> None:
-    """Uniform samples fill it; coordinates are picked and put back."""
+def test_a_box_samples_points_and_selects_coordinates() -> None:
+    """Uniform samples fill the box; coordinates are selected and replaced."""
     s = np.asarray(BOX.sample(20_000, jax.random.key(0)))
     np.testing.assert_allclose(s.mean(0), [0, 2], atol=0.05)
     np.testing.assert_allclose([s.min(0), s.max(0)], [BOX.low, BOX.high], atol=0.01)
@@ -35,7 +35,7 @@ def test_distance_outside_is_squared_and_averaged() -> None:
         ({"low": (2.0,)}, r"domain.low=\[2.0\]: must lie below domain.high=\[1.0\]"),
     ],
 )
-def test_bad_boxes_are_named(fields, words) -> None:
-    """One line."""
+def test_bad_boxes_are_refused(fields, words) -> None:
+    """The error names the field."""
     with pytest.raises(ValueError, match=words):
         Box(**fields)

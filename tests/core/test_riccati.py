@@ -17,7 +17,7 @@ WEIGHTS = (5.0, 50.0, 50.0, 20.0, 700.0, 700.0)
 
 
 def test_value_is_the_cost_of_the_regulator() -> None:
-    """e' P e is the sum over a long time."""
+    """e' P e is the cost summed over a long time."""
     A, B = np.array([[1.0, 0.1], [0.3, 1.1]]), np.array([[0.0], [0.2]])
     Q, R = np.diag([1.0, 2.0]), np.array([[0.5]])
     K, P = riccati.regulator(A, B, Q, R)
@@ -38,9 +38,9 @@ def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
 
 
 def test_gains_tend_to_those_of_continuous_time() -> None:
-    """K [N per unit] for Q diag(5 50 50 20 700 700), R 1, as decisions become ever shorter.
+    """K [N per unit] for Q = diag(5 50 50 20 700 700), R = 1, with very short decisions.
 
-    A decision of 0.01 s is 25% away from continuous time: an action then is held.
+    With decisions of 0.01 s the gains differ by 25%, since an action is held constant.
     """
     A, B = analytic.at_equilibrium(CartDoublePendulum())
     held = np.eye(7)
@@ -51,8 +51,8 @@ def test_gains_tend_to_those_of_continuous_time() -> None:
     np.testing.assert_allclose(K, continuous, rtol=1e-3)
 
 
-def test_gains_are_those_of_value_iteration() -> None:
-    """P <- Q + A' P (A - B K), many times, from Q; and they hold the rods upright."""
+def test_gains_equal_those_of_value_iteration() -> None:
+    """P <- Q + A' P (A - B K), repeated from Q; the closed loop is stable."""
     policy = Regulator(CartDoublePendulum(), WEIGHTS, (FORCE**2,))
     A, B = analytic.at_equilibrium(policy.world)
     Q, R = np.diag(WEIGHTS), np.array([[FORCE**2]])
@@ -64,37 +64,37 @@ def test_gains_are_those_of_value_iteration() -> None:
     assert np.abs(np.linalg.eigvals(A - B @ K)).max() < 1
 
 
-def test_point_mass_by_hand() -> None:
-    """Its Jacobians are those of two double integrators."""
+def test_the_point_mass_is_two_double_integrators() -> None:
+    """Its Jacobians, by the matrix exponential."""
     A, B = analytic.at_equilibrium(PointMass())
     block = expm(0.1 * np.array([[0, 1.0, 0], [0, 0, 2.0], [0, 0, 0]]))
     np.testing.assert_allclose(A[np.ix_([0, 2], [0, 2])], block[:2, :2], atol=1e-12)
     np.testing.assert_allclose(B[[0, 2], 0], block[:2, 2], atol=1e-12)
 
 
-def test_an_environment_that_is_not_analytic_is_named() -> None:
-    """MuJoCo's cart and pole has no Jacobian here."""
+def test_an_environment_that_is_not_analytic_is_refused() -> None:
+    """Here the cart and pole of MuJoCo."""
     with pytest.raises(ValueError, match=r"equilibrium\.world=Cartpole: needs an analytic env"):
         Regulator(Cartpole("native"))
 
 
 @pytest.mark.parametrize("weights", [(1.0, 2.0), (0.0,)])
-def test_weights_that_do_not_fit_are_named(weights) -> None:
+def test_bad_weights_are_refused(weights) -> None:
     """Too many, or not positive."""
     with pytest.raises(ValueError, match="state_weights"):
         Regulator(CartDoublePendulum(), weights).solve()
 
 
-def test_solved_inside_a_compiled_program() -> None:
-    """The solution is a constant of the program."""
+def test_the_regulator_is_solved_inside_a_compiled_program() -> None:
+    """The solution is a constant of that program."""
     policy = Regulator(PointMass(), (2.0,))
     x = np.array([0.9, 0.1, 0.3, 0.0])
     inside = jax.jit(lambda x: policy.mean((), x))(x)
     np.testing.assert_allclose(inside, policy.mean((), x), rtol=1e-6)
 
 
-def test_free_coordinates_are_the_best_for_v() -> None:
-    """V without the cart's position is the minimum of V over positions, found by trying them."""
+def test_free_coordinates_minimise_the_lyapunov_function() -> None:
+    """V without the cart's position is the minimum of V over a grid of positions."""
     counted = Regulator(CartDoublePendulum(), (5.0, 50.0, 50.0, 20.0, 700.0, 700.0), (1600.0,))
     free = replace(counted, free=(0,))
     x = np.array([0.5, 0.02, -0.03, 0.1, 0.2, -0.1])
@@ -102,5 +102,5 @@ def test_free_coordinates_are_the_best_for_v() -> None:
         positions = np.tile(x, (4001, 1))
         positions[:, 0] = np.linspace(-2, 2, 4001)
         values = jax.vmap(counted.lyapunov)(positions)
-        found = jax.vmap(free.lyapunov)(positions)
-        np.testing.assert_allclose(found, values.min(), rtol=1e-4)
+        minimum = jax.vmap(free.lyapunov)(positions)
+        np.testing.assert_allclose(minimum, values.min(), rtol=1e-4)

@@ -24,8 +24,8 @@ def propose(carry: Array, x: Array, a: Array, noise: Array) -> tuple[Array, Arra
     return v, v.sum() + carry, carry + 1
 
 
-def test_imagine_is_the_plain_loop() -> None:
-    """Given equal noise, every path is the one that a Python loop rolls."""
+def test_imagine_equals_a_plain_loop() -> None:
+    """With equal noise, every path equals that of a Python loop."""
     x, plan = jnp.array([0.3, -0.2, 0.5]), jnp.arange(8.0).reshape(T, M) / 10
     noise = jax.random.normal(jax.random.key(3), (K, T, M))
     got = sampling.imagine(step, propose, jnp.zeros(K), x, plan, noise)
@@ -40,8 +40,8 @@ def test_imagine_is_the_plain_loop() -> None:
 
 
 @pytest.mark.parametrize("shifted", [0.0, 1e4])
-def test_weights_are_the_printed_formula(shifted: float) -> None:
-    """exp(S / lambda) over its sum, whatever constant is added to S."""
+def test_weights_follow_their_equation(shifted: float) -> None:
+    """exp(S / lambda) over its sum, also with a constant added to S."""
     s = np.random.default_rng(0).normal(size=(K, T))
     got = sampling.weights(jnp.float32(s + shifted), 0.5)
     want = np.exp(s / 0.5) / np.exp(s / 0.5).sum(0)
@@ -49,7 +49,7 @@ def test_weights_are_the_printed_formula(shifted: float) -> None:
 
 
 def test_weights_with_density_and_normalisation() -> None:
-    """The density joins the exponent; normalised returns have deviation one."""
+    """The density is added to the exponent; normalised returns have a standard deviation of 1."""
     rng = np.random.default_rng(1)
     s, log_prob = rng.normal(size=(K, T)), rng.normal(size=(K, T))
     got = sampling.weights(jnp.float32(100 * s), 2.0, True, jnp.float32(log_prob))
@@ -57,7 +57,7 @@ def test_weights_with_density_and_normalisation() -> None:
     np.testing.assert_allclose(got, raw / raw.sum(0), rtol=1e-3)
 
 
-def test_plan_reaches_the_path_integral() -> None:
+def test_the_weighted_mean_converges_to_the_path_integral() -> None:
     """For v ~ N(0, 1) and S = b v the weighted mean tends to b / lambda (no p in the weight)."""
     v = jax.random.normal(jax.random.key(0), (400_000, 1))
     w = sampling.weights(0.6 * v, 0.5)
@@ -66,14 +66,14 @@ def test_plan_reaches_the_path_integral() -> None:
     assert float((squared * v).sum()) == pytest.approx(0.6 / 0.5 / 2, abs=0.02)
 
 
-def test_effective_samples() -> None:
-    """K where all count alike, 1 where one takes all."""
+def test_effective_samples_range_from_one_to_the_number_of_samples() -> None:
+    """K for equal weights, 1 if only one is not zero."""
     assert sampling.effective_samples(jnp.full((K, 1), 1 / K))[0] == pytest.approx(K)
     assert sampling.effective_samples(jnp.eye(K)[:, :1])[0] == pytest.approx(1)
 
 
-def test_shift() -> None:
-    """The second row comes first, zeros come last."""
+def test_shift_drops_the_first_action() -> None:
+    """The second action is first, `rest` is last."""
     plan = jnp.arange(6.0).reshape(3, 2)
     np.testing.assert_array_equal(sampling.shift(plan), [[2, 3], [4, 5], [0, 0]])
     np.testing.assert_array_equal(sampling.shift(plan, 7.0), [[2, 3], [4, 5], [7, 7]])

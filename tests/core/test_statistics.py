@@ -6,8 +6,8 @@ import numpy as np
 from hybrid_rl.core import statistics
 
 
-def test_the_first_batches_count_alike() -> None:
-    """After ten batches, mean and deviation are those of all rows together."""
+def test_the_first_batches_have_equal_weights() -> None:
+    """After ten batches, mean and standard deviation are those of all rows together."""
     rows = np.random.default_rng(0).normal([1.0, -5.0], [2.0, 0.1], size=(10, 64, 2))
     stats = statistics.init(2)
     for batch in rows:
@@ -16,8 +16,8 @@ def test_the_first_batches_count_alike() -> None:
     np.testing.assert_allclose(stats.std, rows.reshape(-1, 2).std(0), rtol=1e-3)
 
 
-def test_colour_undoes_whiten() -> None:
-    """Also where an entry never changes, which stays finite."""
+def test_denormalise_is_the_inverse_of_normalise() -> None:
+    """Also for an entry that never changes, which stays finite."""
     batch = jnp.float32([[1.0, 7.0], [3.0, 7.0]])
     stats = statistics.update(statistics.init(2), batch)
     for x in batch:
@@ -26,8 +26,8 @@ def test_colour_undoes_whiten() -> None:
         np.testing.assert_allclose(statistics.denormalise(stats, white), x, rtol=1e-5)
 
 
-def test_small_entries_are_whitened_in_their_own_units():
-    """A deviation of 1e-4 or 1e-7 becomes 1; rounding errors beside a large mean do not."""
+def test_small_entries_are_normalised_in_their_own_units():
+    """A standard deviation of 1e-4 or 1e-7 becomes 1; rounding errors of a large mean do not."""
     rng = np.random.default_rng(0)
     rows = rng.normal([0.0, 0.0, 1000.0], [1e-4, 1e-7, 1e-5], size=(512, 3))
     stats = statistics.update(statistics.init(3), jnp.float32(rows))
@@ -37,7 +37,7 @@ def test_small_entries_are_whitened_in_their_own_units():
 
 
 def test_changes_have_the_floor_of_the_states_they_come_from():
-    """What changes by rounding errors alone is not whitened to noise of size one."""
+    """An entry that changes only by rounding errors is not normalised to noise of size one."""
     x = np.float32(np.random.default_rng(0).normal(100.0, 1.0, size=(512, 1)))
     errors = jnp.asarray((x + np.float32(1e-6)) - x)
     state = statistics.update(statistics.init(1), jnp.asarray(x))

@@ -1,4 +1,4 @@
-"""The file of demonstrations: what goes in comes out, and what is wrong with it is one line."""
+"""The file of demonstrations: saved decisions are loaded, and bad files are refused."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +19,7 @@ LAST = np.cumsum(LENGTHS) - 1
 
 
 def decisions() -> Transition:
-    """Three episodes of numbers told apart: one terminates, one is truncated, one just ends."""
+    """Three episodes of distinct numbers: terminated, truncated, and with neither flag."""
     rng = np.random.default_rng(0)
     flags = np.zeros((2, N))
     flags[0, LAST[0]] = flags[1, LAST[1]] = 1
@@ -29,19 +29,19 @@ def decisions() -> Transition:
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    """A sound file."""
+    """A valid file."""
     save(tmp_path / "deep" / "file.npz", "pendulum", 0.05, decisions(), EPISODE)
     return tmp_path / "deep" / "file.npz"
 
 
 def loaded(file: Path, /, **fields: object) -> Transition:
-    """What a task takes from it."""
+    """The decisions that a task loads from it."""
     return Demonstrations(
         **{"file": str(file), "task": "pendulum", "world": Pendulum()} | fields
     ).load()
 
 
-def test_what_was_saved_is_loaded(file: Path) -> None:
+def test_saved_decisions_are_loaded(file: Path) -> None:
     """In float32, and the episode that ended with neither flag is truncated."""
     got, put = loaded(file), decisions()
     put.truncated[LAST[2]] = 1
@@ -50,8 +50,8 @@ def test_what_was_saved_is_loaded(file: Path) -> None:
 
 
 @pytest.mark.parametrize("episodes", [1, 2, 3])
-def test_the_first_episodes_are_taken(file: Path, episodes: int) -> None:
-    """All of their decisions, and no more."""
+def test_the_first_episodes_are_loaded(file: Path, episodes: int) -> None:
+    """All of their decisions and no others."""
     got = loaded(file, episodes=episodes)
     count = sum(LENGTHS[:episodes])
     np.testing.assert_array_equal(got.obs, decisions().obs[:count].astype(np.float32))
@@ -67,14 +67,14 @@ def test_the_first_episodes_are_taken(file: Path, episodes: int) -> None:
         ({"file": "nowhere.npz"}, "nowhere.npz: no such file; `python -m hybrid_rl.demonstrate`"),
     ],
 )
-def test_a_file_that_does_not_fit_is_refused(file: Path, fields: dict, words: str) -> None:
+def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str) -> None:
     """Another task, rate or number."""
     with pytest.raises(ValueError, match=words):
         loaded(file, **fields)
 
 
 def _changed(**arrays: object) -> dict:
-    """What a sound file holds, some of it replaced; None: left out."""
+    """The arrays of a valid file, some of them replaced; None: omitted."""
     whole = {**decisions()._asdict(), "episode": EPISODE, "task": "pendulum", "sizes": (3, 1)}
     whole |= {"dt": 0.05} | arrays
     return {name: value for name, value in whole.items() if value is not None}
@@ -107,10 +107,8 @@ def _with(array: np.ndarray, at: int, value: float) -> np.ndarray:
     ],
     ids=lambda given: "" if isinstance(given, dict) else given[:20],
 )
-def test_a_file_that_contradicts_itself_is_refused(
-    tmp_path: Path, arrays: dict, words: str
-) -> None:
-    """And its fault is named."""
+def test_an_inconsistent_file_is_refused(tmp_path: Path, arrays: dict, words: str) -> None:
+    """The error names the fault."""
     np.savez(tmp_path / "bad.npz", **_changed(**arrays))
     with pytest.raises(ValueError, match=words):
         loaded(tmp_path / "bad.npz")
@@ -118,7 +116,7 @@ def test_a_file_that_contradicts_itself_is_refused(
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
 def test_a_file_cut_short_is_refused(file: Path, share: float) -> None:
-    """Wherever it was cut."""
+    """At any length."""
     data = file.read_bytes()
     file.write_bytes(data[: int(share * len(data))])
     with pytest.raises(ValueError, match=r"is damaged, cut short, or no \.npz"):
@@ -126,7 +124,7 @@ def test_a_file_cut_short_is_refused(file: Path, share: float) -> None:
 
 
 def test_other_bytes_and_bare_arrays_are_refused(tmp_path: Path) -> None:
-    """Nothing but an .npz is read."""
+    """Only an .npz is read."""
     (tmp_path / "a.npz").write_text("obs, action\n")
     np.save(tmp_path / "b.npy", np.zeros(3))
     for name in ("a.npz", "b.npy"):
@@ -135,8 +133,8 @@ def test_other_bytes_and_bare_arrays_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("worlds", [1, 2])
-def test_a_memory_begins_with_them(file: Path, worlds: int) -> None:
-    """Every draw is a demonstrated decision with its successor, and cut stretches end."""
+def test_a_memory_begins_with_the_demonstrations(file: Path, worlds: int) -> None:
+    """Every sample is a demonstrated decision with its successor; cut stretches are truncated."""
     shown = Demonstrations(str(file), "pendulum", Pendulum())
     replay, spec = Replay(100, shown), Pendulum().spec
     memory = replay.init(spec, worlds)
@@ -153,8 +151,8 @@ def test_a_memory_begins_with_them(file: Path, worlds: int) -> None:
     np.testing.assert_array_equal(truncated, 1 - put.terminated[last])
 
 
-def test_a_memory_smaller_than_them_is_refused(file: Path) -> None:
-    """Rather than to forget some of them silently."""
+def test_a_memory_smaller_than_the_demonstrations_is_refused(file: Path) -> None:
+    """No demonstrations are dropped silently."""
     shown = Demonstrations(str(file), "pendulum", Pendulum())
     with pytest.raises(ValueError, match=r"replay\.capacity=11: the demonstrations alone have 12"):
         Replay(11, shown)

@@ -1,4 +1,4 @@
-"""The replay memory against a list."""
+"""The replay memory against the transitions that were added."""
 
 import jax
 import jax.numpy as jnp
@@ -12,7 +12,7 @@ SPEC = Spec(obs=2, act=1, dt=0.1)
 
 
 def transition(time: int, worlds: int) -> Transition:
-    """Decision `time` of every world, all numbers told apart."""
+    """Decision `time` of every environment, all numbers distinct."""
     base = 100.0 * time + jnp.arange(worlds, dtype=jnp.float32)
     obs = jnp.stack([base, base + 0.25], -1)
     flags = jnp.full(worlds, time % 3 == 0)
@@ -29,8 +29,8 @@ def filled(capacity: int, worlds: int, times: int) -> tuple[Replay, Memory]:
 
 
 @pytest.mark.parametrize(("capacity", "worlds", "times"), [(50, 1, 20), (12, 1, 40), (12, 3, 11)])
-def test_rows_come_back_with_their_successors(capacity: int, worlds: int, times: int) -> None:
-    """Every drawn row is one that was added and is still held; its next action follows it."""
+def test_sampled_transitions_have_their_successors(capacity: int, worlds: int, times: int) -> None:
+    """Every sample was added and not overwritten; its next action is that of its successor."""
     replay, memory = filled(capacity, worlds, times)
     batch = replay.sample(memory, SPEC, 500, jax.random.key(0))
     time, world = np.divmod(np.asarray(batch.obs[:, 0]), 100)
@@ -45,7 +45,7 @@ def test_rows_come_back_with_their_successors(capacity: int, worlds: int, times:
     np.testing.assert_array_equal(batch.truncated, time % 3 != 0)
 
 
-def test_bytes_are_told_before() -> None:
-    """Nbytes is what init allocates."""
+def test_the_size_in_bytes_is_known_before_allocation() -> None:
+    """`nbytes` is what `init` allocates."""
     replay = Replay(1000)
     assert replay.init(SPEC, 4).rows.nbytes == replay.nbytes(SPEC)

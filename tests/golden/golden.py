@@ -1,9 +1,9 @@
-"""Metrics and parameters of every method and every experiment after a few dozen decisions.
+"""Metrics and parameters of every method and every experiment after 48 decisions.
 
     python tests/golden/golden.py record   writes golden.json
-    python tests/golden/golden.py compare  compares with it, and ends with 1 where a number moved
+    python tests/golden/golden.py compare  compares with it; the exit code is 1 if a number differs
 
-For a change that must not move a number: record before it, compare after it, on the same machine,
+For changes that must not affect results: record before, compare after, on the same machine,
 since float32 rounds differently on another processor. Networks, batches and horizons are cut down;
 the method, the task and every other setting are those of the configuration.
 """
@@ -33,7 +33,7 @@ from hybrid_rl.training.loop import Loop  # noqa: E402
 
 FILE = HERE / "golden.json"
 DECISIONS = 48
-MOST = {  # greatest value of a setting, wherever it stands
+MAXIMUM = {  # of a setting, wherever it occurs
     "batch_size": 4,
     "samples": 6,
     "horizon": 3,
@@ -49,26 +49,26 @@ MOST = {  # greatest value of a setting, wherever it stands
 
 
 def cases() -> dict[str, list[str]]:
-    """Name -> overrides: every method on the pendulum, every experiment by each of its methods."""
-    found = {algo: ["task=pendulum", f"algo={algo}"] for algo in options("algo")}
+    """Overrides by name: methods on the pendulum, and experiments with each of their methods."""
+    overrides = {algo: ["task=pendulum", f"algo={algo}"] for algo in options("algo")}
     for experiment in options("experiment"):
         with initialize_config_dir(str(config.CONF), version_base="1.3"):
             whole = compose("train", [f"experiment={experiment}"], return_hydra_config=True)
         compared = OmegaConf.select(whole, "hydra.sweeper.params.algo")
         for algo in compared.split(",") if compared else [whole.algo]:
-            found[f"{experiment} {algo}"] = [f"experiment={experiment}", f"algo={algo}"]
-    return found
+            overrides[f"{experiment} {algo}"] = [f"experiment={experiment}", f"algo={algo}"]
+    return overrides
 
 
 def cut(node: Any) -> None:
-    """Cut the sizes down in place, here and below."""
+    """Limit the sizes in `node` and below, in place."""
     for key, value in node.items():
         if isinstance(value, DictConfig):
             cut(value)
         elif key == "hidden":
             node[key] = [8 for _ in value]
-        elif key in MOST and isinstance(value, (int, float)):
-            node[key] = min(value, MOST[key])
+        elif key in MAXIMUM and isinstance(value, (int, float)):
+            node[key] = min(value, MAXIMUM[key])
         elif isinstance(value, ListConfig):
             for item in value:
                 if isinstance(item, DictConfig):
@@ -76,7 +76,7 @@ def cut(node: Any) -> None:
 
 
 def digest(tree: Any) -> str:
-    """Of all leaves, whatever their order."""
+    """A digest of all leaves in any order."""
     each = [hashlib.sha1(np.asarray(leaf).tobytes()).hexdigest() for leaf in jax.tree.leaves(tree)]
     return hashlib.sha1(" ".join(sorted(each)).encode()).hexdigest()[:12]
 
@@ -88,7 +88,7 @@ def size(tree: Any) -> float:
 
 
 def outcome(overrides: list[str]) -> dict[str, Any]:
-    """What a method logged, learned, and does without exploration."""
+    """The metrics of a method, its parameters, and its actions without exploration."""
     whole = config.load(overrides)
     with tempfile.TemporaryDirectory() as folder:
         if whole.pretrain:
@@ -101,10 +101,10 @@ def outcome(overrides: list[str]) -> dict[str, Any]:
         program = loop.compile(state)
         state, metrics = program(state, jnp.int32(0), jnp.int32(DECISIONS))
         params = jax.tree.map(lambda leaf: leaf[0], jax.vmap(run.agent.params)(state))
-    found: dict[str, Any] = {}
+    means: dict[str, Any] = {}
     for name, values in sorted(metrics.items()):
         known = np.asarray(values)[~np.isnan(np.asarray(values, np.float32))]
-        found[name] = float(known.mean(dtype=np.float64)) if known.size else None
+        means[name] = float(known.mean(dtype=np.float64)) if known.size else None
     learned = {
         name: [digest(value), size(value)]
         for name, value in params._asdict().items()
@@ -116,11 +116,11 @@ def outcome(overrides: list[str]) -> dict[str, Any]:
         first = controller.init(run.agent.spec)
         u = jax.jit(controller.act)(params, first, obs, jax.random.key(7))[0]
         actions[mode] = [float(value) for value in u]
-    return {"metrics": found, "learned": learned, "actions": actions}
+    return {"metrics": means, "learned": learned, "actions": actions}
 
 
 def moved(before: Any, after: Any, where: str = "") -> list[str]:
-    """What differs between two outcomes, a line each."""
+    """The differences between two outcomes, a line each."""
     if isinstance(before, dict):
         lines = [f"{where}{key}: gone" for key in before.keys() - after.keys()]
         lines += [f"{where}{key}: new" for key in after.keys() - before.keys()]
@@ -141,7 +141,7 @@ def moved(before: Any, after: Any, where: str = "") -> list[str]:
 
 
 def main() -> None:
-    """The command; further words choose the cases that contain one of them."""
+    """The command; further arguments choose the cases whose names contain one of them."""
     mode, words = sys.argv[1], sys.argv[2:]
     known = json.loads(FILE.read_text()) if FILE.exists() else {}
     wrong = 0

@@ -1,4 +1,4 @@
-"""Behaviour cloning: a known policy is found again, and experience changes nothing of it."""
+"""Behaviour cloning recovers a known policy and does not depend on experience."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from hybrid_rl.types import Batch, Params, Spec, Transition
 
 SPEC = Spec(obs=3, act=2, dt=0.1)
 GAIN = np.array([[0.5, -0.3, 0.2], [-0.4, 0.1, 0.6]])
-STD = 0.2  # of the expert's hand before the squashing
+STD = 0.2  # of the expert's noise before tanh
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Shown:
     count: int = 4000
 
     def load(self) -> Transition:
-        """Its decisions; only states and actions count."""
+        """Its decisions; only states and actions are numbers."""
         rng = np.random.default_rng(0)
         x = rng.normal(size=(self.count, 3)).astype(np.float32)
         z = x @ GAIN.T + STD * rng.normal(size=(self.count, 2))
@@ -32,7 +32,7 @@ class Shown:
 
 
 def train(learner: BehaviourCloning, steps: int, fill: float = jnp.nan) -> CloningState:
-    """The state after `steps` updates beside experience that is all `fill`."""
+    """The state after `steps` updates, with a batch of experience that is all `fill`."""
     shapes = {"obs": (3,), "next_obs": (3,), "action": (2,), "next_action": (2,)}
     batch = Batch(*(jnp.full((4, *shapes.get(name, ())), fill) for name in Batch._fields))
 
@@ -43,8 +43,8 @@ def train(learner: BehaviourCloning, steps: int, fill: float = jnp.nan) -> Cloni
     return jax.jit(lambda s: jax.lax.scan(one, s, keys)[0])(learner.init(jax.random.key(0), SPEC))
 
 
-def test_a_linear_policy_is_found_again() -> None:
-    """Its mean, and the deviation of its hand."""
+def test_a_linear_policy_is_recovered() -> None:
+    """Its mean, and the standard deviation of its noise."""
     policy = TanhGaussian(hidden=(32,), log_std_activation="relu")
     known = train(BehaviourCloning(policy, Shown(), learning_rate=3e-3), 3000).policy
     x = np.random.default_rng(1).normal(size=(500, 3)).astype(np.float32)
@@ -53,16 +53,16 @@ def test_a_linear_policy_is_found_again() -> None:
     assert float(sigma.mean()) == pytest.approx(STD, rel=0.1)
 
 
-def test_experience_does_not_touch_it() -> None:
-    """Whatever the batch of experience holds, numbers or none: the same bits."""
+def test_experience_does_not_change_the_policy() -> None:
+    """The result is equal bit for bit for a batch of NaN and one of numbers."""
     learner = BehaviourCloning(TanhGaussian(hidden=(8,)), Shown(100))
-    ours, theirs = train(learner, 20, jnp.nan), train(learner, 20, 7.0)
-    jax.tree.map(np.testing.assert_array_equal, ours, theirs)
-    assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(ours))
+    one, other = train(learner, 20, jnp.nan), train(learner, 20, 7.0)
+    jax.tree.map(np.testing.assert_array_equal, one, other)
+    assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(one))
 
 
 def test_actions_at_the_edge_are_bounded() -> None:
-    """A grip of exactly 1 has no infinite likelihood."""
+    """An action of exactly 1 has a finite likelihood."""
 
     @dataclass(frozen=True)
     class Closed(Shown):
@@ -77,7 +77,7 @@ def test_actions_at_the_edge_are_bounded() -> None:
 
 
 @pytest.mark.parametrize("fields", [{"edge": 1.0}, {"learning_rate": 0.0}])
-def test_bad_fields_are_named(fields: dict) -> None:
-    """One clear line."""
+def test_bad_fields_are_refused(fields: dict) -> None:
+    """The error names the field."""
     with pytest.raises(ValueError, match=f"cloning_learner.{next(iter(fields))}"):
         BehaviourCloning(TanhGaussian(hidden=(8,)), Shown(), **fields)

@@ -1,4 +1,4 @@
-"""Deterministic policy gradients on problems whose values are known."""
+"""Deterministic policy gradients on problems with known values."""
 
 from dataclasses import replace
 from functools import partial
@@ -18,7 +18,7 @@ B = 64
 
 
 def learner(**fields: float) -> DDPG:
-    """A small learner that is quick on small problems."""
+    """A small learner with high rates."""
     quick = {"policy_learning_rate": 1e-3, "critic_learning_rate": 3e-3, "tau": 0.05}
     critic = EnsembleQ(hidden=(32, 32), members=1)
     return DDPG(TanhGaussian(hidden=(32,)), critic, **(quick | fields))
@@ -49,7 +49,7 @@ def value(ddpg: DDPG, state: DDPGState, u: float) -> float:
 
 @pytest.mark.parametrize("best", [0.5, -0.3])
 def test_the_policy_finds_the_best_action(best) -> None:
-    """Where nothing follows, Q is the reward, there and elsewhere."""
+    """At terminal transitions Q is the reward, also of other actions."""
     ddpg = learner()
     state = train(ddpg, partial(batch, terminated=1.0, truncated=0.0, best=best), 3000)
     assert float(ddpg.policy.mean(state.policy, jnp.zeros(1))[0]) == pytest.approx(best, abs=0.1)
@@ -58,7 +58,7 @@ def test_the_policy_finds_the_best_action(best) -> None:
 
 
 def test_a_time_limit_is_bootstrapped_through() -> None:
-    """Q of the best action for ever is r / (1 - gamma), although every transition is truncated."""
+    """Q of the best action is r / (1 - gamma), although every transition is truncated."""
     ddpg = learner(discount=0.5)
     state = train(ddpg, partial(batch, terminated=0.0, truncated=1.0, best=0.5), 4000)
     assert value(ddpg, state, 0.5) == pytest.approx(2.0, abs=0.15)
@@ -66,8 +66,8 @@ def test_a_time_limit_is_bootstrapped_through() -> None:
 
 
 @pytest.mark.parametrize("normalise", [False, True])
-def test_the_policy_sees_states_in_their_deviation(normalise) -> None:
-    """With `normalise` the statistics are those of the batches; gradients leave them alone."""
+def test_the_policy_normalises_states_by_the_batches(normalise) -> None:
+    """With `normalise` the statistics are those of the batches; gradients do not change them."""
     ddpg = replace(learner(), policy=TanhGaussian(hidden=(8,), normalise=normalise))
 
     def far(key: Array) -> Batch:

@@ -1,4 +1,4 @@
-"""Imagined data in a model whose every step is known."""
+"""Imagined data from a model whose every step is known."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +17,7 @@ B = 10
 
 @dataclass(frozen=True)
 class Counting:
-    """x' = x + 1, whatever is done; a reward of x; the episode ends at 2.5 and beyond."""
+    """x' = x + 1 for any action; reward x; the episode ends above 2.5."""
 
     def lift(self, params: Any, obs: Array) -> Array:
         """The observation."""
@@ -32,11 +32,11 @@ class Counting:
         return x[0], jnp.where(x[0] > 2.5, 20.0, -20.0)
 
     def mean(self, params: Any, x: Array) -> Array:
-        """What `sample` is around."""
+        """The action of `sample`."""
         return -x[:1]
 
     def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
-        """-x, exactly."""
+        """The action -x, without noise."""
         return -x[:1], jnp.zeros(())
 
 
@@ -64,7 +64,7 @@ class Keeping:
 
 
 def imagined(start: Array, **given: Any) -> Batch:
-    """What the learner gets where all that was seen is at `start` [B] with reward -7."""
+    """The batch that the learner gets if all data are at `start` [B] with reward -7."""
     known: Any = Counting()
     learner = MBPO(Keeping(), known, known, known, **given)
     x, same = start[:, None], jnp.full(B, -7.0)
@@ -72,8 +72,8 @@ def imagined(start: Array, **given: Any) -> Batch:
     return jax.jit(learner.update)(None, Params(), seen, jax.random.key(3))[0]
 
 
-def test_a_share_is_imagined_and_the_rest_is_as_it_was() -> None:
-    """One step from what was seen: x -> x + 1, with the reward at x."""
+def test_a_share_is_imagined_and_the_rest_is_unchanged() -> None:
+    """One step from the data: x -> x + 1, with the reward at x."""
     batch = imagined(jnp.zeros(B), share=0.6)
     assert batch.obs.shape == (B, 1)
     np.testing.assert_array_equal(batch.next_obs[:, 0], [1] * 6 + [0] * 4)
@@ -81,8 +81,8 @@ def test_a_share_is_imagined_and_the_rest_is_as_it_was() -> None:
     np.testing.assert_allclose(batch.terminated, 0, atol=1e-6)
 
 
-def test_branches_have_every_length_and_start_again_after_an_end() -> None:
-    """From 1: steps 1 -> 2 -> 3, where it ends, and once more from 1."""
+def test_branches_have_every_length_and_restart_after_an_end() -> None:
+    """From 1: steps 1 -> 2 -> 3, where the episode ends, and then from 1 again."""
     batch = imagined(jnp.ones(B), share=1.0, steps=4)
     at = np.asarray(batch.obs[:, 0])
     assert set(at) == {1.0, 2.0, 3.0}
@@ -92,8 +92,8 @@ def test_branches_have_every_length_and_start_again_after_an_end() -> None:
     np.testing.assert_allclose(batch.terminated, at > 2.5, atol=1e-6)
 
 
-def test_nothing_imagined_is_the_learner_alone() -> None:
-    """Share 0 hands the batch through."""
+def test_a_share_of_zero_passes_the_batch_on() -> None:
+    """The learner gets the batch itself."""
     np.testing.assert_array_equal(imagined(jnp.ones(B), share=0.0).reward, -7)
 
 

@@ -1,4 +1,4 @@
-"""The model learner on worlds whose dynamics and rewards are known."""
+"""The model learner on environments with known dynamics and rewards."""
 
 import jax
 import jax.numpy as jnp
@@ -17,7 +17,7 @@ SCALE = jnp.array([1.0, 100.0])  # units that differ, as positions and velocitie
 
 
 def follow(x: Array, u: Array) -> Array:
-    """Known dynamics in awkward units."""
+    """Known dynamics in units of different scales."""
     y = x / SCALE
     return SCALE * (y + 0.1 * jnp.stack([y[1], jnp.sin(y[0]) + u[0]]))
 
@@ -48,7 +48,7 @@ def trained(learner: ModelLearner, steps: int, batch: object = draw) -> Params:
 
 
 def test_model_and_reward_are_learned() -> None:
-    """One-step error far below the change itself, in every unit."""
+    """The one-step error is far below the change itself, in every entry."""
     model, reward = Gaussian(hidden=(64,), activation="silu"), RewardNetwork(hidden=(64,))
     params = trained(ModelLearner(model, reward), 4000)
     test = draw(jax.random.key(9), 1000)
@@ -61,7 +61,7 @@ def test_model_and_reward_are_learned() -> None:
 
 
 def test_reward_discount_learns_a_value() -> None:
-    """With reward 1 for ever the utility is 1 / (1 - c); where episodes end it is 1."""
+    """With a constant reward 1 the utility is 1 / (1 - c); if episodes end it is 1."""
 
     def endless(key: Array, terminated: float = 0.0) -> Batch:
         batch = draw(key)
@@ -77,8 +77,8 @@ def test_reward_discount_learns_a_value() -> None:
     assert float(reward.outcome(ended, *at)[0]) == pytest.approx(1, abs=0.1)
 
 
-def test_reward_to_go_is_the_sum_of_what_follows() -> None:
-    """S_t = r_t + discount S_{t+1}, with nothing after the end."""
+def test_reward_to_go_is_the_sum_of_later_rewards() -> None:
+    """S_t = r_t + discount S_{t+1}, with zero at the end."""
     reward = RewardNetwork(hidden=(8,))
     objective = PredictedReturn(reward, discount=0.9)
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
@@ -89,7 +89,7 @@ def test_reward_to_go_is_the_sum_of_what_follows() -> None:
 
 
 def test_where_episodes_end_is_learned_and_ends_the_return() -> None:
-    """Ended where x_0 > 0: nothing is earned after that."""
+    """Episodes end where x_0 > 0: no reward follows."""
 
     def ending(key: Array) -> Batch:
         batch = draw(key)
@@ -146,7 +146,7 @@ def test_mean_and_standard_deviation_are_learned() -> None:
     assert float(jnp.mean(jnp.abs(std / noise(test.obs) - 1))) < 0.15
 
 
-def test_bad_rates_are_named() -> None:
-    """One line."""
+def test_bad_rates_are_refused() -> None:
+    """The error names the field."""
     with pytest.raises(ValueError, match=r"model_learner\.learning_rate"):
         ModelLearner(Gaussian(), learning_rate=0.0)

@@ -1,4 +1,4 @@
-"""Soft actor-critic on problems whose values are known."""
+"""Soft actor-critic on problems with known values."""
 
 from dataclasses import replace
 from functools import partial
@@ -19,7 +19,7 @@ B = 64
 
 
 def learner(**fields: float) -> SAC:
-    """A small learner that is quick on small problems."""
+    """A small learner with high rates."""
     rates = dict.fromkeys(
         ("policy_learning_rate", "critic_learning_rate", "alpha_learning_rate"), 3e-3
     )
@@ -53,7 +53,7 @@ def value(sac: SAC, state: SACState, u: float = 0.0) -> float:
 
 
 def test_a_terminal_reward_is_its_own_value() -> None:
-    """Q = r where nothing follows."""
+    """Q = r at terminal transitions."""
     sac = learner()
     state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=False), 1500)
     assert value(sac, state) == pytest.approx(1.0, abs=0.05)
@@ -67,7 +67,7 @@ def test_a_time_limit_is_bootstrapped_through() -> None:
 
 
 def test_the_policy_finds_the_best_action() -> None:
-    """The mean goes where the reward is greatest; Q is right there and elsewhere."""
+    """The mean is at the maximum reward; Q is right there and elsewhere."""
     sac = learner()
     state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 3000)
     mean = float(sac.policy.mean(state.policy, jnp.zeros(1))[0])
@@ -77,9 +77,9 @@ def test_the_policy_finds_the_best_action() -> None:
 
 
 def test_the_temperature_meets_its_target() -> None:
-    """Entropy settles at the target while the reward asks for none.
+    """The entropy converges to its target although the reward favours none.
 
-    The temperature still swings about its end by some 0.04 nat; 4,000 samples are 0.01 nat off.
+    The entropy still oscillates by about 0.04 nat; 4,000 samples have an error of 0.01 nat.
     """
     sac = learner(target_entropy=-1.0)
     state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 4000)
@@ -89,8 +89,8 @@ def test_the_temperature_meets_its_target() -> None:
 
 
 @pytest.mark.parametrize("normalise", [False, True])
-def test_the_policy_sees_states_in_their_deviation(normalise) -> None:
-    """With `normalise` the statistics are those of the batches; gradients leave them alone."""
+def test_the_policy_normalises_states_by_the_batches(normalise) -> None:
+    """With `normalise` the statistics are those of the batches; gradients do not change them."""
     sac = replace(learner(), policy=TanhGaussian(hidden=(8,), normalise=normalise))
 
     def far(key: Array) -> Batch:
@@ -107,7 +107,7 @@ def test_the_policy_sees_states_in_their_deviation(normalise) -> None:
             assert float(policy["state"].std[0]) == pytest.approx(200, rel=0.05)
 
 
-def test_the_smaller_critic_counts() -> None:
+def test_the_value_is_the_minimum_over_critics() -> None:
     """`value` is the minimum over members."""
     critic = EnsembleQ(hidden=(8,), members=3)
     params = critic.init(jax.random.key(0), SPEC)

@@ -1,4 +1,4 @@
-"""Ensembles beside their members one by one."""
+"""Ensembles against their members."""
 
 import jax
 import jax.numpy as jnp
@@ -16,7 +16,7 @@ X, U, NOISE = jnp.array([0.3, -1.0, 2.0]), jnp.array([0.5, -0.2]), jnp.array([1.
 
 
 def member(params: dict, i: int) -> dict:
-    """Parameters of member i alone."""
+    """The parameters of member i."""
     return {**params, "weights": jax.tree.map(lambda w: w[i], params["weights"])}
 
 
@@ -26,15 +26,15 @@ def params():
 
 
 def test_members_differ_and_are_averaged(params) -> None:
-    """step is the mean of what the members say, and they do not say the same."""
+    """`step` is the mean of the members' predictions, which differ."""
     each = np.stack([ONE.step(member(params, i), X, U) for i in range(4)])
     assert each.std(0).min() > 1e-3
     np.testing.assert_allclose(MODEL.each(params, X, U), each, rtol=1e-6)
     np.testing.assert_allclose(MODEL.step(params, X, U), each.mean(0), rtol=1e-5)
 
 
-def test_every_member_has_a_batch_of_its_own(params) -> None:
-    """The loss is the mean of each member's on its share of the rows, and no other's."""
+def test_every_member_has_its_own_batch(params) -> None:
+    """The loss is the mean over the members, each on its share of the transitions."""
     x, u, after = (
         jax.random.normal(jax.random.key(i), (8, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
@@ -53,25 +53,25 @@ def test_every_member_has_a_batch_of_its_own(params) -> None:
         MODEL.loss(params, x[:7], u[:7], after[:7])
 
 
-def test_rows_are_drawn_by_all_members_alike(params) -> None:
-    """Each row is one member's draw with the row's own noise; which one, the key decides."""
-    rows = 10
+def test_all_members_draw_equally_many_states(params) -> None:
+    """Each next state is one member's draw with its own noise; the key selects the member."""
+    count = 10
     x, u, noise = (
-        jax.random.normal(jax.random.key(i), (rows, n)) for i, n in ((1, 3), (2, 2), (3, 3))
+        jax.random.normal(jax.random.key(i), (count, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
     each = np.stack([ONE.draw(member(params, i), x, u, noise, None) for i in range(4)])
-    who = []
+    members = []
     for seed in range(20):
         got = np.asarray(MODEL.draw(params, x, u, noise, jax.random.key(seed)))
-        assert got.shape == (rows, 3)
-        apart = np.abs(each - got).max(-1)  # [4, rows]
+        assert got.shape == (count, 3)
+        apart = np.abs(each - got).max(-1)  # [4, count]
         assert (apart.min(0) < 1e-5).all()
-        assert np.bincount(apart.argmin(0), minlength=4).max() <= 3  # 10 rows over 4 members
-        who.append(apart.argmin(0))
-    assert all(len(set(row)) == 4 for row in np.transpose(who))
+        assert np.bincount(apart.argmin(0), minlength=4).max() <= 3  # 10 states over 4 members
+        members.append(apart.argmin(0))
+    assert all(len(set(each)) == 4 for each in np.transpose(members))
     std = np.exp(np.asarray(params["weights"]["log_std"][0]))
-    still = ONE.draw(member(params, 0), x, u, 0 * noise, None)
-    np.testing.assert_allclose(each[0] - still, std * np.asarray(noise), rtol=1e-3, atol=1e-5)
+    mean = ONE.draw(member(params, 0), x, u, 0 * noise, None)
+    np.testing.assert_allclose(each[0] - mean, std * np.asarray(noise), rtol=1e-3, atol=1e-5)
 
 
 def test_bad_fields() -> None:

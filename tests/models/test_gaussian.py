@@ -1,4 +1,4 @@
-"""A Gaussian model's switches."""
+"""The options of a Gaussian model."""
 
 import jax
 import jax.numpy as jnp
@@ -11,8 +11,8 @@ SPEC = Spec(obs=3, act=2, dt=0.1)
 X, U = jnp.array([0.3, -1.0, 2.0]), jnp.array([0.5, -0.2])
 
 
-def test_the_networks_see_their_inputs_alone() -> None:
-    """Change and deviation depend on x_1 and x_2, and not on x_0."""
+def test_the_networks_see_only_their_inputs() -> None:
+    """Change and standard deviation depend on x_1 and x_2, and not on x_0."""
     model = Gaussian(hidden=(8,), state_noise=True, inputs=(1, 2))
     params = model.init(jax.random.key(0), SPEC)
     for f in (lambda x: model.change(params, x, U), lambda x: model.std(params, x)):
@@ -21,8 +21,8 @@ def test_the_networks_see_their_inputs_alone() -> None:
         assert (np.abs(slopes[:, 1:]).max(0) > 1e-3).all()
 
 
-def test_draws_have_the_deviation_of_their_state() -> None:
-    """In the change's units; a constant one is the same everywhere."""
+def test_draws_have_the_standard_deviation_of_their_state() -> None:
+    """In units of the change; without `state_noise` it is constant."""
     for state_noise in (True, False):
         model = Gaussian(hidden=(8,), state_noise=state_noise)
         params = model.init(jax.random.key(0), SPEC)

@@ -32,7 +32,7 @@ def walk(length: int, seed: int = 0) -> np.ndarray:
 
 
 def after(objective, past: np.ndarray):
-    """J of paths from the last of the states `past` [P, 3], with the others in memory."""
+    """J of paths that begin at the last of the states `past` [P, 3]; the others are in memory."""
     memory = objective.init(SPEC)
     for i, x in enumerate(past):
         key = jax.random.key(i)
@@ -50,8 +50,8 @@ def p_of(s: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", EACH)
-def test_gradient_is_that_of_finite_differences(name) -> None:
-    """For every state of a path, with a past, a floor and a barrier."""
+def test_gradients_equal_finite_differences(name) -> None:
+    """For every state of a path, with earlier states, a floor and a barrier."""
     with jax.enable_x64(True):
         objective, x = EACH[name], walk(6)
         of_path = after(objective, walk(6, seed=1))
@@ -70,7 +70,7 @@ def test_gradient_is_that_of_finite_differences(name) -> None:
 
 
 def test_measure_is_the_divergence_on_a_grid() -> None:
-    """D(p || q), with p normalised over the box, of the last states and the path together."""
+    """D(p || q), with p normalised over the box and q the average over the path and memory."""
     objective = replace(KL, samples=200_000, floor=0.0, barrier=0.0)
     past, path = 0.5 * walk(7, seed=2), 0.5 * walk(6)
     path[0] = past[-1]
@@ -78,14 +78,14 @@ def test_measure_is_the_divergence_on_a_grid() -> None:
     sides = [np.linspace(a, b, 401) for a, b in zip(BOX.low, BOX.high, strict=True)]
     s = np.stack(np.meshgrid(*[(v[1:] + v[:-1]) / 2 for v in sides], indexing="ij"), -1)
     s, cell = s.reshape(-1, 2), 2.0 / 400 * 2.0 / 400
-    counted = np.concatenate([past[2:-1], path])[:, [2, 0]]  # M = 4, and the path with today
+    counted = np.concatenate([past[2:-1], path])[:, [2, 0]]  # M = 4 states in memory, and the path
     q = np.mean([np.prod(norm.pdf(s, x, np.sqrt([0.05, 0.1])), -1) for x in counted], 0)
     p = p_of(s) / (p_of(s).sum() * cell)
     assert float(got) == pytest.approx(float(np.sum(p * np.log(p / q)) * cell), rel=0.01)
 
 
-def test_the_bound_follows_the_mean_alone() -> None:
-    """Two targets of one mean give one gradient, towards it; the measure tells them apart."""
+def test_the_bound_depends_only_on_the_mean() -> None:
+    """Targets of equal mean give equal gradients towards it; those of the measure differ."""
     x = jnp.array([[0.1, 0.0, 0.2]] * 3)
     grads = {}
     for apart in (0.05, 0.5):
@@ -101,7 +101,7 @@ def test_the_bound_follows_the_mean_alone() -> None:
 
 
 def test_fourier_metric_vanishes_on_a_path_that_is_the_target() -> None:
-    """A path through draws of p has p's coefficients; one that stands still has not."""
+    """A path of samples of p has the coefficients of p; a path at rest does not."""
     objective = replace(EACH["fourier"], samples=100_000, barrier=0.0)
     rng = np.random.default_rng(0)
     which = rng.random(40_000) < 1 / 3
@@ -116,7 +116,7 @@ def test_fourier_metric_vanishes_on_a_path_that_is_the_target() -> None:
 
 
 def test_fourier_memory_is_the_mean_over_all_states() -> None:
-    """In one piece or step by step: the same coefficients."""
+    """The coefficients are those of all states together."""
     objective, x = EACH["fourier"], jnp.asarray(walk(9))
     memory = objective.init(SPEC)
     for state in x[:4]:

@@ -1,4 +1,4 @@
-"""The quadratic return by hand."""
+"""The quadratic return against a plain sum."""
 
 import jax
 import jax.numpy as jnp
@@ -13,7 +13,7 @@ WORLD = QuadcopterSE3()
 
 
 def test_return_is_the_plain_sum() -> None:
-    """Every state after the first, every action, and nothing behind the end."""
+    """It has every state after the first and every action, and is 0 at the end."""
     q = tuple(np.linspace(0.1, 2.0, 12))
     objective = Quadratic(WORLD, q, (0.3,), discount=0.9)
     rng = np.random.default_rng(0)
@@ -31,7 +31,7 @@ def test_return_is_the_plain_sum() -> None:
     assert float(value(path)) == pytest.approx(want[0], rel=1e-4)
 
 
-def test_bad_weights_are_named() -> None:
-    """One line."""
+def test_bad_weights_are_refused() -> None:
+    """The error names the field."""
     with pytest.raises(ValueError, match="state_weights"):
         Quadratic(WORLD, (-1.0,))

@@ -23,7 +23,7 @@ class Known:
     """pi = 0.9 and Q = 3 x_0 + u."""
 
     def mean(self, params: Any, x: Array) -> Array:
-        """The same everywhere."""
+        """The mean [1], a constant."""
         return jnp.array([0.9])
 
     def value(self, params: Any, x: Array, u: Array) -> Array:
@@ -35,7 +35,7 @@ J = UtilityErgodic(None, Known(), Known(), samples=50, variance=0.2, reach=0.4, 
 
 
 def points_of(value: Any, monkeypatch) -> Any:
-    """The points in a J, which it hands to `ergodic.divergence`."""
+    """The points that J passes to `ergodic.divergence`."""
     seen = []
     with monkeypatch.context() as patch:
         patch.setattr(
@@ -51,7 +51,7 @@ def prepare() -> Any:
 
 
 def test_points_lie_around_the_state_and_its_action(monkeypatch) -> None:
-    """In running standard deviations, also where actions are bounded; weights are exp(c Q)."""
+    """In running standard deviations, within the bounds of actions; weights are exp(c Q)."""
     points = points_of(prepare(), monkeypatch)
     apart = np.asarray(points.s) - np.array([1 / 0.5, -2 / 4, 0.9])
     assert np.abs(apart[:, :2]).max() == pytest.approx(0.4, abs=0.03)
@@ -62,8 +62,8 @@ def test_points_lie_around_the_state_and_its_action(monkeypatch) -> None:
     np.testing.assert_allclose(np.exp(points.log_p), want, rtol=1e-4)
 
 
-def test_value_is_the_divergence_by_hand(monkeypatch) -> None:
-    """A plain double loop with SciPy's Gaussians."""
+def test_value_equals_a_plain_sum(monkeypatch) -> None:
+    """A double loop with SciPy's Gaussians."""
     value = prepare()
     points = points_of(value, monkeypatch)
     rng = np.random.default_rng(0)
@@ -77,7 +77,7 @@ def test_value_is_the_divergence_by_hand(monkeypatch) -> None:
     assert float(value(path)) == pytest.approx(-total, rel=1e-4)
 
 
-def test_bad_fields_are_named() -> None:
-    """One line."""
+def test_bad_fields_are_refused() -> None:
+    """The error names the field."""
     with pytest.raises(ValueError, match=r"utility\.reach"):
         UtilityErgodic(None, Known(), Known(), reach=0.0)

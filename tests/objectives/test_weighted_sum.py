@@ -35,7 +35,7 @@ class Term:
         return jnp.append(jnp.cumsum(self.rewards(params, path)[::-1])[::-1], 0)
 
 
-def test_it_is_the_weighted_sum_and_weights_decay() -> None:
+def test_a_weighted_sum_adds_its_terms_and_weights_decay() -> None:
     """J = 3 J_a + 2 * 0.5^k J_b after k decisions, each term with its own memory."""
     objective = WeightedSum({"a": Term(1.0), "b": Term(-1.0)}, {"a": 3.0, "b": 2.0}, {"b": 0.5})
     memory, total = objective.init(SPEC), float(PATH.x[:, 0].sum())
@@ -46,8 +46,8 @@ def test_it_is_the_weighted_sum_and_weights_decay() -> None:
         assert float(value(PATH)) == pytest.approx(wanted)
 
 
-def test_it_is_a_sum_over_time_where_its_terms_are() -> None:
-    """Rewards and returns to go; not with weights that decay."""
+def test_a_weighted_sum_of_sums_over_time_is_one() -> None:
+    """It has rewards and returns to go, but not if a weight decays."""
     terms = {"a": Term(1.0), "b": Term(-2.0)}
     objective = WeightedSum(terms, {"a": 3.0, "b": 1.0})
     np.testing.assert_allclose(objective.rewards(Params(), PATH), PATH.x[:-1, 0])
@@ -65,7 +65,7 @@ def test_it_is_a_sum_over_time_where_its_terms_are() -> None:
         ({"a": 1.0, "b": 1.0}, {"a": 1.5}, r"decays.a=1.5: must lie in \(0, 1\]"),
     ],
 )
-def test_bad_weights_are_named(weights, decays, words) -> None:
-    """One line."""
+def test_bad_weights_are_refused(weights, decays, words) -> None:
+    """The error names the field."""
     with pytest.raises(ValueError, match=words):
         WeightedSum({"a": Term(1.0), "b": Term(1.0)}, weights, decays)

@@ -1,4 +1,4 @@
-"""The squashed Gaussian: its density integrates to one, its samples follow it."""
+"""The squashed Gaussian: its density, its samples, its variance."""
 
 import jax
 import jax.numpy as jnp
@@ -17,7 +17,7 @@ KINDS = {
 
 @pytest.mark.parametrize("policy", KINDS.values(), ids=KINDS)
 def test_log_density_is_that_of_the_squashed_normal(policy: TanhGaussian) -> None:
-    """Change of variables, written out."""
+    """By the change of variables."""
     params = policy.init(jax.random.key(0), SPEC)
     x = jnp.array([0.3, -1.0, 2.0])
     u, log_prob = policy.sample(params, x, jax.random.normal(jax.random.key(1), (SPEC.act,)))
@@ -31,7 +31,7 @@ def test_log_density_is_that_of_the_squashed_normal(policy: TanhGaussian) -> Non
 
 @pytest.mark.parametrize("policy", KINDS.values(), ids=KINDS)
 def test_samples_have_the_mean_of_the_normal(policy: TanhGaussian) -> None:
-    """atanh of the samples has mean mu and deviation sigma."""
+    """atanh of the samples has mean mu and standard deviation sigma."""
     params = policy.init(jax.random.key(0), SPEC)
     x = jnp.array([0.3, -0.2, 0.1])
     noise = jax.random.normal(jax.random.key(1), (20_000, SPEC.act))
@@ -46,26 +46,26 @@ def test_samples_have_the_mean_of_the_normal(policy: TanhGaussian) -> None:
     "fields",
     [{"hidden": (0,)}, {"activation": "step"}, {"log_std_min": 3.0, "log_std_max": 2.0}],
 )
-def test_bad_fields_are_named(fields: dict) -> None:
-    """One clear line."""
+def test_bad_fields_are_refused(fields: dict) -> None:
+    """The error names the field."""
     with pytest.raises(ValueError, match=next(iter(fields))):
         TanhGaussian(**fields)
 
 
-def test_normalised_it_does_not_depend_on_units() -> None:
+def test_a_normalised_policy_does_not_depend_on_units() -> None:
     policy = TanhGaussian(hidden=(16,), normalise=True)
     x = jax.random.normal(jax.random.key(1), (50, SPEC.obs))
     scale, shift = jnp.array([1e-2, 1.0, 30.0]), jnp.array([5.0, 0.0, -3.0])
     first = policy.init(jax.random.key(0), SPEC)
-    there = jnp.broadcast_to(scale, x.shape) * x + jnp.broadcast_to(shift, x.shape)
+    other = jnp.broadcast_to(scale, x.shape) * x + jnp.broadcast_to(shift, x.shape)
     plain = policy.observe(first, x)
-    moved = policy.observe(first, there)
-    np.testing.assert_allclose(policy.mean(moved, there), policy.mean(plain, x), atol=1e-4)
+    moved = policy.observe(first, other)
+    np.testing.assert_allclose(policy.mean(moved, other), policy.mean(plain, x), atol=1e-4)
     assert not np.allclose(policy.mean(first, x), policy.mean(plain, x), atol=1e-2)
 
 
-def test_variance_is_as_far_from_the_true_one_as_its_page_says(monkeypatch) -> None:
-    """The table of `variance`, by Gauss and Hermite's quadrature of 200 points."""
+def test_the_table_of_the_variance_is_right(monkeypatch) -> None:
+    """The table in the docstring of `variance`, by Gauss-Hermite quadrature with 200 points."""
     rows = [line.split() for line in str(TanhGaussian.variance.__doc__).splitlines()]
     sigmas = np.array(next(row[1:] for row in rows if row[:1] == ["sigma"]), float)
     table = {float(row[2]): np.array(row[3:], float) for row in rows if row[:2] == ["mu", "="]}

@@ -1,4 +1,4 @@
-"""Where candidates come from."""
+"""Proposals: noise, policy and mixture."""
 
 import jax
 import jax.numpy as jnp
@@ -22,7 +22,7 @@ NOISE, BY_POLICY = NoiseProposal(std=0.3), PolicyProposal(POLICY)
 
 
 def imagined(proposal: Proposal, samples: int = K) -> sampling.Samples:
-    """Candidates in a world that moves with the action."""
+    """Candidates in a model x' = x + u."""
     params = Params(policy=POLICY.init(jax.random.key(0), SPEC))
     carries = jax.vmap(lambda q: proposal.init(SPEC, q))(jnp.arange(samples) / samples)
     noise = jax.random.normal(jax.random.key(1), (samples, T, SPEC.act))
@@ -38,8 +38,8 @@ def imagined(proposal: Proposal, samples: int = K) -> sampling.Samples:
 
 
 @pytest.mark.parametrize(("share", "count"), [(0.0, 0), (0.25, 2), (0.5, 4), (1.0, 8)])
-def test_a_mixture_is_part_one_and_part_the_other(share, count) -> None:
-    """The first `share` of the paths are those of the first alone, the rest of the second."""
+def test_a_mixture_has_candidates_of_both_proposals(share, count) -> None:
+    """The first `share` of the paths equal those of the first proposal, the others the second's."""
     mixed = imagined(MixtureProposal(BY_POLICY, NOISE, share))
     one, two = imagined(BY_POLICY), imagined(NOISE)
     for got, first, second in zip(
@@ -50,11 +50,11 @@ def test_a_mixture_is_part_one_and_part_the_other(share, count) -> None:
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.8])
-def test_noise_has_its_law_from_the_first_decision(correlation) -> None:
-    """It is stationary: the same std at each decision and the same correlation of neighbours."""
+def test_noise_is_stationary_from_the_first_decision(correlation) -> None:
+    """It has the same standard deviation and the same correlations at each decision."""
     samples = 20_000
-    found = imagined(NoiseProposal(std=0.2, correlation=correlation), samples)
-    e = np.asarray(found.path.u)[:, :, 0] - 0.1
+    paths = imagined(NoiseProposal(std=0.2, correlation=correlation), samples)
+    e = np.asarray(paths.path.u)[:, :, 0] - 0.1
     np.testing.assert_allclose(e.std(0), 0.2, rtol=0.03)
     wanted = correlation ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
     np.testing.assert_allclose(np.corrcoef(e.T), wanted, atol=0.03)
@@ -63,11 +63,11 @@ def test_noise_has_its_law_from_the_first_decision(correlation) -> None:
 @pytest.mark.parametrize("correlation", [0.0, 0.8])
 def test_log_density_is_that_of_the_process(correlation) -> None:
     """Over a whole path it sums to the density of a Gaussian whose covariance is Toeplitz."""
-    found = imagined(NoiseProposal(std=0.2, correlation=correlation))
-    e = np.asarray(found.path.u, float)[:, :, 0] - 0.1
+    paths = imagined(NoiseProposal(std=0.2, correlation=correlation))
+    e = np.asarray(paths.path.u, float)[:, :, 0] - 0.1
     covariance = 0.2**2 * correlation ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
     wanted = multivariate_normal(cov=covariance).logpdf(e)
-    np.testing.assert_allclose(found.log_prob.sum(1), wanted, rtol=1e-3, atol=1e-3)
+    np.testing.assert_allclose(paths.log_prob.sum(1), wanted, rtol=1e-3, atol=1e-3)
 
 
 def test_bad_fields() -> None:

@@ -1,4 +1,4 @@
-"""Targets against SciPy and by hand."""
+"""Targets against SciPy and closed forms."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -16,8 +16,8 @@ from hybrid_rl.targets.upper_confidence_bound import UpperConfidenceBound
 from hybrid_rl.types import Params
 
 
-def test_mixture_is_scipys() -> None:
-    """Weights of any sum; means continued into more dimensions."""
+def test_the_mixture_equals_that_of_scipy() -> None:
+    """Weights need not sum to one; the last entry of a mean is repeated."""
     target = Mixture(((0.1, 0.4), (-0.3, 0.2)), (0.2, 0.5), (1.0, 3.0))
     for size in (1, 2, 4):
         s = np.linspace(-0.2, 0.3, size)
@@ -31,14 +31,14 @@ def test_mixture_is_scipys() -> None:
 
 @dataclass(frozen=True)
 class Flat:
-    """Mean 2, deviation 0.5."""
+    """Mean 2, standard deviation 0.5."""
 
     def predict(self, known: Any, s: Any) -> tuple:
-        """The same everywhere."""
+        """Constants."""
         return jnp.float32(2.0), jnp.float32(0.5)
 
 
-def test_upper_bound_by_hand() -> None:
+def test_the_upper_confidence_bound_follows_its_equation() -> None:
     """c (mean + kappa std)."""
     target = UpperConfidenceBound(Flat(), kappa=3.0, sharpness=4.0)
     assert float(target.log_density(Params(), jnp.zeros(1))) == pytest.approx(4 * 3.5)
@@ -49,22 +49,22 @@ BOX = Box(coordinates=(12, 17), low=(-1.0, -1.0), high=(1.0, 1.0))
 
 @dataclass(frozen=True)
 class Tilted:
-    """Deviations |x|."""
+    """Standard deviations |x|."""
 
     def std(self, known: Any, x: Any) -> Any:
-        """As large as the state."""
+        """The entries' absolute values."""
         return jnp.abs(x)
 
 
-def test_model_uncertainty_by_hand() -> None:
-    """c mean sigma at s, all else at hover: an upright rotation has three ones."""
+def test_the_model_uncertainty_follows_its_equation() -> None:
+    """c mean sigma at s, all else at hover, where the rotation matrix has three ones."""
     target = ModelUncertainty(Tilted(), QuadcopterSE3(), BOX, sharpness=4.0)
     got = target.log_density(Params(), jnp.array([-0.5, 2.0]))
     assert float(got) == pytest.approx(4 * (0.5 + 2.0 + 3) / 18)
 
 
 @pytest.mark.parametrize("change", [{"stds": (0.1,)}, {"weights": (0.0, 1.0)}])
-def test_bad_mixtures_are_named(change) -> None:
-    """Lengths and signs."""
+def test_bad_mixtures_are_refused(change) -> None:
+    """For lengths and signs."""
     with pytest.raises(ValueError, match=next(iter(change))):
         Mixture(**change)

@@ -1,4 +1,4 @@
-"""Learners dealt out over several devices are the learners of one device."""
+"""Learners on several devices equal those on one device."""
 
 import json
 import os
@@ -14,19 +14,19 @@ SHORT = ["algo=sac", "num_seeds=2", "total_steps=200"]
 
 
 def rows(folder):
-    """What was measured of each seed at each step, without times."""
-    found = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
-    kept = ("sac/q", "sac/alpha", "train/return", "eval/return")
+    """The metrics of each seed at each step, without times."""
+    logged = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    names = ("sac/q", "sac/alpha", "train/return", "eval/return")
     return {
         (row["step"], row["seed"], name): row[name]
-        for row in found
-        for name in kept
+        for row in logged
+        for name in names
         if row.get(name) is not None
     }
 
 
 def on_two_devices(*overrides):
-    """The command's output, where the host has two devices."""
+    """The command's output on a host with two devices."""
     flags = os.environ["XLA_FLAGS"] + " --xla_force_host_platform_device_count=2"
     done = subprocess.run(
         [sys.executable, "-m", "hybrid_rl.train", *overrides],
@@ -39,29 +39,29 @@ def on_two_devices(*overrides):
 
 
 @pytest.fixture(scope="module")
-def alone(tmp_path_factory):
+def single(tmp_path_factory):
     """A run on one device."""
     folder = tmp_path_factory.mktemp("devices") / "one"
     run(folder, *SHORT)
     return folder
 
 
-def test_two_devices_have_the_learners_of_one(alone, tmp_path):
-    """And a run that one of them began goes on with both."""
-    said = on_two_devices(*TINY, *SHORT, f"run_dir={tmp_path / 'two'}")
-    assert "of its" not in said
-    wanted, got = rows(alone), rows(tmp_path / "two")
+def test_learners_on_two_devices_equal_those_on_one(single, tmp_path):
+    """And a run on one device continues on two."""
+    output = on_two_devices(*TINY, *SHORT, f"run_dir={tmp_path / 'two'}")
+    assert "of its" not in output
+    wanted, got = rows(single), rows(tmp_path / "two")
     assert wanted.keys() == got.keys()
     assert len({seed for _, seed, _ in got}) == 2
     for key, value in wanted.items():
         np.testing.assert_allclose(got[key], value, rtol=1e-3, atol=1e-3, err_msg=str(key))
-    on_two_devices(f"resume={alone}", "total_steps=300")
-    assert json.loads((alone / "summary.json").read_text())["total_steps"] == 300
+    on_two_devices(f"resume={single}", "total_steps=300")
+    assert json.loads((single / "summary.json").read_text())["total_steps"] == 300
 
 
 def test_learners_that_do_not_divide_are_reported(tmp_path, monkeypatch, capsys):
-    """Three learners stay on one of two devices, and the user sees it."""
+    """Three learners stay on one of two devices, and the log has a note."""
     monkeypatch.setattr(jax, "local_device_count", lambda: 2)
     run(tmp_path / "three", *SHORT, "num_seeds=3", "total_steps=100")
-    said = capsys.readouterr().out
-    assert "3 learners divide evenly over 1 of its 2 devices only" in said
+    output = capsys.readouterr().out
+    assert "3 learners divide evenly over 1 of its 2 devices only" in output

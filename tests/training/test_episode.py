@@ -20,7 +20,7 @@ class Counter:
     spec: Spec = Spec(obs=1, act=1, dt=0.1)
 
     def reset(self, key: Array) -> EnvState:
-        """A count below zero, so that a fresh world is told apart."""
+        """A count below zero, which marks a new episode."""
         start = -1.0 - jax.random.uniform(key, (1,))
         no = jnp.zeros((), bool)
         return EnvState(jnp.zeros(()), start, jnp.zeros(()), no, no, {}, {})
@@ -34,15 +34,15 @@ class Counter:
 
 
 def roll(episode: Episode, decisions: int) -> EnvState:
-    """The state after some decisions, without renewal."""
+    """The state after some decisions, without resets."""
     state = episode.reset(jax.random.key(0))
     for _ in range(decisions):
         state = episode.step(state, jnp.zeros(1))
     return state
 
 
-def test_the_clock_truncates_and_the_task_terminates() -> None:
-    """Never both: what ended by itself is not cut."""
+def test_the_time_limit_truncates_and_the_task_terminates() -> None:
+    """Never both: a terminated episode is not truncated."""
     cut = roll(Episode(Counter(), steps=5), 5)
     assert bool(cut.truncated)
     assert not bool(cut.terminated)
@@ -60,8 +60,8 @@ def test_repeat_adds_rewards_until_the_end(end: int, total: float) -> None:
     assert bool(state.terminated) == (end <= 6)
 
 
-def test_renew_under_two_vmaps() -> None:
-    """Only worlds that are done start anew, each with its own key; the rest is untouched."""
+def test_auto_reset_works_under_two_vmaps() -> None:
+    """Only environments that are done are reset, each with its own key."""
     episode = Episode(Counter(), steps=3)
     keys = jax.random.split(jax.random.key(1), (2, 4))
     state = jax.vmap(jax.vmap(episode.reset))(keys)
@@ -69,15 +69,15 @@ def test_renew_under_two_vmaps() -> None:
         state = jax.vmap(jax.vmap(episode.step))(state, jnp.zeros((2, 4, 1)))
     done = jnp.array([[True, False, True, False], [False, False, False, True]])
     state = state.replace(truncated=done)
-    renewed = jax.jit(jax.vmap(jax.vmap(episode.auto_reset)))(state, keys)
+    reset = jax.jit(jax.vmap(jax.vmap(episode.auto_reset)))(state, keys)
     fresh = jax.vmap(jax.vmap(episode.reset))(keys)
     want = jnp.where(done[..., None], fresh.obs, state.obs)
-    np.testing.assert_array_equal(renewed.obs, want)
-    np.testing.assert_array_equal(renewed.info["decision"], jnp.where(done, 0, 3))
+    np.testing.assert_array_equal(reset.obs, want)
+    np.testing.assert_array_equal(reset.info["decision"], jnp.where(done, 0, 3))
 
 
-def test_nothing_is_reset_while_nobody_is_done() -> None:
-    """The compiled program resets behind a branch, not at every step."""
+def test_resets_are_skipped_while_no_environment_is_done() -> None:
+    """The program has a branch around the reset."""
     episode = Episode(Counter(), steps=3)
     keys = jax.random.split(jax.random.key(1), (2, 4))
     state = jax.vmap(jax.vmap(episode.reset))(keys)
@@ -85,8 +85,8 @@ def test_nothing_is_reset_while_nobody_is_done() -> None:
     assert "cond[" in text
 
 
-def test_a_world_is_exact_whatever_the_precision_of_networks():
-    """Products inside a world keep full float32 where those of networks need not."""
+def test_environments_compute_in_full_precision():
+    """Also if the matrix products of networks do not."""
 
     @dataclass(frozen=True)
     class Turned(Counter):

@@ -1,4 +1,4 @@
-"""Learners that take each decision once, and who may learn what."""
+"""Learners that use each decision once, and learners of the same field."""
 
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -14,7 +14,7 @@ from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Batch, EnvState, Params, Spec
 
-LENGTH, WORLDS, DECISIONS = 4, 3, 10
+LENGTH, NUM_ENVS, DECISIONS = 4, 3, 10
 
 
 @dataclass(frozen=True)
@@ -44,65 +44,65 @@ class Half:
 
 @dataclass(frozen=True)
 class Recorder:
-    """Keeps the batch of every update."""
+    """A learner that keeps the batch of every update."""
 
     every: int = 1
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("belief",)
 
     def init(self, key: Array, spec: Spec) -> dict:
-        rows = jnp.full((DECISIONS, WORLDS, 1), jnp.nan)
-        flags = rows[..., 0]
-        return {"batch": Batch(rows, rows, flags, flags, flags, rows), "count": jnp.int32(0)}
+        empty = jnp.full((DECISIONS, NUM_ENVS, 1), jnp.nan)
+        flags = empty[..., 0]
+        return {"batch": Batch(empty, empty, flags, flags, flags, empty), "count": jnp.int32(0)}
 
     def params(self, state: dict) -> dict:
         return {"belief": state}
 
     def update(self, state: dict, params: Params, batch: Batch, key: Array) -> tuple:
-        kept = jax.tree.map(lambda a, b: a.at[state["count"]].set(b), state["batch"], batch)
-        return {"batch": kept, "count": state["count"] + 1}, {"belief/count": state["count"]}
+        all_ = jax.tree.map(lambda a, b: a.at[state["count"]].set(b), state["batch"], batch)
+        return {"batch": all_, "count": state["count"] + 1}, {"belief/count": state["count"]}
 
 
 def agent(every: int = 1) -> Agent:
     """Three environments, whose first six decisions are random."""
     parts = {"recorder": Recorder(every)}
-    return Agent(Episode(Clock(), LENGTH), Half(), parts, Replay(30), WORLDS, random_steps=6)
+    return Agent(Episode(Clock(), LENGTH), Half(), parts, Replay(30), NUM_ENVS, random_steps=6)
 
 
 def states(agent: Agent) -> tuple[Any, dict[str, Array]]:
-    """States after each decision [T, ...], from the first one on, and metrics [T]."""
+    """States after each decision [T, ...], metrics [T] and observations before it [T, ...]."""
 
     def run(key: Array) -> Any:
         def one(state: Any, t: Array) -> tuple:
             after, metrics = agent.step(state, t)
             return after, (after, metrics, state.env.obs)
 
-        steps = WORLDS * jnp.arange(DECISIONS)
+        steps = NUM_ENVS * jnp.arange(DECISIONS)
         return jax.lax.scan(one, agent.init(key), steps)[1]
 
     return jax.jit(run)(jax.random.key(0))
 
 
 def test_each_decision_comes_once_with_its_true_successor() -> None:
-    """Random decisions and ends of episodes included; nothing is late."""
+    """Also random decisions and ends of episodes; without delay."""
     after, _, before = states(agent())
-    kept = jax.tree.map(np.asarray, after.learners["recorder"]["batch"])
+    batches = jax.tree.map(np.asarray, after.learners["recorder"]["batch"])
     assert (np.asarray(after.learners["recorder"]["count"]) == np.arange(1, DECISIONS + 1)).all()
-    batch = jax.tree.map(lambda each: each[-1], kept)
+    batch = jax.tree.map(lambda each: each[-1], batches)
     np.testing.assert_array_equal(batch.obs, before)
     np.testing.assert_allclose(batch.next_obs, before + 1)  # also where the episode ended
     assert (batch.action[2:] == 0.5).all()
     assert (batch.action[:2] != 0.5).all()
     np.testing.assert_array_equal(batch.reward, batch.action[..., 0])
-    ends = (np.arange(1, DECISIONS + 1) % LENGTH == 0)[:, None] * np.ones(WORLDS)
+    ends = (np.arange(1, DECISIONS + 1) % LENGTH == 0)[:, None] * np.ones(NUM_ENVS)
     np.testing.assert_array_equal(batch.truncated, ends)
     for t in range(DECISIONS):
-        assert (kept.obs[t, : t + 1] == batch.obs[: t + 1]).all()
-        assert np.isnan(kept.obs[t, t + 1 :]).all()
+        assert (batches.obs[t, : t + 1] == batch.obs[: t + 1]).all()
+        assert np.isnan(batches.obs[t, t + 1 :]).all()
 
 
 def test_every_third_decision_can_be_taken() -> None:
-    """The first, the fourth, ...; its metrics do not apply between them."""
+    """The first, the fourth, ...; metrics are NaN between them."""
     after, metrics, before = states(agent(every=3))
     assert int(after.learners["recorder"]["count"][-1]) == 4
     batch = jax.tree.map(lambda each: np.asarray(each[-1]), after.learners["recorder"]["batch"])
@@ -112,6 +112,6 @@ def test_every_third_decision_can_be_taken() -> None:
 
 
 def test_two_learners_of_one_field_are_refused() -> None:
-    """When the method is built."""
+    """When the agent is built."""
     with pytest.raises(ValueError, match=r"one and two both learn params\.belief; keep one"):
         replace(agent(), learners={"one": Recorder(), "two": Recorder()})

@@ -1,4 +1,4 @@
-"""When which learner learns: before the first decision, during random decisions, after them."""
+"""When each learner learns: before the first decision, during random decisions, after them."""
 
 from dataclasses import replace
 
@@ -25,8 +25,8 @@ def agent(tmp_path_factory) -> Agent:
     return config.build(config.load([*line, demonstrate(folder, config.load(line))])).agent
 
 
-def paid(agent: Agent, reward: Array | float):
-    """The same agent in a world whose rewards are `reward`."""
+def with_reward(agent: Agent, reward: Array | float):
+    """The same agent in an environment whose rewards are `reward`."""
     world = agent.episode.env
 
     class Paid(type(world)):
@@ -38,7 +38,7 @@ def paid(agent: Agent, reward: Array | float):
 
 
 def after(agent: Agent, decisions: int):
-    """The parameters after so many decisions."""
+    """The parameters after a number of decisions."""
 
     def run(key):
         one = lambda state, t: (agent.step(state, t)[0], None)  # noqa: E731
@@ -53,8 +53,8 @@ def same(a, b) -> bool:
 
 
 def test_experience_changes_the_models_and_not_the_policy(agent):
-    """Two worlds that pay differently: one policy, two rewards; and all of it goes on learning."""
-    learned = jax.jit(lambda reward: after(paid(agent, reward), 6))
+    """With different rewards the policies are equal and the reward models are not; all learn."""
+    learned = jax.jit(lambda reward: after(with_reward(agent, reward), 6))
     one, other = learned(1.0), learned(-1.0)
     first = agent.params(jax.jit(agent.init)(KEY))
     assert same(one.policy, other.policy)
@@ -63,8 +63,8 @@ def test_experience_changes_the_models_and_not_the_policy(agent):
     assert not same(first.model, one.model)
 
 
-def test_the_pretrain_is_gradient_steps_on_demonstrations(agent):
-    """The policy that a plain loop of the learner's updates makes."""
+def test_pretraining_is_gradient_steps_on_demonstrations(agent):
+    """The policy is that of a plain loop over the learner's updates."""
     learners = {"cloning": agent.learners["cloning"]}
     alone = replace(agent, learners=learners, pretrain=3)
     ahead, still = (
@@ -79,28 +79,28 @@ def test_the_pretrain_is_gradient_steps_on_demonstrations(agent):
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
 
 
-def test_no_key_of_the_pretrain_is_used_again(agent, monkeypatch):
-    """Its own, and those of its steps, are none of the first state's or the first decision's."""
-    given = []
+def test_no_key_of_pretraining_is_reused(agent, monkeypatch):
+    """Its keys differ from those of the initial state and of the first decision."""
+    received = []
     monkeypatch.setattr(
-        Agent, "_pretrain", lambda _, states, memory, key: given.append(key) or states
+        Agent, "_pretrain", lambda _, states, memory, key: received.append(key) or states
     )
     state = agent.init(KEY)
     first = jax.random.split(KEY, 2 + len(agent.learners))
     decision = jax.random.split(state.key, 3 + 2 * agent.num_envs)
-    steps = jax.random.split(given[0], agent.pretrain)
-    keys = jnp.concatenate([given[0][None], steps, first, decision])
+    steps = jax.random.split(received[0], agent.pretrain)
+    keys = jnp.concatenate([received[0][None], steps, first, decision])
     assert len(np.unique(jax.random.key_data(keys), axis=0)) == len(keys)
 
 
-def test_a_pretrain_needs_demonstrations(agent):
+def test_pretraining_needs_demonstrations(agent):
     bare = replace(agent.replay, demonstrations=None)
     with pytest.raises(ValueError, match="pretrain=3: the memory has no demonstrations"):
         replace(agent, replay=bare)
 
 
 def test_the_model_learns_from_random_decisions_and_the_policy_after_them() -> None:
-    """So that what the policy imagines first is not the prediction of first weights."""
+    """So imagined data never come from an untrained model."""
     line = [*TINY, "algo=hybrid_stochastic", "random_steps=24"]
     early = config.build(config.load(line)).agent
     first = early.params(jax.jit(early.init)(KEY))

@@ -1,4 +1,4 @@
-"""What an evaluation tells of episodes."""
+"""Evaluations of episodes, and policies of finished runs."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,29 +18,29 @@ from hybrid_rl.types import EnvState, Params, Spec
 
 @dataclass(frozen=True)
 class Walk:
-    """Adds the action up; ends, a success, at a sum of 3 or more."""
+    """The sum of the actions; the episode ends with success at a sum of 3 or more."""
 
-    told: bool = True
+    reports: bool = True
     spec: Spec = Spec(obs=1, act=1, dt=0.1)
 
     def reset(self, key: Array) -> EnvState:
-        """At 0."""
+        """The sum 0."""
         return self._state(jnp.zeros(()))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """One more."""
+        """The sum after one more action."""
         return self._state(state.data + action[0])
 
     def _state(self, at: Array) -> EnvState:
-        metrics = {"success": (at >= 3).astype(jnp.float32)} if self.told else {}
+        metrics = {"success": (at >= 3).astype(jnp.float32)} if self.reports else {}
         return EnvState(at, at[None], at, at >= 3, jnp.zeros((), bool), metrics, {})
 
 
 class Draws:
-    """Takes steps of 1 or of 0, drawn once an episode."""
+    """The action is 0 or 1, drawn once per episode."""
 
     def init(self, spec: Spec) -> Array:
-        """Not drawn yet."""
+        """No draw yet."""
         return jnp.float32(-1)
 
     def act(
@@ -52,7 +52,7 @@ class Draws:
         return state[None], state, {}
 
 
-def test_returns_and_successes_by_hand() -> None:
+def test_an_evaluation_has_returns_and_successes() -> None:
     keys = jax.random.split(jax.random.key(0), 16)
     got = evaluate_episodes(Episode(Walk(), steps=5), Draws(), Params(), keys)
     success = np.asarray(got["success"])
@@ -60,9 +60,11 @@ def test_returns_and_successes_by_hand() -> None:
     np.testing.assert_array_equal(got["return"], 6 * success)  # 1 + 2 + 3, and nothing after
 
 
-def test_a_task_without_successes_tells_none() -> None:
+def test_an_evaluation_of_a_task_without_success_has_none() -> None:
     keys = jax.random.split(jax.random.key(0), 4)
-    got = evaluate_episodes(Episode(replace(Walk(), told=False), steps=5), Draws(), Params(), keys)
+    got = evaluate_episodes(
+        Episode(replace(Walk(), reports=False), steps=5), Draws(), Params(), keys
+    )
     assert list(got) == ["return"]
 
 
@@ -71,7 +73,7 @@ class Counts:
     """The action is the count of decisions in this episode, plus the observation."""
 
     def init(self, spec: Spec) -> Array:
-        """None yet."""
+        """No decision yet."""
         return jnp.zeros(())
 
     def act(
@@ -82,13 +84,13 @@ class Counts:
 
 
 def run_of(controller: Any) -> Trained:
-    """A run of two learners, of which the second acts the other way round."""
+    """A run of two learners; the second one's actions have the opposite sign."""
     params = Params(policy=jnp.array([1.0, -1.0]))
     return Trained("walk", Episode(Walk()), {"full": controller}, params, (3, 4), 100, ())
 
 
 def test_a_trained_policy_acts_from_observations() -> None:
-    """One world and many; its state lasts for an episode, in each world alone."""
+    """Of one environment and of many; each environment has its own state for an episode."""
     policy = run_of(Counts()).policy()
     got = [policy(np.array([0.5])) for _ in range(3)]
     np.testing.assert_array_equal(got, [[0.5], [1.5], [2.5]])
@@ -101,7 +103,7 @@ def test_a_trained_policy_acts_from_observations() -> None:
     np.testing.assert_array_equal(other(np.array([0.5])), [-0.5])
 
 
-def test_a_trained_policy_draws_for_each_world_and_decision() -> None:
+def test_a_trained_policy_draws_for_each_environment_and_decision() -> None:
     draws, again, other = (run_of(Draws()).policy(key=key) for key in (0, 0, 1))
     first = draws(np.zeros((32, 1)))
     assert 0 < first.sum() < 32
@@ -111,7 +113,7 @@ def test_a_trained_policy_draws_for_each_world_and_decision() -> None:
     assert (draws(np.zeros((32, 1))) != first).any()
 
 
-def test_a_trained_policy_refuses_what_does_not_fit() -> None:
+def test_a_trained_policy_refuses_bad_arguments() -> None:
     trained = run_of(Counts())
     policy = trained.policy()
     for wrong in (np.zeros(2), np.zeros((1, 1, 1)), 0.0):
