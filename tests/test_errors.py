@@ -60,7 +60,7 @@ USAGE = [  # overrides of train, words of the line
     ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),
     (
         "task=halfcheetah algo=kle3",
-        "task=halfcheetah: kle3 needs an analytic world; choose",
+        "task=halfcheetah: kle3 needs an analytic environment; choose",
     ),
     ("policy_learner.tau=nan", "policy_learner.tau=nan: must be finite"),
     ("policy_learner.policy_learning_rate=inf", "policy_learning_rate=inf: must be finite"),
