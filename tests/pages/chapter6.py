@@ -39,7 +39,7 @@ PAGE = "docs/results/chapter6.md"
 CITED = [
     Table("after | 5 s | 10 s | 20 s | 40 s", divergence),
     Text(
-        "sum of Gaussians #, Fourier with 20 cosines a side # (#% of its mass negative), "
+        "sum of Gaussians #, Fourier with 20 cosines per axis # (#% of its mass negative), "
         "cells visited #",
         [
             TV["sum of Gaussians (6.1)"],
@@ -58,13 +58,13 @@ CITED = [
     ),
     Table(
         " | best after 20, median | after 40 | measurements until 0.95, median"
-        " | trials that get there | greatest V, median",
+        " | trials that reach it | greatest V, median",
         searched,
     ),
-    Text("optimisation without dynamics, # times as quick", [LQR / KLE3]),
+    Text("optimisation without dynamics, # times as fast", [LQR / KLE3]),
     Table(
         "the regulator's weight of the position | | greatest V | V after 10 s"
-        " | measurements until 0.95, median | trials that get there",
+        " | measurements until 0.95, median | trials that reach it",
         regulators,
     ),
     Text("greatest V to # times LQR's", [HALF]),
@@ -73,7 +73,7 @@ CITED = [
     Text("as in the thesis, by a factor of # and", [GREATEST[0] / GREATEST[1]]),
     Table(
         "level | greatest V, median (range) | measurements until 0.95, median"
-        " | trials that get there | best after 20",
+        " | trials that reach it | best after 20",
         guarded,
     ),
     Table(
@@ -173,6 +173,7 @@ PLAIN = [
     "(t_H 0.2 s, R 0.1, Sigma 0.1, N 20, line search)",
     "within 0.2 s",
     "after 10 s, medians of 10 trials",
+    "After 10 s V is",
     "(weight 500)",
     "gain 0.015 and the regulator of weight 5, 10 trials each",
     "At 150 KL-E3 keeps",
@@ -182,9 +183,11 @@ PLAIN = [
     "Norm of u at hover is 0.82 here",
     "that noise 0.1 does not",
     "R = 0.5, Sigma = 0.1, N = 100, 0.6 s",
-    "from -6 to 6; that reading, c = 10",
+    "from -6 to 6; this interpretation, c = 10",
+    "(0.01 s) late; since version 0.2.0",
+    "random numbers since version 0.2.0",
     "within 1 m/s and 1 rad/s",
-    "0.41 a rotor",
+    "0.41 per rotor",
     "0.15 per second",
     "2000 batches of 200",
     "a target 2 m away in each direction at most, 4 s",
@@ -194,12 +197,12 @@ PLAIN = [
     "normal noise of 0.1 too",
     "no noise of 0.1 or less",
     "OU noise of 0.3",
-    "of OU 0.3, ends",
+    "of OU noise 0.3, ends",
     "the 1 m/s and 1 rad/s that are",
     "a floor of 0.05",
-    "0.15 and 0.2 a decision",
+    "0.15 and 0.2 per decision",
     "(two layers of 256), rates (1e-4 and 1e-3, tau 0.01, batch 64), 200 random decisions and "
-    "episodes of 200 decisions, seeds 0 to 4, cartpole 0.033 s and half-cheetah 0.05 s a decision",
+    "episodes of 200 decisions, seeds 0 to 4, cartpole 0.033 s and half-cheetah 0.05 s per decision",
     "averaged over 1,000 decisions",
     "IQM and 95% band:",
     "At 16,000 DDPG's",
@@ -208,7 +211,7 @@ PLAIN = [
     "up to 200:",
     "to 12,000, had",
     "At 11,000 decisions seed 4's",
-    "c = 1 and differences",
+    "c = 1 and large differences",
     "seeds 100 to 102",
     "root mean square 0.3",
     "R = 0.01 every action",
@@ -218,7 +221,7 @@ PLAIN = [
     "1/R",
     "0.13 of the first correction is left after 200 decisions",
     "seeds shown, 0 to 4",
-    "1,024 of each kind",
+    "1,024 robots of each kind",
     # the thesis' numbers
     "in the thesis 1.68",
     "about 0.67 there",

@@ -31,7 +31,7 @@ def cost(method: str, dimension: int) -> float:
 
 
 def when(trial: dict[str, Any]) -> float:
-    """Median measurements until 0.95, over the trials that get there."""
+    """Median measurements until 0.95, over the trials that reach it."""
     return float(np.median([n for n in trial["measurements_to_95_percent"] if n is not None]))
 
 

@@ -31,7 +31,7 @@ CITED = [
     Text("over 30 seeds the default of `hybrid_stochastic` has # [#, #]", hopper.ALL["default"]),
     Text(
         "KL-E3 finds the highest peak in # of # trials",
-        chapter6_values.search(KLE3, "trials that get there"),
+        chapter6_values.search(KLE3, "trials that reach it"),
     ),
     Text(
         "it needs # measurements where LQR-Bayesian optimisation needs #;",
