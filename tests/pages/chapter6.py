@@ -23,10 +23,10 @@ from pages.chapter6_values import (
     by_area,
     cost,
     divergence,
+    fig_6_6,
     flight,
     guarded,
     learned,
-    of,
     plan_ms,
     regulators,
     searched,
@@ -97,26 +97,32 @@ CITED = [
         [
             x
             for name in ("kle3_model_learning 2.75", "normal_noise 0.1", "uniform_noise 0.1")
-            for x in (*of(name, "error"), of(name, "power_loss")[0])
+            for x in (*fig_6_6(name, "error"), fig_6_6(name, "power_loss")[0])
         ],
     ),
     Text(
         "(# [#, #] m against # [#, #])",
-        [*of("kle3_model_learning 2.75", "tracking"), *of("normal_noise 0.1", "tracking")],
+        [
+            *fig_6_6("kle3_model_learning 2.75", "tracking"),
+            *fig_6_6("normal_noise 0.1", "tracking"),
+        ],
     ),
     Text(
         "# [#, #] at # N, bands apart from KL-E3's at # N; in tracking they overlap (# and # m)",
         [
-            *of("ou_noise 0.3", "error"),
-            of("ou_noise 0.3", "power_loss")[0],
-            of("kle3_model_learning 2.75", "power_loss")[0],
-            of("ou_noise 0.3", "tracking")[0],
-            of("kle3_model_learning 2.75", "tracking")[0],
+            *fig_6_6("ou_noise 0.3", "error"),
+            fig_6_6("ou_noise 0.3", "power_loss")[0],
+            fig_6_6("kle3_model_learning 2.75", "power_loss")[0],
+            fig_6_6("ou_noise 0.3", "tracking")[0],
+            fig_6_6("kle3_model_learning 2.75", "tracking")[0],
         ],
     ),
     Text(
         "ends at # m, the exact one at #",
-        [of("ou_noise 0.3", "distance_after_4_s")[0], of("exact model", "distance_after_4_s")[0]],
+        [
+            fig_6_6("ou_noise 0.3", "distance_after_4_s")[0],
+            fig_6_6("exact model", "distance_after_4_s")[0],
+        ],
     ),
     Table("cartpole, decisions | 4,000 | 8,000 | 12,000 | 16,000", skill(CARTPOLE)),
     Table("half-cheetah, decisions | 5,000 | 12,000 | 25,000 | 50,000", skill(CHEETAH)),
@@ -202,7 +208,8 @@ PLAIN = [
     "a floor of 0.05",
     "0.15 and 0.2 per decision",
     "(two layers of 256), rates (1e-4 and 1e-3, tau 0.01, batch 64), 200 random decisions and "
-    "episodes of 200 decisions, seeds 0 to 4, cartpole 0.033 s and half-cheetah 0.05 s per decision",
+    "episodes of 200 decisions, seeds 0 to 4, cartpole 0.033 s and half-cheetah 0.05 s per "
+    "decision",
     "averaged over 1,000 decisions",
     "IQM and 95% band:",
     "At 16,000 DDPG's",

@@ -91,7 +91,7 @@ CITED = [
     Text("Kruskal-Wallis p # at", [kruskal(*map(last, COMBINATIONS.values())).pvalue]),
     Text(
         "on seeds 0 to 9 (#) in #% of draws; the standard deviation of their difference is #.",
-        [SHIFT, 100 * np.mean(np.abs(CHANCE) >= SHIFT), np.std(CHANCE)],
+        [SHIFT, 100 * float((np.abs(CHANCE) >= SHIFT).mean()), float(CHANCE.std())],
     ),
 ]
 PLAIN = [

@@ -11,8 +11,8 @@ def main_table(label: str, column: str) -> list[float]:
     """A cell of a row such as "thesis settings, half-cheetah, 40,000 decisions"."""
     settings, task = label.split(", ", 1)
     task = task[: task.rindex(", ")]
-    of = chapter3.thesis if settings == "thesis settings" else chapter3.default
-    return of(task, column).at(number(label))[:1]
+    line = chapter3.thesis if settings == "thesis settings" else chapter3.default
+    return line(task, column).at(number(label))[:1]
 
 
 def sac(label: str, x: float) -> list[float]:

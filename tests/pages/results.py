@@ -14,7 +14,7 @@ LABELS = {
 }
 
 
-def of(task: str, label: str) -> list[float]:
+def at_end(task: str, label: str) -> list[float]:
     """IQM and band of a line of the picture at 100,000."""
     return curve(FILE, label, task=task).at(100_000)
 
@@ -40,7 +40,9 @@ def span(label: str) -> list[float]:
 
 def behind() -> float:
     """[%] of Stable-Baselines3's IQM on Gymnasium's half-cheetah that ours is short of."""
-    return 100 * (1 - of("halfcheetah", "sac")[0] / of("halfcheetah", "sb3_sac_gymnasium")[0])
+    return 100 * (
+        1 - at_end("halfcheetah", "sac")[0] / at_end("halfcheetah", "sb3_sac_gymnasium")[0]
+    )
 
 
 def p(x: float, other: str, ours: str = "sac") -> float:
@@ -68,7 +70,7 @@ CITED = [
     returns_at("hopper", "hopper, IQM and 95% band at | 50,000 | 80,000 | 100,000"),
     Text(
         "end level: # and # at 100,000 (Mann-Whitney p #)",
-        [of("halfcheetah", "sac")[0], of("halfcheetah", OURS)[0], p(100_000, OURS)],
+        [at_end("halfcheetah", "sac")[0], at_end("halfcheetah", OURS)[0], p(100_000, OURS)],
     ),
     Text(
         "is ahead at 50,000 (bands disjoint, p #) and #% behind at 100,000 "

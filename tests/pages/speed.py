@@ -35,8 +35,8 @@ def loop(label: str, column: str) -> list[float]:
     key = "memory" if column.startswith("memory") else "rate"
     count = "4,096" if column.startswith("memory") else column
     if label.endswith("64 cores") or label.startswith("the same"):
-        of = rows("loop", f"{LOOP}, native, default, one GPU, 64 cores")
-        row = of["512 learners" if label.endswith("64 cores") else "512, prototype's work"]
+        table = rows("loop", f"{LOOP}, native, default, one GPU, 64 cores")
+        row = table["512 learners" if label.endswith("64 cores") else "512, prototype's work"]
     else:
         physics, precision = label.lower().split(", ")
         row = rows("loop", f"{LOOP}, {precision}")[f"{count} learners, {physics}"]
@@ -45,8 +45,8 @@ def loop(label: str, column: str) -> list[float]:
 
 def gpus(label: str, column: str) -> list[float]:
     """Several GPUs."""
-    of = rows("loop", f"{LOOP}, native, default, 16 cores a GPU")
-    (row,) = (row for name, row in of.items() if name.startswith(f"{column} GPU"))
+    table = rows("loop", f"{LOOP}, native, default, 16 cores a GPU")
+    (row,) = (row for name, row in table.items() if name.startswith(f"{column} GPU"))
     return [row["ratio"] if label.startswith("times") else row["rate"]]
 
 
@@ -58,8 +58,8 @@ def physics(label: str, column: str) -> list[float]:
         "MJX": ("bare mjx.step", "ours, mjx"),
         "native (8 cores)": ("bare mujoco.rollout", "ours, native"),
     }[how]
-    of = rows("physics", f"{task.replace('-', '')}, {worlds}", ours)
-    rate = {"bare loop": of[bare]["rate"], "ours": of[ours]["rate"]}
+    table = rows("physics", f"{task.replace('-', '')}, {worlds}", ours)
+    rate = {"bare loop": table[bare]["rate"], "ours": table[ours]["rate"]}
     return [rate.get(column, rate["ours"] / rate["bare loop"])]
 
 
