@@ -40,7 +40,16 @@ from hybrid_rl.run.jax_settings import CACHE, prepare
 TASKS = "halfcheetah,hopper,cartpole"
 LEARNERS = ("plan", "act", "updates", "shares", "loop")
 OF = {"tasks": ("physics",), "worlds": ("physics",), "plans": ("plan",), "learners": LEARNERS}
-PLANNED = ("planner", "objective", "reward", "model", "policy", "critic", "model_learner", "policy_learner")
+PLANNED = (
+    "planner",
+    "objective",
+    "reward",
+    "model",
+    "policy",
+    "critic",
+    "model_learner",
+    "policy_learner",
+)
 SIZES = {  # what is left empty, on a CPU and elsewhere
     "cpu": {"physics": "native", "worlds": "1,64", "learners": "1,4", "plans": "20x10,64x20"},
     "gpu": {
