@@ -1,12 +1,12 @@
-"""What can go wrong with a run: each message is one line, and each class has its exit code."""
+"""Errors of a run: each message is one line, and each class has its exit code."""
 
 
 class UsageError(ValueError):
-    """The request makes no run; the line says what would. Exit code 2."""
+    """The request is invalid; the message says what to change. Exit code 2."""
 
 
 class DivergenceError(ArithmeticError):
-    """A learner reached NaN or infinity; the line names seed, step and quantity. Exit code 1."""
+    """A learner reached NaN or infinity; names seed, step and quantity. Exit code 1."""
 
 
 class CheckpointError(OSError):
@@ -14,4 +14,4 @@ class CheckpointError(OSError):
 
 
 class MisfitError(CheckpointError):
-    """A checkpoint is sound, and belongs to another run."""
+    """A checkpoint is intact but belongs to another run."""

@@ -26,7 +26,7 @@ SPREAD = nn.initializers.variance_scaling(1 / 3, "fan_in", "uniform")
 
 
 class MLP(nn.Module):
-    """A perceptron: [..., d] -> [..., out]."""
+    """A multilayer perceptron: [..., d] -> [..., out]."""
 
     hidden: Sequence[int]
     out: int
@@ -35,7 +35,7 @@ class MLP(nn.Module):
 
     @nn.compact
     def __call__(self, x: Array) -> Array:
-        """Y [..., out] for x [..., d]."""
+        """The outputs y [..., out] for x [..., d]."""
         for width in self.hidden:
             x = nn.Dense(width, kernel_init=SPREAD)(x)
             x = ACTIVATIONS[self.activation](nn.LayerNorm()(x) if self.layer_norm else x)
@@ -43,7 +43,7 @@ class MLP(nn.Module):
 
 
 def check(name: str, hidden: Sequence[int], activation: str) -> None:
-    """Raise ValueError where `hidden` or `activation` of the part `name` make no network."""
+    """Raise ValueError if `hidden` or `activation` of the part `name` is invalid."""
     if not all(isinstance(width, int) and width > 0 for width in hidden):
         raise ValueError(f"{name}.hidden={list(hidden)}: widths are positive integers")
     if activation not in ACTIVATIONS:
@@ -66,8 +66,8 @@ def ensemble_init(net: nn.Module, key: Array, members: int, x: Array) -> Any:
 def ensemble_apply(net: nn.Module, params: Any, x: Array) -> Array:
     """Outputs [members, ..., out] of all copies at the same x [..., d].
 
-    Each copy has an x of its own: one for all would make a first layer whose result must be
-    transposed, which is a pass over memory that a GPU with many learners has no time for.
+    x is repeated for each copy: a shared x would give a first layer whose result must be
+    transposed, a pass over memory that is slow on a GPU with many learners.
     """
     members = len(jax.tree.leaves(params)[0])
     return jax.vmap(net.apply)(params, jnp.broadcast_to(x, (members, *x.shape)))

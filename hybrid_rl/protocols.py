@@ -1,6 +1,6 @@
 """The protocols that parts follow; shapes as in hybrid_rl.types.
 
-Parts inherit nothing: a class that has these methods and fields is a part.
+Parts do not inherit from them: a class that has these methods and fields is a part.
 """
 
 from typing import Protocol
@@ -25,7 +25,7 @@ class Env(Protocol):
         """MJCF text, for drawing."""
 
     def pose(self, state: EnvState) -> Array:
-        """Qpos [nq] of `scene` at `state`."""
+        """The positions qpos [nq] of `scene` at `state`."""
 
 
 class AnalyticEnv(Env, Protocol):
@@ -35,7 +35,7 @@ class AnalyticEnv(Env, Protocol):
     """
 
     def dynamics(self, x: Array, u: Array) -> Array:
-        """The observation [o] that follows x [o] under u [m]."""
+        """The next observation [o] after action u [m] at x [o]."""
 
     def equilibrium(self) -> tuple[Array, Array]:
         """x [o] and u [m] with dynamics(x, u) = x."""
@@ -72,7 +72,7 @@ class Trainable(Model, Protocol):
         """Mean loss [] of transitions [members * B, ...]."""
 
     def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
-        """Random next planning states [B, n] for noise [B, n] ~ N(0, I)."""
+        """Samples of the next planning states [B, n], for noise [B, n] ~ N(0, I)."""
 
 
 class Uncertain(Model, Protocol):
@@ -143,14 +143,14 @@ class Reward(Protocol):
         """Parameters with statistics updated by planning states x [B, n]."""
 
     def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
-        """The reward [] of u [m] at x [n], and the logit [] that the episode ends there."""
+        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
 
     def loss(self, params: PyTree, x: Array, u: Array, target: Array, ended: Array) -> Array:
         """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
 
 
 class Objective(Protocol):
-    """J(path): the return that a planner maximises. It may couple all times, and the past."""
+    """J(path): the return that a planner maximises; any function of the path and of the past."""
 
     def init(self, spec: Spec) -> PyTree:
         """Memory before the first decision of an episode."""
@@ -160,8 +160,8 @@ class Objective(Protocol):
     ) -> tuple[Return, PyTree]:
         """J of paths that begin at the planning state x [n], and the memory after this decision.
 
-        u_before: [m] the action of the decision before, 0 at the first. J is a plain function,
-        which holds whatever was drawn from `key`; the memory holds only what is remembered.
+        u_before: [m] the previous action, 0 at the first decision. J is a plain function, which
+        closes over everything drawn from `key`; the memory holds only what later decisions need.
         """
 
 
@@ -176,14 +176,14 @@ class Staged(Objective, Protocol):
 
 
 class Target(Protocol):
-    """p(s): where in the search space there is something to learn."""
+    """p(s): the density in which a method explores the search space."""
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p(s) [] at s [v], up to a constant."""
 
 
 class Belief(Protocol):
-    """What measurements y at s say about an unknown function, updated recursively."""
+    """A distribution over an unknown function, updated recursively by measurements y at s."""
 
     def init(self, key: Array, spec: Spec) -> PyTree:
         """The belief before any measurement."""
@@ -202,7 +202,7 @@ class Belief(Protocol):
 
 
 class Proposal(Protocol):
-    """The distribution that a sampling planner draws its candidates from."""
+    """The distribution from which a sampling planner draws its candidates."""
 
     def init(self, spec: Spec, quantile: Array) -> PyTree:
         """Carry of one imagined path before its first action; `quantile` [] in [0, 1) is k / K."""
@@ -241,7 +241,7 @@ class Demonstrations(Protocol):
 class Learner(Protocol):
     """data -> parameters.
 
-    `data` says which transitions an update gets:
+    `data` names the transitions that an update gets:
 
         uniform   a batch drawn from the replay memory; see UniformLearner
         latest    this step's transitions [E, ...], each one once; see LatestLearner
@@ -259,7 +259,7 @@ class Learner(Protocol):
     def update(
         self, state: PyTree, params: Params, batch: Batch, key: Array
     ) -> tuple[PyTree, dict[str, Array]]:
-        """One update; `params` of all learners before it, metrics name -> []."""
+        """The next state, and metrics name -> []; `params` of all learners before the update."""
 
 
 class UniformLearner(Learner, Protocol):
@@ -274,8 +274,8 @@ class UniformLearner(Learner, Protocol):
 class LatestLearner(Learner, Protocol):
     """A learner that takes each decision once, with its true next observation.
 
-    Its updates get the transitions [E] of the step that just ended, without a delay, from the
+    Its updates get the transitions [E] of the step that just ended, without delay, from the
     first decision of the run on, random ones included.
     """
 
-    every: int  # decisions of each environment between two updates; 1: none is left out
+    every: int  # decisions of each environment between two updates; 1: uses them all

@@ -1,6 +1,6 @@
-"""The nouns that parts exchange; hybrid_rl.protocols has the verbs.
+"""Data structures that parts exchange; their protocols are in hybrid_rl.protocols.
 
-Shapes, the same in the whole project:
+Shapes, used in the whole project:
 
     o observation   n planning state   m action   T planning horizon [decisions]
     K samples       B batch            E parallel environments   C capacity
@@ -24,7 +24,7 @@ PyTree = Any
 
 
 class Spec(NamedTuple):
-    """Sizes and rate of an environment, as parts need them."""
+    """Sizes and time step of an environment."""
 
     obs: int  # o
     act: int  # m
@@ -44,10 +44,10 @@ class EnvState:
     data: PyTree  # the physical state
     obs: Array  # [o]
     reward: Array  # []
-    terminated: Array  # [] bool: the task ended, nothing comes after
-    truncated: Array  # [] bool: the time limit ended the episode, the task would go on
+    terminated: Array  # [] bool: the task ended, no reward follows
+    truncated: Array  # [] bool: only the time limit ended the episode
     metrics: dict[str, Array]  # name -> [], for logs only
-    info: dict[str, Array]  # what the task remembers
+    info: dict[str, Array]  # the task's own memory
 
     @property
     def done(self) -> Array:
@@ -75,7 +75,7 @@ class Batch(NamedTuple):
     terminated: Array  # [B] 0 or 1
     truncated: Array  # [B] 0 or 1
     next_obs: Array  # [B, o]
-    next_action: Array | None = None  # [B, m] at next_obs; arbitrary after an end
+    next_action: Array | None = None  # [B, m] executed at next_obs; arbitrary if the episode ended
 
 
 class Path(NamedTuple):
@@ -92,8 +92,8 @@ class Params(NamedTuple):
     reward: PyTree = None  # r(x, u)
     policy: PyTree = None  # pi(x)
     critic: PyTree = None  # Q(x, u)
-    belief: PyTree = None  # whatever else a method learns
-    decisions: Array | None = None  # [] of the run so far, during training
+    belief: PyTree = None  # anything else that a method learns
+    decisions: Array | None = None  # [] decisions of the run so far, during training
 
 
 Return = Callable[[Path], Array]  # path -> J []

@@ -3,7 +3,7 @@
     k(s, s') = a^2 exp(-|s - s'|^2 / (2 l^2)),   K = k(S, S) + e^2 I = L L'
     mean(s) = k(s, S) K^-1 y,   var(s) = a^2 - |L^-1 k(S, s)|^2
 
-Empty slots of the ring count as independent of everything, so that all shapes stay fixed.
+Empty slots of the ring are treated as independent of everything, so that shapes stay fixed.
 Source: Rasmussen and Williams 2006, algorithm 2.1; thesis section 6.3.1.
 """
 
@@ -19,7 +19,7 @@ from hybrid_rl.types import Spec
 
 
 class GPState(NamedTuple):
-    """The measurements, and what predictions need of them."""
+    """The measurements, and what predictions need."""
 
     s: Array  # [C, v]
     y: Array  # [C]
@@ -33,7 +33,7 @@ class GaussianProcess:
     """A belief about a function of `size` variables.
 
     Raises:
-        ValueError: for a capacity, a length or deviations that are not positive.
+        ValueError: for fields that are not positive.
     """
 
     size: int = 1  # v
@@ -49,7 +49,7 @@ class GaussianProcess:
                 raise ValueError(f"belief.{name}={getattr(self, name)}: must be above 0")
 
     def init(self, key: Array, spec: Spec) -> GPState:
-        """No measurement; the key is not used."""
+        """The belief before any measurement; the key is not used."""
         c = self.capacity
         eye = jnp.eye(c) / jnp.sqrt(self.signal**2 + self.noise**2)
         none = jnp.zeros(())
@@ -67,7 +67,7 @@ class GaussianProcess:
         return GPState(s, y, count, inverse, inverse.T @ (inverse @ jnp.where(filled, y, 0)))
 
     def _kernel(self, s: Array, other: Array) -> Array:
-        """K [N, M] of s [N, v] and other [M, v]."""
+        """The kernel k [N, M] of s [N, v] and other [M, v]."""
         apart = jnp.sum((s[:, None] - other[None]) ** 2, -1)
         return self.signal**2 * jnp.exp(-0.5 * apart / self.length**2)
 
@@ -79,7 +79,7 @@ class GaussianProcess:
         return k @ state.weights, jnp.sqrt(jnp.maximum(variance, 1e-8))
 
     def report(self, state: GPState) -> dict[str, Array]:
-        """The greatest y [] in the ring."""
+        """The maximum of y [] in the ring."""
         filled = jnp.arange(self.capacity) < state.count
         return {"belief/best": jnp.max(jnp.where(filled, state.y, -jnp.inf))}
 

@@ -10,7 +10,7 @@ Algorithm 6 and eq. 6.10). `apply` chooses the time tau and the duration lambda 
 
     first    plan at every decision, tau = now, lambda = one decision
     horizon  plan every T decisions, tau = now, lambda = T
-    search   plan every T decisions, tau and lambda of greatest return; lambda = 0 is no correction
+    search   plan every T decisions, tau and lambda of maximum return; lambda = 0 is no correction
 """
 
 from dataclasses import dataclass
@@ -29,17 +29,17 @@ WINDOWS = 8  # values of tau, and of lambda, that a search compares
 
 
 class AdjointState(NamedTuple):
-    """What one decision leaves to the next."""
+    """The planner's state between two decisions."""
 
-    v: Array  # [T, m] the corrections, from the decision before on
-    u: Array  # [m] the action of the decision before
+    v: Array  # [T, m] corrections from the previous decision on
+    u: Array  # [m] the previous action
     count: Array  # [] decisions of the episode so far
-    memory: Any  # the objective's
+    memory: Any  # of the objective
 
 
 @dataclass(frozen=True)
 class AdjointController:
-    """A planner by gradients, around a policy or around zero.
+    """A gradient-based planner around a policy, or around zero.
 
     Raises:
         ValueError: for counts, gains or rates out of range.
@@ -54,9 +54,9 @@ class AdjointController:
     gain: float | None = None  # W [u^2 / J]; None: the policy's variance
     gain_decay: float = 1.0  # of W, per decision of the episode
     normalise: bool = False  # g by its root mean square over the horizon; W is then [u]
-    costate_bound: float | None = None  # the author's clip of rho, 1
+    costate_bound: float | None = None  # clip of rho; the thesis' author used 1
     apply: str = "first"  # first | horizon | search
-    lyapunov: StabilizingPolicy | None = None  # whose V is logged; None: none
+    lyapunov: StabilizingPolicy | None = None  # whose V is logged; None: no log
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -74,7 +74,7 @@ class AdjointController:
             raise ValueError(f"adjoint planner: apply={self.apply}: choose {', '.join(APPLY)}")
 
     def init(self, spec: Spec) -> AdjointState:
-        """No correction, and the objective's empty memory."""
+        """No correction, and the objective's initial memory."""
         v = jnp.zeros((self.horizon, spec.act))
         none = jnp.zeros((), jnp.int32)
         return AdjointState(v, v[0], none, self.objective.init(spec))
@@ -83,22 +83,22 @@ class AdjointController:
         self, params: Params, state: AdjointState, obs: Array, key: Array
     ) -> tuple[Array, AdjointState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
-        drawing = jax.random.split(key)[0]  # the stream of version 0.1, whose numbers stay
+        prepare_key = jax.random.split(key)[0]  # keeps the random numbers of version 0.1
         x = self.model.lift(params.model, obs)
-        value, memory = self.objective.prepare(params, state.memory, x, state.u, drawing)
+        value, memory = self.objective.prepare(params, state.memory, x, state.u, prepare_key)
         plan = _Plan(self, params, value, x, state.v.shape[1], self.gain_decay**state.count)
         due = (self.apply == "first") | (state.count % self.horizon == 0)
-        left = sampling.shift(state.v)
-        held = left if self.warm_start else jnp.where(due, 0, left)
+        rest = sampling.shift(state.v)
+        held = rest if self.warm_start else jnp.where(due, 0, rest)
         if self.apply == "first":
-            v = plan.better(held)
+            v = plan.improve(held)
         else:
-            v = jax.lax.cond(due, lambda v: plan.window(plan.better(v)), lambda v: v, held)
+            v = jax.lax.cond(due, lambda v: plan.window(plan.improve(v)), lambda v: v, held)
         u = jnp.clip(plan.mean(x) + v[0], -1, 1)
         return u, AdjointState(v, u, state.count + 1, memory), plan.metrics(v)
 
     def greedy(self) -> "AdjointController":
-        """The same: it has no exploration noise."""
+        """The same controller: it has no exploration noise."""
         return self
 
 
@@ -111,14 +111,14 @@ class _Plan:
     value: Return  # J
     x: Array
     act: int  # m
-    share: Array  # [] of W at this decision
+    factor: Array  # [] on W at this decision
 
     def step(self, x: Array, u: Array) -> Array:
-        """The model."""
+        """The next state [n] by the model."""
         return self.of.model.step(self.params.model, x, u)
 
     def mean(self, x: Array) -> Array:
-        """The action [m] that is corrected."""
+        """The uncorrected action [m] at x [n]."""
         if self.of.policy is None:
             return jnp.zeros(self.act)
         return self.of.policy.mean(self.params.policy, x)
@@ -127,28 +127,28 @@ class _Plan:
         """The path under corrections v [T, m]."""
         return adjoint.roll(self.step, self.mean, self.x, v)
 
-    def better(self, v: Array) -> Array:
-        """Corrections [T, m] of more return than v [T, m]."""
+    def improve(self, v: Array) -> Array:
+        """Corrections [T, m] after gradient steps from v [T, m]."""
 
         def iterate(v: Array, _: None) -> tuple[Array, None]:
             path, bound = self.roll(v), self.of.costate_bound
             g = adjoint.adjoint(self.step, self.mean, self.value, path, bound).gradient
             if self.of.normalise:
                 g = g / (jnp.sqrt(jnp.mean(g**2)) + 1e-6)
-            u = path.u + self.share * self._gain(path.x[:-1]) * g
+            u = path.u + self.factor * self._gain(path.x[:-1]) * g
             return jnp.clip(u, -1, 1) - (path.u - v), None
 
         return jax.lax.scan(iterate, v, None, length=self.of.iterations)[0]
 
     def _gain(self, x: Array) -> Array | float:
-        """W at x [T, n]."""
+        """The gain W at x [T, n]."""
         if self.of.gain is not None:
             return self.of.gain
         policy: Any = self.of.policy  # __post_init__ has checked that there is one
         return jax.vmap(policy.variance, (None, 0))(self.params.policy, x)
 
     def window(self, v: Array) -> Array:
-        """Corrections v [T, m]; with `search` the window of them with the greatest return."""
+        """Corrections v [T, m]; with `search` only those in the window of maximum return."""
         if self.of.apply != "search":
             return v
         T = len(v)
@@ -161,7 +161,7 @@ class _Plan:
         return parts[jnp.argmax(returns)]
 
     def metrics(self, v: Array) -> dict[str, Array]:
-        """Metrics of corrections v [T, m]."""
+        """Metrics of the plan with corrections v [T, m]."""
         mean, path, nominal = self.mean(self.x), self.roll(v), self.roll(0 * v)
         action = mean + v[0]
         around = adjoint.adjoint(self.step, self.mean, self.value, nominal)

@@ -1,8 +1,8 @@
-"""Go to the maximum of p(s): Bayesian optimisation, by a robot or without dynamics.
+"""Go to the maximum of p(s): Bayesian optimisation, with a robot or without dynamics.
 
     s* = argmax_i log p(s_i),   s_i ~ U(S);   a new goal every `every` decisions
 
-With a stabilizing policy, s* is its goal, and the robot measures wherever it is by then
+With a stabilizing policy, s* is its goal, and the robot measures at its actual position
 (LQR-Bayesian optimisation). Without one the action is s* itself, scaled to [-1, 1], for an
 environment without dynamics. Source: thesis section 6.3.1 and Algorithm 1.
 """
@@ -20,7 +20,7 @@ from hybrid_rl.types import Params, Spec
 
 
 class GoalState(NamedTuple):
-    """The present goal."""
+    """The current goal."""
 
     s: Array  # [v]
     age: Array  # [] decisions since it was chosen; 0: choose a new one
@@ -65,5 +65,5 @@ class GoalController:
         return self.policy.towards(obs, self.domain.put(rest, goal)), after, metrics
 
     def greedy(self) -> "GoalController":
-        """The same: it has no exploration noise."""
+        """The same controller: it has no exploration noise."""
         return self

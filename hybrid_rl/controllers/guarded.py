@@ -25,7 +25,7 @@ class GuardedController:
     level: float | None = None  # of V; None: no guard
 
     def init(self, spec: Spec) -> Any:
-        """The controller's state."""
+        """The initial state of the inner controller."""
         return self.controller.init(spec)
 
     def act(
@@ -45,5 +45,5 @@ class GuardedController:
         return u, state, {**metrics, "planner/handed_over": out.astype(jnp.float32)}
 
     def greedy(self) -> "GuardedController":
-        """The guard around the controller without exploration."""
+        """The same guard around the controller without exploration."""
         return replace(self, controller=self.controller.greedy())

@@ -34,7 +34,7 @@ class NoisyState(NamedTuple):
 
 @dataclass(frozen=True)
 class NoisyController:
-    """`controller` with noise; evaluation leaves it out.
+    """`controller` with noise during training, without noise in evaluation.
 
     Raises:
         ValueError: for an unknown kind, or numbers out of range.
@@ -46,7 +46,7 @@ class NoisyController:
     theta: float = 0.15  # [1/s] of ou
     hold: int = 1  # [decisions] of held
     decay: float = 1.0  # factor per decision of the run
-    until: int | None = None  # decisions of the run over which it falls to 0; None: it stays
+    until: int | None = None  # decisions of the run until the noise is 0; None: never
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -77,7 +77,7 @@ class NoisyController:
         return jnp.clip(u + self._share(params) * e, -1, 1), after, metrics
 
     def _noise(self, state: NoisyState, key: Array) -> Array:
-        """e [m] of this decision. The key is consumed."""
+        """The noise e [m] of this decision. The key is consumed."""
         if self.kind == "uniform":
             return self.level * jax.random.uniform(key, state.e.shape, minval=-1, maxval=1)
         e = self.level * jax.random.normal(key, state.e.shape)
@@ -88,7 +88,7 @@ class NoisyController:
         return e
 
     def _share(self, params: Params) -> Any:
-        """[] of the noise that is left."""
+        """The factor [] on the noise at this decision of the run."""
         decisions: Any = params.decisions
         share: Any = 1.0 if self.decay == 1 else self.decay**decisions
         return share if self.until is None else share * jnp.maximum(1 - decisions / self.until, 0)

@@ -12,7 +12,7 @@ from hybrid_rl.types import Params, Spec
 
 @dataclass(frozen=True)
 class PolicyController:
-    """The policy alone: samples during training, its mean when `explore` is off."""
+    """Actions of the policy: samples if `explore` is true, else its mean."""
 
     policy: Policy
     model: Model | None = None  # lifts observations to planning states; None: they are the same
@@ -34,5 +34,5 @@ class PolicyController:
         return mean, state, {}
 
     def greedy(self) -> "PolicyController":
-        """The mean."""
+        """The controller that acts by the mean."""
         return replace(self, explore=False)

@@ -26,20 +26,20 @@ class SamplingController:
 
     Raises:
         ValueError: for a horizon, a number of samples or a temperature that is not positive,
-            an unknown way to execute, or `log_density` of candidates from several distributions.
+            an unknown `execute`, or `log_density` of candidates from several distributions.
     """
 
     model: Model
     objective: Staged
     proposal: Proposal
-    policy: Policy | None = None  # only to log how far the plan agrees with it
+    policy: Policy | None = None  # only for metrics that compare it with the plan
     horizon: int = 5  # T [decisions]
     samples: int = 20  # K
-    temperature: float = 0.1  # lambda [return], or [deviations] with normalise
+    temperature: float = 0.1  # lambda [return]; [std of returns] with normalise
     normalise: bool = False
     log_density: bool = False  # the thesis' p(v) in the weight
     execute: str = "mean"
-    rest: float = 0.0  # [u] of a plan before the first decision, and beyond its end
+    rest: float = 0.0  # [u] initial plan, and the last action of a shifted one
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -58,7 +58,7 @@ class SamplingController:
             )
 
     def init(self, spec: Spec) -> tuple[Array, Any]:
-        """The plan [T, m] at `rest`, and the first carries [K, ...] of the proposals."""
+        """The plan [T, m] of `rest`, and the proposal's initial carries [K, ...]."""
         quantiles = jnp.arange(self.samples) / self.samples
         carries = jax.vmap(lambda q: self.proposal.init(spec, q))(quantiles)
         return jnp.full((self.horizon, spec.act), self.rest), carries
@@ -103,9 +103,9 @@ class SamplingController:
         return jax.vmap(lambda path: self.objective.rewards(params, path)[0])(first)
 
     def _agreement(self, params: Params, x: Array, plan: Array) -> dict[str, Array]:
-        """Difference between the weighted mean and the policy's action.
+        """Metrics of the difference between the weighted mean and the policy's action.
 
-        The share |mu| / (|mu| + |u - mu|) is 1 where the policy alone acts, 0 where the model does.
+        The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0.
         """
         if self.policy is None:
             return {}
@@ -130,5 +130,5 @@ class SamplingController:
         }
 
     def greedy(self) -> "SamplingController":
-        """The weighted mean."""
+        """The controller that executes the weighted mean."""
         return replace(self, execute="mean")

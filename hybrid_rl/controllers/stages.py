@@ -13,7 +13,7 @@ from hybrid_rl.types import Params, Spec
 
 
 class StagesState(NamedTuple):
-    """The stages' own states."""
+    """The states of all stages."""
 
     each: dict[str, Any]
     count: Array  # [] decisions of the episode so far
@@ -23,10 +23,10 @@ class StagesState(NamedTuple):
 class StagesController:
     """Each of `stages` acts for its number of `decisions`; the last one acts to the end.
 
-    A stage that is not acting keeps its state. Metrics that only another stage has are NaN.
+    A stage that is not acting keeps its state. Metrics that the acting stage lacks are NaN.
 
     Raises:
-        ValueError: where the stages before the last have no positive number of decisions each.
+        ValueError: unless every stage but the last has a positive number of decisions.
     """
 
     stages: Mapping[str, Controller]  # in order
@@ -43,7 +43,7 @@ class StagesController:
             )
 
     def init(self, spec: Spec) -> StagesState:
-        """The stages' first states."""
+        """The initial states of all stages."""
         each = {name: stage.init(spec) for name, stage in self.stages.items()}
         return StagesState(each, jnp.zeros((), jnp.int32))
 
@@ -52,18 +52,18 @@ class StagesController:
     ) -> tuple[Array, StagesState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
 
-        def by(name: str) -> Any:
+        def branch_of(name: str) -> Any:
             def act(each: dict[str, Any]) -> tuple[Array, dict[str, Any], dict[str, Array]]:
                 u, after, metrics = self.stages[name].act(params, each[name], obs, key)
                 return u, {**each, name: after}, metrics
 
             return act
 
-        branches = [by(name) for name in self.stages]
-        known: dict[str, Any] = {}
+        branches = [branch_of(name) for name in self.stages]
+        shapes: dict[str, Any] = {}
         for branch in branches:
-            known |= jax.eval_shape(branch, state.each)[2]
-        nothing = {name: jnp.full(m.shape, jnp.nan, m.dtype) for name, m in known.items()}
+            shapes |= jax.eval_shape(branch, state.each)[2]
+        nothing = {name: jnp.full(m.shape, jnp.nan, m.dtype) for name, m in shapes.items()}
 
         def filled(branch: Any) -> Any:
             def act(each: dict[str, Any]) -> tuple[Array, dict[str, Any], dict[str, Array]]:
@@ -78,5 +78,5 @@ class StagesController:
         return u, StagesState(each, state.count + 1), metrics
 
     def greedy(self) -> "StagesController":
-        """The stages without exploration."""
+        """The same stages without exploration."""
         return replace(self, stages={name: each.greedy() for name, each in self.stages.items()})

@@ -1,4 +1,4 @@
-"""Adjoint core: how a return answers to small corrections of a policy, by the exact costate.
+"""Adjoint core: the gradient of a return at a policy's actions, by the exact costate.
 
     x_{t+1} = f(x_t, u_t),   u_t = pi(x_t) + v_t,   dJ = (J_x, J_u) = grad J(path)
     rho_T = J_x[T],   g_t = J_u[t] + f_u' rho_{t+1},   rho_t = J_x[t] + pi_x' g_t + f_x' rho_{t+1}
@@ -22,19 +22,19 @@ Return = Callable[[Path], Array]
 
 
 class Adjoint(NamedTuple):
-    """A path and what its return answers to."""
+    """A path, and the derivatives of its return."""
 
     path: Path  # x [T+1, n]; u [T, m]
     costate: Array  # rho [T+1, n] [J / x]
     gradient: Array  # g [T, m] [J / u]
 
 
-LONGEST = 32  # decisions
+UNROLLED = 32  # longest loop that is unrolled completely [decisions]
 
 
 def scan_unroll(length: int) -> int:
-    """Steps of a loop that are compiled as one: all of a short one; XLA takes minutes over 120."""
-    return length if length <= LONGEST else 4
+    """The unroll factor of a loop of `length` steps: XLA takes minutes to compile 120 of them."""
+    return length if length <= UNROLLED else 4
 
 
 def roll(step: Step, policy: Callable[[Array], Array], x: Array, correction: Array) -> Path:
@@ -56,10 +56,10 @@ def adjoint(
     path: Path,
     bound: float | None = None,
 ) -> Adjoint:
-    """Costate and gradient along `path`, which `roll` made with this `step` and `policy`.
+    """Costate and gradient along `path`, which must come from `roll` with `step` and `policy`.
 
-    `bound` clips every entry of rho to [-bound, bound] once it is complete, as the thesis'
-    author did; g is then no gradient.
+    `bound` clips every entry of the complete rho to [-bound, bound], as the thesis' author did;
+    g is then no longer the gradient.
     """
     dJ = jax.grad(objective)(path)
 
@@ -83,29 +83,29 @@ def adjoint(
     return Adjoint(path, costate, gradient)
 
 
-def mode_insertion_gradient(step: Step, objective: Return, found: Adjoint, u: Array) -> Array:
-    """D J / d lambda [] where action u [m] replaces the path's first for a duration lambda -> 0.
+def mode_insertion_gradient(step: Step, objective: Return, nominal: Adjoint, u: Array) -> Array:
+    """The derivative dJ / d lambda [] of replacing the first action by u [m] for a time lambda.
 
-    lambda is counted in decisions: divide by the time between decisions for [J/s]. Thesis
+    lambda -> 0 is counted in decisions: divide by the time between decisions for [J/s]. Thesis
     eq. (3.1) with the jump of a reward that depends on the action,
 
         r(x, u) - r(x, u_0) + rho_1' (f(x, u) - f(x, u_0)),
 
-    which is missing in print. Positive: the model would rather do u; zero: they agree.
+    which is missing in print. It is positive if u is better by the model, zero if both agree.
     """
-    path = found.path
+    path = nominal.path
     other = path._replace(u=path.u.at[0].set(u))
     jump = objective(other) - objective(path)
     x = path.x[0]
-    return jump + found.costate[1] @ (step(x, u) - step(x, path.u[0]))
+    return jump + nominal.costate[1] @ (step(x, u) - step(x, path.u[0]))
 
 
 def per_variance(insertion: Array, variance: Array) -> dict[str, Array]:
-    """What says whether a mode insertion gradient fell because model and policy agree.
+    """A mode insertion gradient divided by the policy's variance Sigma = diag(variance [m]).
 
-    To first order it is g' (u - mu), and g' Sigma g for u = mu + Sigma g (thesis Corollary 1), so
-    that it also falls as the policy's variance Sigma = diag(variance [m]) shrinks. Divided by
-    tr(Sigma) it is the size of the gradient g of the return alone [J / u^2].
+    To first order the insertion gradient is g' (u - mu), and g' Sigma g for u = mu + Sigma g
+    (thesis Corollary 1), so that it falls both as model and policy come to agree and as Sigma
+    shrinks. Divided by tr(Sigma) it measures only the gradient g of the return [J / u^2].
     """
     total = variance.sum()
     return {
@@ -122,10 +122,10 @@ def insertion_ahead(
     u: Array,
     horizon: int,
 ) -> Array:
-    """`mode_insertion_gradient` [] of u [m] at x [n] for T decisions of `policy`: no costate.
+    """`mode_insertion_gradient` [] of u [m] at x [n] over `horizon` decisions, without a costate.
 
-    rho_1' (f(x, u) - f(x, u_0)) is the derivative of J along one direction, which forward
-    differentiation gives for twice the price of the path.
+    rho_1' (f(x, u) - f(x, u_0)) is the derivative of J along one direction, which forward-mode
+    differentiation gives at twice the cost of the path.
     """
     first = policy(x)
     after = step(x, first)

@@ -1,4 +1,4 @@
-"""One branch for a batch: compute a costly change only where some member needs it."""
+"""One branch for a batch: compute a costly change only if some member needs it."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,10 +12,10 @@ Change = Callable[[Any, Any], Any]
 
 
 def when_any(needs: Callable[[Any], Array], change: Change) -> Change:
-    """`change(state, argument) -> state`, skipped where `needs(state)` holds for no member.
+    """`change(state, argument) -> state`, skipped if `needs(state)` is false for all members.
 
-    `lax.cond` under `vmap` computes both branches. Here there is one branch, however many `vmap`s
-    surround the call, so `change` must itself return unchanged the members that need nothing.
+    `lax.cond` under `vmap` computes both branches. Here all members take one branch, under any
+    number of `vmap`s, so `change` itself must leave members unchanged that do not need it.
     """
 
     @custom_vmap
@@ -25,10 +25,10 @@ def when_any(needs: Callable[[Any], Array], change: Change) -> Change:
 
     @branch.def_vmap
     def _(size: int, batched: Any, state: Any, argument: Any) -> tuple[Any, Any]:
-        def lead(is_batched: bool, x: Array) -> Array:
+        def repeat(is_batched: bool, x: Array) -> Array:
             return x if is_batched else jnp.broadcast_to(x, (size, *x.shape))
 
-        state, argument = jax.tree.map(lead, batched, [state, argument])
+        state, argument = jax.tree.map(repeat, batched, [state, argument])
         after = when_any(jax.vmap(needs), jax.vmap(change))(state, argument)
         return after, jax.tree.map(lambda _: True, after)
 

@@ -1,4 +1,4 @@
-"""A box in some coordinates of a state: where a method explores."""
+"""A box in some coordinates of a state: the region that a method explores."""
 
 from dataclasses import dataclass
 from math import prod

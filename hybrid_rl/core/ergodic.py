@@ -4,7 +4,7 @@
     D(p || q) ~ sum_i p_i (log(p_i N / vol) - log q(s_i)),   s_i ~ U(S),   sum_i p_i = 1
 
 N points in a box S of volume vol. Source: thesis Definition 3 and eq. (6.1)-(6.2), where the
-weight p(s_i) is right for points drawn uniformly, and q is divided by the time.
+weight p(s_i) assumes points drawn uniformly, and q is divided by the time.
 """
 
 from typing import NamedTuple
@@ -15,14 +15,14 @@ from jax import Array
 
 
 class Points(NamedTuple):
-    """Where p and q are compared."""
+    """The points at which p and q are compared."""
 
     s: Array  # [N, v]
     log_p: Array  # [N] log of weights that sum to one
 
 
 def log_sum(s: Array, x: Array, variance: Array, counted: Array | None = None) -> Array:
-    """log sum_t N(s; x_t, diag(variance)) [N] at s [N, v], of x [M, v] where `counted` [M]."""
+    """log sum_t N(s; x_t, diag(variance)) [N] at s [N, v]; `counted` [M] selects among x [M, v]."""
     apart = (s[:, None] - x[None]) ** 2 / variance[None, None]
     log_each = -0.5 * jnp.sum(apart, -1) - 0.5 * jnp.sum(jnp.log(2 * jnp.pi * variance))
     if counted is not None:

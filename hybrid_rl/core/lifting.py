@@ -14,7 +14,7 @@ def lift(model: Model | None, params: PyTree, obs: Array) -> Array:
 
 
 def lifted_batch(model: Model | None, params: PyTree, batch: Batch) -> Batch:
-    """`batch` with planning states [B, n] in place of its observations [B, o]."""
+    """`batch` with planning states [B, n] instead of its observations [B, o]."""
     if model is None:
         return batch
     each = jax.vmap(lambda obs: model.lift(params, obs))

@@ -1,6 +1,6 @@
-"""What exploring around an equilibrium does to a Lyapunov function, and a guard around it.
+"""How exploration around an equilibrium changes a Lyapunov function V, and a guard.
 
-    rate  = V(f(x, pi(x))) - V(x)                                     of the policy alone
+    rate  = V(f(x, pi(x))) - V(x)                                     under the policy
     bound = max_t V(f(x_t, u_t)) - V(f(x_t, pi(x_t)))                 thesis eq. (6.15), beta
     u     = u if V(f(x, u)) <= level else pi(x)                       the set C of Definition 4
 
@@ -23,11 +23,11 @@ Scalar = Callable[[Array], Array]
 
 
 class Record(NamedTuple):
-    """Of one plan."""
+    """V along one plan."""
 
-    now: Array  # V [] at its first state
-    rate: Array  # [] [V a decision]
-    bound: Array  # [] [V a decision]
+    now: Array  # [] V at the first state
+    rate: Array  # [] [V per decision]
+    bound: Array  # [] [V per decision]
 
 
 def record(V: Scalar, step: Step, policy: Policy, path: Path) -> Record:
@@ -42,5 +42,5 @@ def record(V: Scalar, step: Step, policy: Policy, path: Path) -> Record:
 
 
 def exits_level_set(V: Scalar, step: Step, x: Array, u: Array, level: float) -> Array:
-    """[] bool: whether action u [m] at x [n] leads out of V <= level."""
+    """Whether [] action u [m] at x [n] leads out of the level set V <= level."""
     return V(step(x, u)) > level

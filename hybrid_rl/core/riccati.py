@@ -2,7 +2,7 @@
 
     e' = A e + B u,   P = Q + A' P A - A' P B K,   K = (R + B' P B)^-1 B' P A,   u = -K e
 
-V(e) = e' P e falls along e' = (A - B K) e: V(e') - V(e) = -e' (Q + K' R K) e.
+V(e) = e' P e decreases along e' = (A - B K) e: V(e') - V(e) = -e' (Q + K' R K) e.
 Source: discrete algebraic Riccati equation, solved by SciPy.
 """
 
@@ -23,7 +23,7 @@ def regulator(A: np.ndarray, B: np.ndarray, Q: np.ndarray, R: np.ndarray) -> Reg
     """The regulator of e' = A e + B u under the cost sum e' Q e + u' R u, Q [d, d], R [m, m].
 
     Raises:
-        numpy.linalg.LinAlgError: where nothing stabilises the system.
+        numpy.linalg.LinAlgError: if the system cannot be stabilised.
     """
     P = solve_discrete_are(A, B, Q, R)
     return Regulator(np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A), P)

@@ -4,12 +4,12 @@
     S_t^k = return from t on along path k
     w_t^k = softmax_k( S_t^k / lambda  [+ log p(v_t^k)] ),   a_t <- sum_k w_t^k v_t^k
 
-Thesis Algorithm 3 and eq. (3.8), with its p(v) as a switch. With q the law that v is drawn from,
-sum_k w_k v_k without the switch estimates the mean of the law proportional to q(v) exp(S / lambda).
-That is the mean of Theorem 2, whose law has p for q, where v is drawn from p itself. Elsewhere the
-importance ratio p / q belongs into the weight, and it is never there: candidates of a mixture
-count as if its law were p. Noise around the plan is Williams et al. 2017, eq. 20-27, with
-alpha = 1: q is the prior, so the weight has no control cost lambda a' Sigma^-1 e.
+Thesis Algorithm 3 and eq. (3.8), whose term log p(v) is optional. Without it, for v drawn from q,
+sum_k w_k v_k estimates the mean of the distribution proportional to q(v) exp(S / lambda). This is
+the mean of Theorem 2 if q is its p. For another q the weights would need the importance ratio
+p / q, which is left out: candidates of a mixture are weighted as if the mixture were p. Noise
+around the plan is Williams et al. 2017, eq. 20-27, with alpha = 1: q is the prior, so the weight
+has no control cost lambda a' Sigma^-1 e.
 """
 
 from collections.abc import Callable
@@ -38,9 +38,9 @@ def imagine(
     plan: Array,
     noise: Array,
 ) -> Samples:
-    """Roll K paths of the model `step` from x [n] beside plan [T, m].
+    """K paths of the model `step` from x [n], with candidates around plan [T, m].
 
-    `propose(carry, x, a_t, noise) -> (v, log_prob, carry)` makes the candidates of the
+    `propose(carry, x, a_t, noise) -> (v, log_prob, carry)` makes the candidates from the
     noise [K, T, m] ~ N(0, I); `carries` [K, ...] start the paths.
     """
     start = jnp.broadcast_to(x, (noise.shape[0], *x.shape))
@@ -69,11 +69,11 @@ def weights(
     """Weights [K, T] that sum to one over K, from reward_to_go S [K, T].
 
     `normalise` divides S by its standard deviation over K, so that `temperature` is a pure
-    number; else it has the unit of a return. `log_prob` [K, T] joins the exponent if given.
+    number; otherwise it has the unit of a return. `log_prob` [K, T] is added to the exponent.
     """
     if normalise:
-        spread = jnp.std(reward_to_go, axis=0, keepdims=True)
-        reward_to_go = reward_to_go / (spread + 1e-6)
+        std = jnp.std(reward_to_go, axis=0, keepdims=True)
+        reward_to_go = reward_to_go / (std + 1e-6)
     exponent = reward_to_go / temperature
     if log_prob is not None:
         exponent = exponent + log_prob
@@ -81,10 +81,10 @@ def weights(
 
 
 def effective_samples(w: Array) -> Array:
-    """1 / sum_k w_k^2 for w [K, T] -> [T]: K where all count the same, 1 where one takes all."""
+    """1 / sum_k w_k^2 [T] for w [K, T]: K if all weights are equal, 1 if only one is not 0."""
     return 1.0 / jnp.sum(w**2, axis=0)
 
 
 def shift(plan: Array, rest: float = 0.0) -> Array:
-    """The plan [T, m] one decision later: its first row gone, `rest` at the end."""
+    """The plan [T, m] one decision later: without its first action, with `rest` at the end."""
     return jnp.concatenate([plan[1:], jnp.full_like(plan[:1], rest)])

@@ -2,15 +2,15 @@
 
 m <- m + a (mean(batch) - m),   s^2 <- (1 - a) s^2 + a var(batch) + a (1 - a) (mean(batch) - m)^2
 
-with a = max(1 / batches, rate): exact while young, exponential after, so that the statistics
-follow a growing replay memory.
+with a = max(1 / batches, rate): exact for the first 1 / rate batches, then exponential, so that the
+statistics follow a growing replay memory.
 """
 
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-FLOOR = 1e-6  # smallest standard deviation in units of the entry's magnitude: float32 rounds there
+FLOOR = 1e-6  # minimum standard deviation relative to an entry's magnitude: float32 rounds there
 
 
 @struct.dataclass
@@ -19,13 +19,13 @@ class Running:
 
     mean: Array  # [d]
     std: Array  # [d]
-    least: Array  # [d] smallest standard deviation that is no rounding error
+    min_std: Array  # [d] below it, a standard deviation is a rounding error
     count: Array  # [] batches seen
 
     @property
     def scale(self) -> Array:
-        """[d] what `normalise` divides by: std, at least `least`, and 1 where both are zero."""
-        std = jnp.maximum(self.std, self.least)
+        """[d] what `normalise` divides by: std, at least `min_std`, and 1 where both are zero."""
+        std = jnp.maximum(self.std, self.min_std)
         return jnp.where(std > 0, std, 1)
 
     @property
@@ -44,15 +44,15 @@ def update(
 ) -> Running:
     """Statistics that include batch [B, d].
 
-    magnitude: [d] of the numbers that the batch was computed from, where it holds differences;
+    magnitude: [d] for a batch of differences, the magnitude of the numbers that were subtracted;
     None: that of the batch's own entries.
     """
     count = stats.count + 1
     a = jnp.maximum(1 / count, rate)
     step = batch.mean(0) - stats.mean
     variance = (1 - a) * stats.std**2 + a * batch.var(0) + a * (1 - a) * step**2
-    now = Running(stats.mean + a * step, jnp.sqrt(variance), stats.least, count)
-    return now.replace(least=FLOOR * (now.magnitude if magnitude is None else magnitude))
+    now = Running(stats.mean + a * step, jnp.sqrt(variance), stats.min_std, count)
+    return now.replace(min_std=FLOOR * (now.magnitude if magnitude is None else magnitude))
 
 
 def normalise(stats: Running, x: Array) -> Array:
@@ -62,5 +62,5 @@ def normalise(stats: Running, x: Array) -> Array:
 
 
 def denormalise(stats: Running, x: Array) -> Array:
-    """Mean + scale x, the inverse of `normalise`."""
+    """mean + scale x, the inverse of `normalise`."""
     return stats.mean + stats.scale * x

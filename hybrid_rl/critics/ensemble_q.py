@@ -1,4 +1,4 @@
-"""Q(x, u): an ensemble of action values, reduced to its minimum (Fujimoto et al. 2018, eq. 10)."""
+"""Q(x, u): the minimum of an ensemble of action values (Fujimoto et al. 2018, eq. 10)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,13 +15,13 @@ class EnsembleQ:
     """`members` independent action-value networks.
 
     Raises:
-        ValueError: for widths, activations or counts that make no network.
+        ValueError: for invalid widths, activations or counts.
     """
 
     hidden: tuple[int, ...] = (256, 256)
     activation: str = "relu"
     members: int = 2
-    layer_norm: bool = False  # keeps many updates a decision stable (Hiraoka et al. 2022)
+    layer_norm: bool = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -42,5 +42,5 @@ class EnsembleQ:
         return ensemble_apply(self._net(), params, jnp.concatenate([x, u], -1))[..., 0]
 
     def value(self, params: Any, x: Array, u: Array) -> Array:
-        """The smallest member's Q [...]."""
+        """The minimum of Q [...] over the members."""
         return self.all(params, x, u).min(0)

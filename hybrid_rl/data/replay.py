@@ -1,7 +1,7 @@
 """Replay memory: a ring of packed rows, sampled uniformly.
 
-A transition is one row of float32 [width]; the next executed action is that of the row of the same
-environment one decision later, so that it is stored once. The memory starts with the
+A transition is one row of float32 [width]; its next executed action is in the row of the same
+environment one decision later, and is not stored twice. The memory starts with the
 demonstrations, if there are any.
 """
 
@@ -18,19 +18,19 @@ from hybrid_rl.types import Batch, Spec, Transition
 
 @struct.dataclass
 class Memory:
-    """The ring. `rows` is overwritten in place where it is donated."""
+    """The ring; `rows` is updated in place if it is donated."""
 
     rows: Array  # [C, E, width] float32
-    count: Array  # [] int32 decisions of each environment ever added
+    count: Array  # [] int32 decisions of each environment added so far
 
 
 @dataclass(frozen=True)
 class Replay:
-    """A bounded memory of `capacity` decisions, over all environments of one learner.
+    """A memory of `capacity` decisions, over all environments of one learner.
 
     Raises:
-        ValueError: for a capacity that is not a positive whole number, or too little for
-            the demonstrations.
+        ValueError: for a capacity that is not a positive integer, or too small for the
+            demonstrations.
     """
 
     capacity: int = 1_000_000
@@ -46,40 +46,40 @@ class Replay:
                 f"{self.num_demonstrated(1)} decisions"
             )
 
-    def num_demonstrated(self, worlds: int) -> int:
-        """Decisions of each of `worlds` environments in the initial memory."""
+    def num_demonstrated(self, num_envs: int) -> int:
+        """Demonstrated decisions of each of `num_envs` environments in the initial memory."""
         if self.demonstrations is None:
             return 0
-        return len(self.demonstrations.load().reward) // worlds
+        return len(self.demonstrations.load().reward) // num_envs
 
     @staticmethod
     def width(spec: Spec) -> int:
-        """Numbers in one row: obs, action, reward, two flags, next obs."""
+        """The size of a row: obs, action, reward, two flags, next obs."""
         return 2 * spec.obs + spec.act + 3
 
     def nbytes(self, spec: Spec) -> int:
         """Bytes of one learner's memory."""
         return 4 * self.capacity * self.width(spec)
 
-    def init(self, spec: Spec, worlds: int) -> Memory:
-        """The memory for `worlds` environments: empty, or with the demonstrations.
+    def init(self, spec: Spec, num_envs: int) -> Memory:
+        """The memory of `num_envs` environments: empty, or with the demonstrations.
 
-        Demonstrations are divided among the environments, a stretch in order for each. A stretch
-        that is cut inside an episode ends as truncated, since another episode follows it.
+        Each environment gets a stretch of successive demonstrations. A stretch that ends within an
+        episode is marked as truncated there, since another episode follows it.
         """
-        length = max(self.capacity // worlds, 2)
-        rows = jnp.zeros((length, worlds, self.width(spec)))
-        count = self.num_demonstrated(worlds)
+        length = max(self.capacity // num_envs, 2)
+        rows = jnp.zeros((length, num_envs, self.width(spec)))
+        count = self.num_demonstrated(num_envs)
         if self.demonstrations is not None and count:
             flat = _packed(Transition(*map(jnp.asarray, self.demonstrations.load())))
-            stretches = flat[: count * worlds].reshape(worlds, count, -1).swapaxes(0, 1)
+            stretches = flat[: count * num_envs].reshape(num_envs, count, -1).swapaxes(0, 1)
             terminated, truncated = spec.obs + spec.act + 1, spec.obs + spec.act + 2
             cut = 1 - stretches[-1, :, terminated]
             rows = rows.at[:count].set(stretches.at[-1, :, truncated].set(cut))
         return Memory(rows, jnp.full((), count, jnp.int32))
 
     def add(self, memory: Memory, new: Transition) -> Memory:
-        """Memory with one decision of every environment; arrays of `new` lead with [E]."""
+        """The memory with one more decision of every environment, `new` [E, ...]."""
         slot = memory.count % memory.rows.shape[0]
         rows = jax.lax.dynamic_update_index_in_dim(memory.rows, _packed(new), slot, 0)
         return Memory(rows, memory.count + 1)
@@ -89,16 +89,16 @@ class Replay:
 
         The key is consumed.
         """
-        length, worlds, width = memory.rows.shape
+        length, num_envs, width = memory.rows.shape
         filled = jnp.minimum(memory.count, length)
         oldest = memory.count - filled
-        known = jnp.maximum(filled - 1, 1) * worlds
+        known = jnp.maximum(filled - 1, 1) * num_envs
         bits = jax.random.bits(key, (batch_size,))  # one draw where randint makes three
         draw = (bits % known.astype(bits.dtype)).astype(known.dtype)
-        time, world = oldest + draw // worlds, draw % worlds
+        time, env = oldest + draw // num_envs, draw % num_envs
         flat = memory.rows.reshape(-1, width)
-        row = flat[(time % length) * worlds + world]
-        later = flat[((time + 1) % length) * worlds + world]
+        row = flat[(time % length) * num_envs + env]
+        later = flat[((time + 1) % length) * num_envs + env]
         action = slice(spec.obs, spec.obs + spec.act)
         return Batch(*unpack(row, spec), next_action=later[:, action])
 
@@ -112,12 +112,12 @@ def unpack(rows: Array, spec: Spec) -> Transition:
 
 
 def as_batch(new: Transition) -> Batch:
-    """Transitions [B, ...] as a batch, whose next actions are unknown."""
+    """Transitions [B, ...] as a batch without next actions."""
     terminated, truncated = (f.astype(jnp.float32) for f in (new.terminated, new.truncated))
     return Batch(new.obs, new.action, new.reward, terminated, truncated, new.next_obs)
 
 
 def _packed(new: Transition) -> Array:
-    """Rows [B, width] of transitions [B, ...]."""
+    """The rows [B, width] of transitions [B, ...]."""
     flags = [v.astype(jnp.float32)[:, None] for v in new[2:5]]
     return jnp.concatenate([new.obs, new.action, *flags, new.next_obs], axis=-1)

@@ -1,9 +1,9 @@
 """Behaviour cloning (thesis appendix B and Algorithm 8, line 12).
 
-    loss = -mean log pi(u | x),   (x, u) from demonstrations alone
+    loss = -mean log pi(u | x),   (x, u) only from demonstrations
 
-The batch of experience is not used. Actions are clipped to [-edge, edge], since a squashed density
-has no bound at -1 and 1.
+The batch of experience is not used. Actions are clipped to [-edge, edge], since the density of a
+squashed Gaussian is unbounded at -1 and 1.
 """
 
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ class CloningState:
 class BehaviourCloning:
     """Gradient steps on the log-likelihood of demonstrated actions.
 
-    Without `demonstrations` it holds a learned policy, and cannot be updated.
+    Without `demonstrations` it only holds the parameters of a trained policy.
 
     Raises:
         ValueError: for a rate or an edge out of range.
@@ -42,14 +42,14 @@ class BehaviourCloning:
     demonstrations: Demonstrations | None
     model: Model | None = None  # lifts observations to planning states; None: they are the same
     learning_rate: float = 3e-3
-    edge: float = 0.99  # greatest imitated action
+    edge: float = 0.99  # bound of the imitated actions
     batch_size: int = 128
     updates: float = 0.25  # per decision
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
     batches: ClassVar[int] = 1
-    early: ClassVar[bool] = False  # it waits for the end of random decisions
+    early: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -68,7 +68,7 @@ class BehaviourCloning:
         return CloningState(policy, optax.adam(self.learning_rate).init(policy))
 
     def _states(self, model: Any, obs: Any) -> Array:
-        """Planning states [B, n] of observations [B, o], by the parameters of the model."""
+        """Planning states [B, n] of observations [B, o] with model parameters `model`."""
         return jax.vmap(lambda obs: lift(self.model, model, obs))(jnp.asarray(obs))
 
     def params(self, state: CloningState) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Update a belief by measurements of the reward, y = r at s (thesis Algorithm 9, lines 15-20)."""
+"""Update a belief with measurements of the reward, y = r at s (thesis Algorithm 9, lines 15-20)."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -13,14 +13,14 @@ from hybrid_rl.types import Batch, Params, Spec
 
 @dataclass(frozen=True)
 class BeliefLearner:
-    """Adds (s, r) of the latest decision to a belief, s after the decision.
+    """Adds the reward of the latest decision, measured at the state s after it, to a belief.
 
     Raises:
         ValueError: for an interval that is not positive.
     """
 
     belief: Belief
-    domain: Box  # whose coordinates of the observation are s
+    domain: Box  # s: these coordinates of the observation
     every: int = 20  # decisions between two measurements
 
     data: ClassVar[str] = "latest"

@@ -4,8 +4,8 @@
     L_Q  = 0.5 sum_i mean (Q_i(x, u) - y)^2,   L_pi = -mean Q(x, pi(x))
     Q'   <- (1 - tau) Q' + tau Q,              pi'  <- (1 - tau) pi' + tau pi
 
-pi is the mean of any policy; exploration is the controller's. Q is the smallest of the critic's
-members, of which the original has one. A time limit is no end of the task.
+pi is the mean of any policy; the controller explores. Q is the minimum over the critic's members;
+the original has one. A time limit does not terminate the task.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class DDPG:
     """Deterministic policy gradients on the mean of a policy and a critic.
 
     Raises:
-        ValueError: for rates, a discount or a smoothing out of range.
+        ValueError: for rates, a discount or tau out of range.
     """
 
     policy: LearnedPolicy
@@ -55,7 +55,7 @@ class DDPG:
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     batches: ClassVar[int] = 1
-    early: ClassVar[bool] = False  # it waits for the end of random decisions
+    early: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""

@@ -1,4 +1,4 @@
-"""Model-based policy optimisation: any learner, with data that the model imagines.
+"""Model-based policy optimisation: any learner, with data imagined by the model.
 
 A share of each batch is replaced: from the first states of the batch the policy acts in the model,
 
@@ -25,7 +25,7 @@ from hybrid_rl.types import Batch, Params, Spec
 class MBPO:
     """`learner` with a `share` of its data imagined by `model`, `reward` and `policy`.
 
-    It lifts the observations: the learner gets planning states, and needs no model of its own.
+    It lifts the observations: the learner gets planning states and needs no model itself.
 
     Raises:
         ValueError: for a share or a number of steps out of range.
@@ -36,7 +36,7 @@ class MBPO:
     reward: Reward
     policy: Policy
     share: float = 0.9
-    steps: int = 1  # longest branch [decisions]
+    steps: int = 1  # maximum length of a branch [decisions]
 
     data: ClassVar[str] = "uniform"
 
@@ -49,50 +49,50 @@ class MBPO:
 
     @property
     def owns(self) -> tuple[str, ...]:
-        """The learner's."""
+        """The fields of `Params` that `learner` learns."""
         return self.learner.owns
 
     @property
     def batch_size(self) -> int:
-        """The learner's."""
+        """Transitions of a batch of `learner`."""
         return self.learner.batch_size
 
     @property
     def batches(self) -> int:
-        """The learner's."""
+        """Batches of one update of `learner`."""
         return self.learner.batches
 
     @property
     def early(self) -> bool:
-        """The learner's."""
+        """Whether `learner` also learns while decisions are random."""
         return self.learner.early
 
     @property
     def updates(self) -> float:
-        """The learner's, per decision."""
+        """Updates of `learner` per decision."""
         return self.learner.updates
 
     def init(self, key: Array, spec: Spec) -> Any:
-        """The learner's initial state. The key is consumed."""
+        """The initial state of `learner`. The key is consumed."""
         return self.learner.init(key, lifted_spec(self.model, spec))
 
     def params(self, state: Any) -> dict[str, Any]:
-        """The learner's."""
+        """The fields of `Params` that `learner` owns."""
         return self.learner.params(state)
 
     def update(
         self, state: Any, params: Params, batch: Batch, key: Array
     ) -> tuple[Any, dict[str, Array]]:
-        """One step of the learner on the mixed batch. The key is consumed."""
+        """One update of `learner` on the mixed batch. The key is consumed."""
         batch = lifted_batch(self.model, params.model, batch)
         count = round(self.share * self.batch_size)
         if not count:
             return self.learner.update(state, params, batch, key)
-        imagining, updating = jax.random.split(key)
-        imagined = self._imagine(params, batch.obs[:count], imagining)
+        imagine_key, update_key = jax.random.split(key)
+        imagined = self._imagine(params, batch.obs[:count], imagine_key)
         batch = batch._replace(next_action=None)
         batch = jax.tree.map(lambda new, old: jnp.concatenate([new, old[count:]]), imagined, batch)
-        return self.learner.update(state, params, batch, updating)
+        return self.learner.update(state, params, batch, update_key)
 
     def _imagine(self, params: Params, x: Array, key: Array) -> Batch:
         """One imagined transition for each of the states x [b, n]."""
@@ -112,7 +112,7 @@ class MBPO:
             *random, t = at
             new = self._transitions(params, x, *random)
             last_one = jax.tree.map(lambda a, b: _where(t == last, a, b), new, last_one)
-            ended = new.terminated > 0.5  # a branch that ended starts again where it began
+            ended = new.terminated > 0.5  # an ended branch restarts at its first state
             return (_where(ended, start, new.next_obs), last_one), None
 
         start = x
@@ -125,7 +125,7 @@ class MBPO:
     def _transitions(
         self, params: Params, x: Array, for_policy: Array, for_model: Array, key: Array
     ) -> Batch:
-        """One from each x [b, n]; `terminated` is a probability."""
+        """One transition from each x [b, n]; its `terminated` is a probability."""
         u = jax.vmap(self.policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
         after = self.model.draw(params.model, x, u, for_model, key)
         reward, end = jax.vmap(self.reward.outcome, (None, 0, 0))(params.reward, x, u)
@@ -133,5 +133,5 @@ class MBPO:
 
 
 def _where(flags: Array, a: Array, b: Array) -> Array:
-    """A [b, ...] where flags [b], else b."""
+    """Entries of a [b, ...] where flags [b] are true, else of b."""
     return jnp.where(flags.reshape(flags.shape + (1,) * (a.ndim - 1)), a, b)

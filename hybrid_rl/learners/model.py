@@ -1,12 +1,12 @@
-"""Learn f, and r where there is one, from experience (thesis appendix B).
+"""Learn the model f and, if there is one, the reward r (thesis appendix B).
 
     loss = -log N(x'; x + f(x, u), s^2) + 0.5 (r + c (1 - end) r(x', u') - r(x, u))^2
 
-with u' the action that was executed at x' and no gradient through the target; one Adam for both.
+with u' the action that was executed at x', no gradient through the target, and one Adam for both.
 `reward_discount` c = 0 makes r a reward; c = 0.95 makes it the thesis' value-like utility, which
-the planner then sums once more. Where an episode ended, at its time limit too, no action was
-executed at x', so that the target is the reward alone. Without a reward the loss is the likelihood
-of thesis eq. (6.24)-(6.25).
+the planner then sums a second time. Where an episode ended, also by its time limit, no action was
+executed at x', so that the target is only the reward. Without a reward the loss is that of thesis
+eq. (6.24)-(6.25).
 """
 
 from dataclasses import dataclass
@@ -116,17 +116,17 @@ class ModelLearner:
         return ModelState({**model, "weights": f}, reward, optimiser), metrics
 
     def _reward(self, reward: Any, model: Any, batch: Batch) -> tuple[Any, Any]:
-        """The reward's parameters with their statistics updated, and its loss of weights."""
+        """The reward's parameters with updated statistics, and its loss as a function."""
         part = self.reward
         if part is None:
             return None, None
-        first: Any = jax.tree.map(lambda rows: rows[: self.batch_size], batch)
+        first: Any = jax.tree.map(lambda x: x[: self.batch_size], batch)
         first = lifted_batch(self.model, jax.lax.stop_gradient(model), first)
         reward = part.observe(reward, first.obs)
         target = first.reward
         if self.reward_discount > 0:
-            rate = jax.vmap(part.outcome, (None, 0, 0))
-            after = rate(reward, first.next_obs, first.next_action)[0]
+            outcome = jax.vmap(part.outcome, (None, 0, 0))
+            after = outcome(reward, first.next_obs, first.next_action)[0]
             goes_on = self.reward_discount * (1 - first.terminated) * (1 - first.truncated)
             target = target + goes_on * after
 
@@ -139,5 +139,5 @@ class ModelLearner:
 
 
 def _weights(model: Any, reward: Any) -> tuple[Any, Any]:
-    """What gradients change."""
+    """The weights that gradient steps change."""
     return model["weights"], None if reward is None else reward["weights"]

@@ -5,7 +5,7 @@
     L_pi   = mean (alpha log pi(v|x) - min_i Q_i(x, v)),                             v ~ pi(x)
     L_a    = -log(alpha) mean (log pi(v|x) + target),     Q' <- (1 - tau) Q' + tau Q
 
-A time limit is no end of the task: `truncated` does not enter.
+A time limit does not terminate the task: `truncated` is not used.
 """
 
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class SAC:
     """Soft actor-critic on a policy and a critic.
 
     Raises:
-        ValueError: for rates, a discount or a smoothing out of range.
+        ValueError: for rates, a discount or tau out of range.
     """
 
     policy: LearnedPolicy
@@ -49,7 +49,7 @@ class SAC:
     policy_learning_rate: float = 3e-4
     critic_learning_rate: float = 3e-4
     alpha_learning_rate: float = 3e-4
-    alpha: float = 1.0  # first temperature
+    alpha: float = 1.0  # initial temperature
     target_entropy: float | None = None  # [nat]; None: -m
     discount: float = 0.99
     tau: float = 0.005
@@ -59,7 +59,7 @@ class SAC:
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     batches: ClassVar[int] = 1
-    early: ClassVar[bool] = False  # it waits for the end of random decisions
+    early: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -141,7 +141,7 @@ class SAC:
         ), metrics
 
     def _target(self, state: SACState, alpha: Array, batch: Batch, noise: Array) -> Array:
-        """Y [B], without gradient."""
+        """The target y [B], without gradient."""
         v, log_prob = self.policy.sample(state.policy, batch.next_obs, noise)
         after = self.critic.value(state.target, batch.next_obs, v) - alpha * log_prob
         return batch.reward + self.discount * (1 - batch.terminated) * after

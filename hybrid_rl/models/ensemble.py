@@ -1,8 +1,8 @@
-"""Several models of one world: their disagreement measures epistemic uncertainty.
+"""An ensemble of models, whose disagreement measures epistemic uncertainty.
 
     step = mean_i f_i(x, u),   draw = one member's prediction with its noise
 
-Members differ by their first weights and by their batches, which are drawn independently from one
+Members differ by their initial weights and by their batches, which are drawn independently from one
 replay memory. Deep ensembles (Lakshminarayanan et al. 2017), as in PETS and MBPO (Chua et al. 2018,
 Janner et al. 2019), without a bootstrapped data set for each member and without elites.
 """
@@ -20,10 +20,10 @@ from hybrid_rl.types import Spec
 
 @dataclass(frozen=True)
 class Ensemble:
-    """`members` copies of `model`, whose parameters hold "weights" beside shared statistics.
+    """`members` copies of `model`, each with its own "weights", with shared statistics.
 
     Raises:
-        ValueError: for a count that is not a positive whole number.
+        ValueError: for a number of members that is not a positive integer.
     """
 
     model: Trainable
@@ -35,7 +35,7 @@ class Ensemble:
             raise ValueError(f"model.members={self.members}: must be a whole number, 1 or more")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Initial parameters; weights lead with [members]. The key is consumed."""
+        """Initial parameters; weights have a first axis [members]. The key is consumed."""
         keys = jax.random.split(key, self.members)
         weights = jax.vmap(lambda k: self.model.init(k, spec)["weights"])(keys)
         return {**self.model.init(key, spec), "weights": weights}
@@ -63,14 +63,14 @@ class Ensemble:
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Next states [B, n] for noise [B, n] ~ N(0, I), each of one member.
 
-        Every member draws an equal share of the rows; `key` decides which member draws which share.
+        The states are divided equally among the members; `key` decides which share each one gets.
         """
         order = jax.random.permutation(key, self.members)
         weights = jax.tree.map(lambda w: w[order], params["weights"])
-        short = -len(x) % self.members
+        missing = -len(x) % self.members
 
-        def share(rows: Array) -> Array:
-            return jnp.pad(rows, ((0, short), (0, 0))).reshape(self.members, -1, rows.shape[1])
+        def share(x: Array) -> Array:
+            return jnp.pad(x, ((0, missing), (0, 0))).reshape(self.members, -1, x.shape[1])
 
         def one(weights: Any, x: Array, u: Array, noise: Array) -> Array:
             return self.model.draw({**params, "weights": weights}, x, u, noise, key)
@@ -82,7 +82,7 @@ class Ensemble:
         """Mean [] over the members of their losses, each on its own share of [members * B, ...].
 
         Raises:
-            ValueError: where the transitions do not divide among the members.
+            ValueError: if the transitions do not divide evenly among the members.
         """
         if len(obs) % self.members:
             raise ValueError(f"{len(obs)} transitions do not divide among {self.members} members")
@@ -90,5 +90,5 @@ class Ensemble:
         def one(weights: Any, obs: Array, action: Array, next_obs: Array) -> Array:
             return self.model.loss({**params, "weights": weights}, obs, action, next_obs)
 
-        shares = [rows.reshape(self.members, -1, rows.shape[1]) for rows in (obs, action, next_obs)]
+        shares = [x.reshape(self.members, -1, x.shape[1]) for x in (obs, action, next_obs)]
         return jax.vmap(one)(params["weights"], *shares).mean()

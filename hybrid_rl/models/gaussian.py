@@ -23,7 +23,7 @@ class Gaussian:
     """A one-step Gaussian model; the planning state is the observation.
 
     Raises:
-        ValueError: for widths or activations that make no network.
+        ValueError: for invalid widths or activations.
     """
 
     hidden: tuple[int, ...] = (200,)
@@ -31,7 +31,7 @@ class Gaussian:
     normalise: bool = True
     log_std_min: float = -10.0
     log_std_max: float = 2.0
-    state_noise: bool = False  # s(x) in place of a constant
+    state_noise: bool = False  # s(x) instead of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
 
     members: ClassVar[int] = 1  # an ensemble has more
@@ -44,7 +44,7 @@ class Gaussian:
             object.__setattr__(self, "inputs", tuple(self.inputs))
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Weights, and the statistics that normalise their data. The key is consumed."""
+        """Initial weights and statistics. The key is consumed."""
         net = MLP(self.hidden, spec.obs, self.activation)
         size, log_std = len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
         if self.state_noise:

@@ -1,4 +1,4 @@
-"""r(x, u), and where episodes end: a network (thesis appendix B: two layers of 200)."""
+"""A network for r(x, u) and the end of episodes (thesis appendix B: two layers of 200)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +17,7 @@ class RewardNetwork:
     """A reward, and with `ends` the probability that the episode ends.
 
     Raises:
-        ValueError: for widths or activations that make no network.
+        ValueError: for invalid widths or activations.
     """
 
     hidden: tuple[int, ...] = (200, 200)
@@ -34,7 +34,7 @@ class RewardNetwork:
         return MLP(self.hidden, 1 + self.ends, self.activation)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Weights, and the statistics that normalise their inputs. The key is consumed."""
+        """Initial weights and statistics. The key is consumed."""
         return {
             "weights": self._net().init(key, jnp.zeros(spec.n + spec.act)),
             "state": statistics.init(spec.n),
@@ -47,7 +47,7 @@ class RewardNetwork:
         return {**params, "state": statistics.update(params["state"], x)}
 
     def outcome(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array]:
-        """The reward [] of u [m] at x [n], and the logit [] that the episode ends there."""
+        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
         inputs = jnp.concatenate([statistics.normalise(params["state"], x), u])
         out: Any = self._net().apply(params["weights"], inputs)
         return out[0], out[1] if self.ends else -jnp.inf

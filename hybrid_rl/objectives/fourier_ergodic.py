@@ -1,6 +1,6 @@
 """J = -sum_k Lambda_k (c_k - phi_k)^2 - b outside: the Fourier ergodic metric.
 
-c_k averages the path and everything before it in the episode; phi_k is estimated at the same N
+c_k averages over the path and the earlier states of the episode; phi_k is estimated at the same N
 uniform points as the KL-ergodic measure. See core.fourier.
 """
 
@@ -18,7 +18,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 
 class FourierState(NamedTuple):
-    """The states of an episode so far."""
+    """Statistics of the states of an episode so far."""
 
     total: Array  # [K^v] sum of F_k over them
     count: Array  # []
@@ -26,7 +26,7 @@ class FourierState(NamedTuple):
 
 @dataclass(frozen=True)
 class FourierErgodic:
-    """Minus the ergodic metric of a path in a domain.
+    """Minus the Fourier ergodic metric of a path in a domain.
 
     Raises:
         ValueError: for counts below 1, or a negative barrier.
@@ -44,7 +44,7 @@ class FourierErgodic:
             raise ValueError("exploration: samples and modes 1 or more, barrier 0 or more")
 
     def init(self, spec: Spec) -> FourierState:
-        """No state yet."""
+        """An empty memory."""
         return FourierState(jnp.zeros(self.modes**self.domain.size), jnp.zeros(()))
 
     def prepare(

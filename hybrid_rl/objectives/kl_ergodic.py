@@ -1,11 +1,11 @@
 """J = -D(p || q) - b outside: spend time at s in proportion to the target p(s).
 
-D and q as in core.ergodic; the N points are drawn at every decision, q averages the path and the
+D and q as in core.ergodic; N points are drawn at every decision, q averages over the path and the
 last M states. `JensenErgodic` replaces log q by its lower bound (thesis eq. 6.17-6.18),
 
     J = -1/2 mean_t sum_i p_i |s_i - x_t|^2_(1/Sigma),   J_x = -(x_t - E_p[s]) / Sigma / (T+1),
 
-which depends on p only through its mean: it leads there and stays. It explores only as p moves.
+which depends on p only through its mean: paths go to the mean and stay, unless p changes.
 Source: thesis section 6.1, and 6.2.4 for the bound, whose printed form lacks 1/T.
 """
 
@@ -42,7 +42,7 @@ class KLErgodic:
     samples: int = 100  # N
     variance: tuple[float, ...] = (0.1,)  # diagonal of Sigma: one for all, or [v]
     memory: int = 0  # M [decisions]
-    floor: float = 0.0  # added to q [1/volume of s]: distant regions pull less
+    floor: float = 0.0  # added to q [1/volume of s]: distant regions attract less
     barrier: float = 0.0  # b, cost of leaving the domain [1/length^2]
 
     def __post_init__(self) -> None:
@@ -57,17 +57,17 @@ class KLErgodic:
 
     @property
     def _variance(self) -> Array:
-        """[v]."""
+        """The diagonal of Sigma [v]."""
         return jnp.broadcast_to(jnp.array(self.variance), (self.domain.size,))
 
     def init(self, spec: Spec) -> KLState:
-        """No state yet."""
+        """An empty memory."""
         return KLState(jnp.zeros((self.memory, self.domain.size)), jnp.zeros(()))
 
     def prepare(
         self, params: Params, memory: KLState, x: Array, u_before: Array, key: Array
     ) -> tuple[Return, KLState]:
-        """J [nat] of a path, with p and the past weighed at new points; the memory includes x."""
+        """J [nat] of a path, at newly drawn points; the memory then includes x [n]."""
         s = self.domain.sample(self.samples, key)
         log_p = jax.vmap(self.target.log_density, (None, 0))(params, s)
         value = self.measure(ergodic.Points(s, jax.nn.log_softmax(log_p)), memory)
@@ -78,7 +78,7 @@ class KLErgodic:
         return value, after
 
     def measure(self, points: ergodic.Points, memory: KLState) -> Return:
-        """J of a path that begins after the states in `memory`, compared at the points [N]."""
+        """J of a path that follows the states in `memory`, with p and q compared at `points`."""
         log_past = jnp.full(len(points.s), -1e30)
         if self.memory:
             filled = jnp.arange(self.memory) < memory.count
@@ -99,7 +99,7 @@ class KLErgodic:
 
 @dataclass(frozen=True)
 class JensenErgodic(KLErgodic):
-    """The bound in place of the measure: leads to the mean of p, and no further."""
+    """The lower bound instead of the measure: leads to the mean of p."""
 
     def measure(self, points: ergodic.Points, memory: KLState) -> Return:
         """J [nat] of a path, up to a constant."""

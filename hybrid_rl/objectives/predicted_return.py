@@ -1,7 +1,7 @@
 """J(path) = sum_t c_t r(x_t, u_t) [+ c_T min_i Q_i(x_T, pi(x_T))]: the return of a learned reward.
 
-c_t is the discount so far, times the probability that the episode goes on where the reward
-predicts it: without it a planner expects a robot that fell to go on earning.
+c_t is the discount so far, times the probability that the episode continues if the reward predicts
+it: without it a planner expects rewards after a robot has fallen.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @dataclass(frozen=True)
 class PredictedReturn:
-    """The discounted sum of `reward` along a path, with the critic's value of the last state.
+    """The discounted sum of `reward` along a path, plus the critic's value of the last state.
 
     Raises:
         ValueError: for a critic without a policy or the reverse, or a discount outside (0, 1].
@@ -36,13 +36,13 @@ class PredictedReturn:
             raise ValueError(f"objective.discount={self.discount}: must lie in (0, 1]")
 
     def init(self, spec: Spec) -> tuple[()]:
-        """No memory: earlier rewards change no decision."""
+        """No memory: earlier rewards do not affect decisions."""
         return ()
 
     def prepare(
         self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
     ) -> tuple[Return, tuple[()]]:
-        """J of a path; nothing is drawn."""
+        """J of a path; the key is not used."""
         return lambda path: self.reward_to_go(params, path)[0], memory
 
     def rewards(self, params: Params, path: Path) -> Array:
@@ -50,7 +50,7 @@ class PredictedReturn:
         return self._outcomes(params, path)[0]
 
     def _outcomes(self, params: Params, path: Path) -> Any:
-        """Rewards [T] and logits [T] of an end."""
+        """Rewards [T], and logits [T] of the episode ending."""
         each = jax.vmap(self.reward.outcome, (None, 0, 0))
         return each(params.reward, path.x[:-1], path.u)
 

@@ -1,6 +1,6 @@
-"""J = -sum_t e_{t+1}' Q e_{t+1} + (u_t - u_0)' R (u_t - u_0): reach an equilibrium soon.
+"""J = -sum_t e_{t+1}' Q e_{t+1} + (u_t - u_0)' R (u_t - u_0): a quadratic cost around equilibrium.
 
-e are the environment's local coordinates. The return is known; nothing of it is learned.
+e are the environment's local coordinates. The return is known: nothing is learned.
 """
 
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Quadratic:
     def prepare(
         self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
     ) -> tuple[Return, tuple[()]]:
-        """J of a path; nothing is drawn."""
+        """J of a path; the key is not used."""
         return lambda path: self.reward_to_go(params, path)[0], memory
 
     def rewards(self, params: Params, path: Path) -> Array:

@@ -1,6 +1,6 @@
-"""J = mean_t log p(s_t) - b outside: ascend the target by its gradient.
+"""J = mean_t log p(s_t) - b outside: gradient ascent on the target.
 
-The baseline of ergodic exploration, which settles on the nearest peak (thesis section 6.3.1, direct
+A baseline of ergodic exploration, which ends at the nearest peak (thesis section 6.3.1, direct
 maximisation of the acquisition function).
 """
 
@@ -30,7 +30,7 @@ class TargetDensity:
     def prepare(
         self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
     ) -> tuple[Return, tuple[()]]:
-        """J of a path; nothing is drawn."""
+        """J of a path; the key is not used."""
 
         def value(path: Path) -> Array:
             s = self.domain.of(path.x)

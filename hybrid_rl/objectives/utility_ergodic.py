@@ -1,9 +1,9 @@
-"""J = -D(p || q) around a policy, p(s) ~ exp(c Q(s)): spend time where the critic is high.
+"""J = -D(p || q) around a policy, p(s) ~ exp(c Q(s)): spend time where the critic's Q is high.
 
     s = (x / units, u),   s_i ~ U(s_0 - reach, s_0 + reach) where -1 <= u <= 1,   q over the path
 
 s holds states and actions (thesis eq. 6.27, Algorithm 11). The N points are drawn at every decision
-around s_0, the present state and the policy's action there; units are the running standard
+around s_0, the current state and the policy's action there; units are the running standard
 deviations of the model's states. D is the KL-ergodic measure itself: the bound of eq. (6.17), which
 the thesis uses for speed, depends on p only through its mean.
 """
@@ -48,7 +48,7 @@ class UtilityErgodic:
     def prepare(
         self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
     ) -> tuple[Return, tuple[()]]:
-        """J [nat] of a path, up to the volume of the points drawn around x [n]."""
+        """J [nat] of a path, up to a constant, with points drawn around x [n]."""
         units, u = params.model["state"].scale, self.policy.mean(params.policy, x)
         bound = jnp.concatenate([jnp.full(x.shape, jnp.inf), jnp.ones(u.shape)])
         middle = jnp.concatenate([x / units, u])

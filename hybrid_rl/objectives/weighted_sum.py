@@ -13,7 +13,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 
 class SumState(NamedTuple):
-    """The memories of the terms."""
+    """The memories of all terms."""
 
     terms: dict[str, Any]
     count: Array  # [] decisions of the episode so far
@@ -21,12 +21,12 @@ class SumState(NamedTuple):
 
 @dataclass(frozen=True)
 class WeightedSum:
-    """Several objectives, each with a weight and the factor by which a decision changes it.
+    """Several objectives, each with a weight and the factor by which it decays per decision.
 
-    It is a sum over time, for planners that sample, where all its terms are and no weight decays.
+    Sampling planners need a sum over time: all terms must be one, and no weight may decay.
 
     Raises:
-        ValueError: where weights or decays name no term, a term has no weight, or a decay lies
+        ValueError: for weights or decays of unknown terms, a term without a weight, or a decay
             outside (0, 1].
     """
 
@@ -47,14 +47,14 @@ class WeightedSum:
                 raise ValueError(f"objective.decays.{name}={decay}: must lie in (0, 1]")
 
     def init(self, spec: Spec) -> SumState:
-        """The terms' own memories."""
+        """The initial memories of all terms."""
         terms = {name: term.init(spec) for name, term in self.terms.items()}
         return SumState(terms, jnp.zeros((), jnp.int32))
 
     def prepare(
         self, params: Params, memory: SumState, x: Array, u_before: Array, key: Array
     ) -> tuple[Return, SumState]:
-        """J of a path, and the terms' memories. The key is consumed."""
+        """J of a path, and the memories of all terms. The key is consumed."""
         returns, terms = {}, {}
         for (name, term), k in zip(
             self.terms.items(), jax.random.split(key, len(self.terms)), strict=True
@@ -80,7 +80,7 @@ class WeightedSum:
         return self._weighted("reward_to_go", params, path)
 
     def _weighted(self, name: str, params: Params, path: Path) -> Array:
-        """The weighted sum of a method of the terms."""
+        """The weighted sum of the method `name` of all terms."""
         if any(decay != 1 for decay in self.decays.values()):
             raise ValueError("objective.decays: a planner that samples needs constant weights")
         terms: Mapping[str, Any] = self.terms

@@ -1,6 +1,6 @@
 """u = clip(u_0 - K e): the linear-quadratic regulator around an equilibrium.
 
-V(x) = e' P e is its Lyapunov function (thesis eq. 6.4): it falls as long as the action is not
+V(x) = e' P e is its Lyapunov function (thesis eq. 6.4): it decreases as long as the action is not
 clipped and the dynamics are nearly linear. With `free` coordinates f, V is the minimum over these,
 
     V(x) = min_f e' P e = e' (P - P_f P_ff^-1 P_f') e,
@@ -26,7 +26,7 @@ class Regulator:
     """The regulator of `world` around its equilibrium, by the discrete Riccati equation.
 
     Raises:
-        ValueError: for an environment that is not analytic, or weights of another size.
+        ValueError: for an environment that is not analytic, or weights that are not positive.
     """
 
     world: AnalyticEnv
@@ -60,7 +60,7 @@ class Regulator:
         return self.world.to_local(x[: self.world.equilibrium()[0].size])
 
     def towards(self, x: Array, goal: Array) -> Array:
-        """The action [m] at x [n] that leads to `goal` [o] in place of the equilibrium."""
+        """The action [m] at x [n] that leads to `goal` [o] instead of the equilibrium."""
         e, hold = self._local(x) - self.world.to_local(goal), self.world.equilibrium()[1]
         return jnp.clip(hold - jnp.asarray(self.solve()[0], e.dtype) @ e, -1, 1)
 

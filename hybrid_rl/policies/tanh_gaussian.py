@@ -3,9 +3,9 @@
 log pi(u|x) = log N(z; mu, sigma) - sum_i log(1 - tanh(z_i)^2)      (Haarnoja et al. 2018, eq. 21)
 
 One trunk with two heads, or two networks (thesis appendix B: a sine layer for the mean, a
-rectified layer for the deviation) where `log_std_activation` is given. With `normalise` they see
-states divided by their running standard deviation in the learner's data: the demonstrations for
-behaviour cloning, the batches for SAC and DDPG.
+rectified layer for the standard deviation) if `log_std_activation` is set. With `normalise` their
+inputs are states divided by their running standard deviation in the learner's data: the
+demonstrations for behaviour cloning, the batches for SAC and DDPG.
 """
 
 from dataclasses import dataclass
@@ -25,12 +25,12 @@ class TanhGaussian:
     """A stochastic policy on [-1, 1]^m.
 
     Raises:
-        ValueError: for widths, activations or bounds that make no network.
+        ValueError: for invalid widths, activations or bounds.
     """
 
     hidden: tuple[int, ...] = (256, 256)
     activation: str = "relu"
-    log_std_activation: str | None = None  # None: mean and deviation share the trunk
+    log_std_activation: str | None = None  # None: one trunk for mean and log_std
     log_std_min: float = -5.0
     log_std_max: float = 2.0
     normalise: bool = False
@@ -66,7 +66,7 @@ class TanhGaussian:
         return {**params, "state": statistics.update(params["state"], x)}
 
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
-        """Mu and sigma [..., m] before the squashing, at x [..., n]."""
+        """The mean mu and standard deviation sigma [..., m] before tanh, at x [..., n]."""
         if self.normalise:
             x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
         if self.log_std_activation is None:
@@ -83,10 +83,10 @@ class TanhGaussian:
         return jnp.tanh(self.gaussian(params, x)[0])
 
     def variance(self, params: dict[str, Any], x: Array) -> Array:
-        """Of the action [..., m], to first order around the mean: (1 - mean^2)^2 sigma^2.
+        """Variance of the action [..., m], to first order around the mean: (1 - mean^2)^2 sigma^2.
 
-        The delta method: good for a narrow policy; a wide one has less variance than that in the
-        middle of its range and more near its bounds. This over the true variance, by quadrature:
+        The delta method, accurate for a narrow policy; for a wide one it is too large in the middle
+        of the range and too small near the bounds. Its ratio to the true variance, by quadrature:
 
             sigma     0.1   0.3   0.55  1     2
             mu = 0    1.02  1.17  1.52  2.54  6.30
@@ -98,20 +98,20 @@ class TanhGaussian:
         return ((1 - jnp.tanh(mu) ** 2) * sigma) ** 2
 
     def sample(self, params: dict[str, Any], x: Array, noise: Array) -> tuple[Array, Array]:
-        """U [..., m] ~ pi(.|x) for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
+        """The action u [..., m] for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
         mu, sigma = self.gaussian(params, x)
         z = mu + sigma * noise
         return jnp.tanh(z), _log_density(z, noise, sigma)
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """Log pi(u|x) [...] of u [..., m] inside (-1, 1), at x [..., n]."""
+        """The log-density log pi(u|x) [...] of u [..., m] inside (-1, 1), at x [..., n]."""
         mu, sigma = self.gaussian(params, x)
         z = jnp.arctanh(u)
         return _log_density(z, (z - mu) / sigma, sigma)
 
 
 def _log_density(z: Array, noise: Array, sigma: Array) -> Array:
-    """Of tanh(z), z = mu + sigma noise; all [..., m], summed over m."""
+    """Log-density [...] of tanh(z), z = mu + sigma noise, for arguments [..., m]."""
     log_normal = -0.5 * noise**2 - jnp.log(sigma) - 0.5 * jnp.log(2 * jnp.pi)
     log_jacobian = 2 * (jnp.log(2.0) - z - jax.nn.softplus(-2 * z))
     return jnp.sum(log_normal - log_jacobian, axis=-1)

@@ -1,13 +1,13 @@
-"""A share of the candidates from one proposal, the rest from another.
+"""A share of the candidates from one proposal, the others from another.
 
-Policy and noise together: noise lets the planner work from the first decisions on, while the policy
-is still wrong; candidates of the policy prevail where they have higher returns.
+Policy and noise combined: noise lets the planner work from the first decisions on, while the policy
+is still poor; candidates of the policy dominate where they have higher returns.
 
-The candidates are pooled with equal rights, w_k ~ exp(S_k / lambda): the weighted mean estimates
-that of the law proportional to q exp(S / lambda), with q = share first + (1 - share) second. That
-is Theorem 2 with q instead of the policy pi; the importance ratio pi / q, which would make it
-Theorem 2 with pi, is left out. A planner refuses `log_density` here: the densities of
-different distributions would be compared.
+All candidates have weights w_k ~ exp(S_k / lambda): their weighted mean estimates the mean
+of the distribution proportional to q exp(S / lambda), q = share first + (1 - share) second. This is
+Theorem 2 with q instead of the policy pi; Theorem 2 with pi would need the importance ratio pi / q,
+which is left out. Planners refuse `log_density` with this proposal, since it would compare the
+densities of different distributions.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class MixtureProposal:
             raise ValueError(f"proposal.share={self.share}: must lie in [0, 1]")
 
     def init(self, spec: Spec, quantile: Array) -> tuple[Array, Any, Any]:
-        """Which proposal draws this path, and the carries of both."""
+        """Whether `first` draws this path, and the carries of both."""
         return (
             quantile < self.share,
             self.first.init(spec, quantile),
@@ -49,9 +49,9 @@ class MixtureProposal:
     def __call__(
         self, params: Params, carry: tuple[Array, Any, Any], x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, tuple[Array, Any, Any]]:
-        """V [m] and its log-density [] under the one that drew it."""
-        ours, a, b = carry
+        """A candidate v [m], and its log-density [] under the proposal that drew it."""
+        is_first, a, b = carry
         v, log_prob, a = self.first(params, a, x, plan, noise)
         other_v, other_log_prob, b = self.second(params, b, x, plan, noise)
-        v, log_prob = jnp.where(ours, v, other_v), jnp.where(ours, log_prob, other_log_prob)
-        return v, log_prob, (ours, a, b)
+        v = jnp.where(is_first, v, other_v)
+        return v, jnp.where(is_first, log_prob, other_log_prob), (is_first, a, b)

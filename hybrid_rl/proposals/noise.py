@@ -1,7 +1,7 @@
 """v = clip(a + e), e_0 ~ N(0, s^2), e_t ~ N(c e_{t-1}, (1 - c^2) s^2): noise around the plan.
 
 e is stationary: its standard deviation is s at each decision, also at the first, which is
-executed. c = 0 gives the proposals of MPPI without its control cost (Williams et al. 2017,
+executed. c = 0 gives the candidates of MPPI without its control cost (Williams et al. 2017,
 alpha = 1); c > 0 correlates them in time.
 """
 
@@ -15,10 +15,10 @@ from hybrid_rl.types import Params, Spec
 
 
 class NoiseState(NamedTuple):
-    """The noise of the decision before."""
+    """The noise of the previous decision."""
 
     e: Array  # [m]
-    correlation: Array  # [] its correlation with the next: 0 before the first
+    correlation: Array  # [] with the next noise; 0 before the first decision
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class NoiseProposal:
     """
 
     std: float = 0.3  # of full actuation
-    correlation: float = 0.0  # correlation of neighbours in time
+    correlation: float = 0.0  # of the noise of successive decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -46,7 +46,7 @@ class NoiseProposal:
     def __call__(
         self, params: Params, carry: NoiseState, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, NoiseState]:
-        """V [m] around plan [m], and log p(e_t | e_{t-1}) [] of its noise before the clipping."""
+        """A candidate v [m] around plan [m], and log p(e_t | e_{t-1}) [] of its unclipped noise."""
         share = 1 - carry.correlation**2  # of the variance that is new
         new = jnp.sqrt(share) * self.std * noise
         log_prob = -0.5 * (new / self.std) ** 2 / share - jnp.log(self.std * 2.5066283)

@@ -1,4 +1,4 @@
-"""v ~ pi(x): closed-loop proposals, each drawn at the imagined state (thesis Algorithm 3)."""
+"""v ~ pi(x): closed-loop candidates, each drawn at its imagined state (thesis Algorithm 3)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,6 +22,6 @@ class PolicyProposal:
     def __call__(
         self, params: Params, carry: Any, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, Any]:
-        """V [m] ~ pi(x) and log pi(v|x); the plan is not used."""
+        """A candidate v [m] ~ pi(x), and log pi(v|x) []; the plan is not used."""
         v, log_prob = self.policy.sample(params.policy, x, noise)
         return v, log_prob, carry

@@ -54,7 +54,7 @@ class Diverged:
         for s in self.ends:
             if s not in self._sound:
                 self._sound[s] = self.store.learner(s)
-            state = self.loop.replaced(state, s, self._sound[s])
+            state = self.loop.with_learner(state, s, self._sound[s])
         return state
 
 

@@ -57,7 +57,7 @@ class Store:
         if packed.get("names"):
             array = jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)
             gathered.unpack(packed["names"], self._read({"gathered": array})["gathered"])
-        return self.loop.place(state.replace(memory=memory)), gathered, meta, notes
+        return self.loop.on_devices(state.replace(memory=memory)), gathered, meta, notes
 
     def learner(self, number: int) -> Any:
         """AgentState [...] of one learner in the newest checkpoint, or else its first one."""

@@ -11,7 +11,7 @@ from hybrid_rl.types import Params
 
 @dataclass(frozen=True)
 class Mixture:
-    """Gaussians of any number and dimension.
+    """A mixture of any number of Gaussians, of any dimension.
 
     Raises:
         ValueError: for lists of different lengths, or numbers that are not positive.
@@ -19,7 +19,7 @@ class Mixture:
 
     means: tuple[tuple[float, ...], ...] = ((0.3, 0.3), (0.7, 0.7))  # [J, v]
     stds: tuple[float, ...] = (0.1, 0.1)  # [J]
-    weights: tuple[float, ...] = (0.5, 0.5)  # [J], of any sum
+    weights: tuple[float, ...] = (0.5, 0.5)  # [J], up to a factor
 
     def __post_init__(self) -> None:
         """Check the fields."""

@@ -1,7 +1,7 @@
 """p(s) ~ exp(c mean_i sigma_i(s)): the predictive std of a learned model (thesis eq. 6.23).
 
-sigma is a vector in the thesis; here its mean over the entries, in running standard deviations of
-their change, is the exponent. Coordinates outside the domain are those of the equilibrium.
+sigma is a vector in the thesis; here the exponent is its mean over the entries, each in running
+standard deviations of its change. Coordinates that the domain lacks have their equilibrium values.
 """
 
 from dataclasses import dataclass

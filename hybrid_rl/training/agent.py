@@ -17,7 +17,7 @@ from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
 @struct.dataclass
 class AgentState:
-    """Everything that evolves: a learner, its environments, its memory, its key."""
+    """The state of training: environments, controllers, memory, learners, key."""
 
     env: EnvState  # [E, ...]
     control: Any  # [E, ...]
@@ -28,12 +28,12 @@ class AgentState:
 
 @dataclass(frozen=True)
 class Agent:
-    """A method at work in `num_envs` environments.
+    """A method that trains in `num_envs` environments.
 
-    A learner of `latest` data takes each decision once, from the first one on. One of `uniform`
-    data makes `updates` gradient steps per decision once the memory holds a batch and, unless it is
-    `early`, `random_steps` decisions were random; and `pretrain` of them before the first decision,
-    on the demonstrations in the memory.
+    A learner of `latest` data uses each decision once, from the first one on. A learner of
+    `uniform` data makes `pretrain` gradient steps before the first decision, on the demonstrations
+    in the memory; then `updates` per decision, as soon as the memory holds a batch and, unless the
+    learner is `early`, the `random_steps` are over.
 
     Raises:
         ValueError: for counts out of range, updates that do not divide into decisions, or two
@@ -73,11 +73,11 @@ class Agent:
 
     @property
     def spec(self) -> Spec:
-        """The environment's sizes and rate."""
+        """The environment's sizes and time step."""
         return self.episode.spec
 
     def starts(self) -> dict[str, int]:
-        """Decisions before the first update of each learner, pretraining left out."""
+        """Decisions before the first update of each learner, apart from pretraining."""
         demonstrated = self.replay.num_demonstrated(self.num_envs) * self.num_envs
         return {
             name: 0
@@ -90,13 +90,13 @@ class Agent:
         }
 
     def changes(self) -> set[int]:
-        """Decisions after which a decision takes another time: with planning, with learning."""
+        """The numbers of decisions after which the time per decision changes."""
         return {self.random_steps, *self.starts().values()}
 
     def init(self, key: Array) -> AgentState:
         """The state before the first decision. The key is consumed."""
-        run, world, *learning, pretraining = jax.random.split(key, 3 + len(self.learners))
-        env = jax.vmap(self.episode.reset)(jax.random.split(world, self.num_envs))
+        run, resetting, *learning, pretraining = jax.random.split(key, 3 + len(self.learners))
+        env = jax.vmap(self.episode.reset)(jax.random.split(resetting, self.num_envs))
         memory = self.replay.init(self.spec, self.num_envs)
         learners = {
             name: learner.init(k, self.spec)
@@ -111,7 +111,7 @@ class Agent:
         return self._joined(state.learners)
 
     def _joined(self, states: dict[str, Any]) -> Params:
-        """The parameters in the states of the learners."""
+        """The parameters of all learners, in these states."""
         fields: dict[str, Any] = {}
         for name, learner in self.learners.items():
             fields |= learner.params(states[name])
@@ -140,8 +140,8 @@ class Agent:
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """One decision in every environment, `step` [] decisions into the run; metrics name -> [].
 
-        A metric is NaN where it does not apply, infinite where it is not finite. `episode/...` are
-        per environment [E].
+        A metric is NaN if it does not apply, infinite if it is not finite. `episode/...` are per
+        environment [E].
         """
         keys = jax.random.split(state.key, 3 + 2 * self.num_envs)
         key, at_random, learning = keys[:3]
@@ -170,14 +170,14 @@ class Agent:
         return AgentState(env, control, memory, learners, key), metrics
 
     def _initial_control(self) -> Any:
-        """The controller's first state in every environment [E, ...]."""
+        """The controller's initial state in every environment [E, ...]."""
         first = self.controller.init(self.spec)
         return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *x.shape)), first)
 
     def _decide(
         self, params: Params, state: AgentState, step: Array, at_random: Array, keys: Array
     ) -> tuple[Array, Any, dict[str, Array]]:
-        """Actions [E, m], controller states [E, ...], metrics [E], from one key and keys [E]."""
+        """Actions [E, m], controller states [E, ...], metrics [E]; random ones from `at_random`."""
         act = jax.vmap(self.controller.act, in_axes=(None, 0, 0, 0))
 
         def plan() -> tuple[Array, Any, dict[str, Array]]:
@@ -200,7 +200,7 @@ class Agent:
         step: Array,
         key: Array,
     ) -> tuple[dict[str, Any], dict[str, Array]]:
-        """Every learner's state after this decision, and the metrics of their last updates."""
+        """The learners' states after this decision, and the metrics of their last updates."""
         learned, metrics = {}, {}
         keys = jax.random.split(key, len(states)) if states else []
         starts = self.starts()
@@ -229,7 +229,7 @@ class Agent:
 
 
 def update_schedule(name: str, learner: Any, num_envs: int) -> tuple[int, int]:
-    """(updates at a time, decisions of each environment between them) of a learner."""
+    """(n, k) of a learner: n updates after every k decisions of each environment."""
     if learner.data == "latest":
         return 1, learner.every
     if not isinstance(learner.batch_size, int) or learner.batch_size < 1:
@@ -243,7 +243,7 @@ def update_schedule(name: str, learner: Any, num_envs: int) -> tuple[int, int]:
         return 1, int(1 / per_round)
     raise ValueError(
         f"{name}_learner.updates={learner.updates}: with num_envs={num_envs} this gives "
-        f"{per_round:g} gradient steps a round; it must be a whole number, or one over one"
+        f"{per_round:g} gradient steps per round; it must be a whole number, or 1 / a whole number"
     )
 
 
@@ -253,24 +253,24 @@ def trace_once(f: Any) -> Any:
 
 
 def _zeros(shapes: Any) -> Any:
-    """Zeros in the shapes of `jax.eval_shape`."""
+    """Zeros with the shapes that `jax.eval_shape` returned."""
     return jax.tree.map(lambda m: jnp.zeros(m.shape, m.dtype), shapes)
 
 
 def masked_mean(
     metrics: dict[str, Array], when: Array | bool, sparse: bool = False
 ) -> dict[str, Array]:
-    """Means []: NaN unless `when`, infinite where some number is not finite.
+    """The means [] of metrics: NaN unless `when`, infinite if a value is not finite.
 
-    sparse: NaN says that a metric does not apply, and is left out of the mean.
+    sparse: NaN marks values that do not apply, which the mean omits.
     """
 
     def mean(value: Array) -> Array:
         finite = jnp.isfinite(value)
         if not sparse:
             return jnp.where(finite.all(), value.mean(), jnp.inf)
-        number = jnp.where(finite, value, 0).sum() / finite.sum()
-        return jnp.where(jnp.isinf(value).any(), jnp.inf, number)
+        average = jnp.where(finite, value, 0).sum() / finite.sum()
+        return jnp.where(jnp.isinf(value).any(), jnp.inf, average)
 
     return {name: jnp.where(when, mean(value), jnp.nan) for name, value in metrics.items()}
 

@@ -1,4 +1,4 @@
-"""Episodes: time limit, action repeat, and the one place where a world starts anew."""
+"""Episodes of an environment: time limit, action repeat and resets."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -11,16 +11,16 @@ from hybrid_rl.core.branching import when_any
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState, Spec
 
-# A world is exact, whatever precision the networks' products have on an accelerator.
+# Environments always compute in full precision, networks perhaps with less on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")
 
 
 @dataclass(frozen=True)
 class Episode:
-    """A world with a clock.
+    """An environment with a time limit.
 
-    `info["decision"]` and `info["return"]` count from the last reset. An action is held for
-    `action_repeat` decisions of the world, whose rewards add up until it terminates.
+    `info["decision"]` and `info["return"]` count from the last reset. An action is repeated for
+    `action_repeat` steps of the environment, whose rewards are added until it terminates.
 
     Raises:
         ValueError: for counts that are not positive whole numbers.
@@ -39,7 +39,7 @@ class Episode:
 
     @property
     def spec(self) -> Spec:
-        """The world's, at the rate of decisions."""
+        """Sizes of the environment, and the time between decisions."""
         return self.env.spec._replace(dt=self.env.spec.dt * self.action_repeat)
 
     def reset(self, key: Array) -> EnvState:
@@ -51,15 +51,15 @@ class Episode:
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """One decision with action [m]."""
-        now = self._once(state, action)
+        now = self._substep(state, action)
 
-        def again(_: int, now: EnvState) -> EnvState:
-            after = self._once(now, action)
+        def repeat(_: int, now: EnvState) -> EnvState:
+            after = self._substep(now, action)
             after = after.replace(reward=now.reward + after.reward)
             return jax.tree.map(lambda a, b: jnp.where(now.terminated, a, b), now, after)
 
         if self.action_repeat > 1:
-            now = jax.lax.fori_loop(1, self.action_repeat, again, now)
+            now = jax.lax.fori_loop(1, self.action_repeat, repeat, now)
         decision = state.info["decision"] + 1
         return now.replace(
             truncated=(decision >= self.steps) & ~now.terminated,
@@ -70,14 +70,14 @@ class Episode:
             },
         )
 
-    def _once(self, state: EnvState, action: Array) -> EnvState:
+    def _substep(self, state: EnvState, action: Array) -> EnvState:
         with EXACT():
             return self.env.step(state, action)
 
     def auto_reset(self, state: EnvState, key: Array) -> EnvState:
-        """`state`, or a fresh episode where it is done. The key is consumed.
+        """`state`, or the first state of a new episode if it is done. The key is consumed.
 
-        Under `vmap` the reset is computed only when some world needs one.
+        Under `vmap` the reset is computed only if some environment is done.
         """
 
         def reset_done(state: EnvState, key: Array) -> EnvState:

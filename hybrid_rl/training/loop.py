@@ -1,6 +1,6 @@
 """Many learners in one compiled program: `vmap` over seeds around a loop over decisions.
 
-The learners are dealt out over the devices of the host; none needs to hear of another.
+The learners are sharded over the devices of the host and do not communicate.
 """
 
 from collections.abc import Callable
@@ -17,22 +17,22 @@ from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from hybrid_rl.training.agent import Agent, AgentState, trace_once
 
-# On a CPU Eigen's matrix products take a sixth less time than those of YNNPACK, XLA's own choice.
+# On a CPU, matrix products of Eigen are a sixth faster than those of YNNPACK, XLA's default.
 COMPILER_OPTIONS: dict[str, Any] = {
     "cpu": {"xla_cpu_experimental_ynn_fusion_type": "LIBRARY_FUSION_TYPE_REDUCE"},
 }
 
 SEEDS = PartitionSpec("seeds")
-ROWS = PartitionSpec(None, "seeds")
-SAME = PartitionSpec()
+METRICS = PartitionSpec(None, "seeds")
+REPLICATED = PartitionSpec()
 
 
 @dataclass
 class Loop:
-    """Trains one learner per seed, at most `stride` rounds a call, compiled once.
+    """Trains one learner per seed, at most `stride` rounds per call, in one compiled program.
 
-    A round is one decision in each of an agent's worlds. The number of rounds of a call is an
-    argument of the program, so that no odd remainder compiles again.
+    A round is one decision in each of an agent's environments. The number of rounds of a call is an
+    argument of the program, so that a remainder does not need another compilation.
     """
 
     agent: Agent
@@ -42,34 +42,32 @@ class Loop:
 
     @property
     def mesh(self) -> Mesh:
-        """The devices at work: as many of the host's as share the learners evenly."""
+        """The devices in use: as many as divide the learners evenly."""
         devices = jax.local_devices()
         count = max(n for n in range(1, len(devices) + 1) if len(self.seeds) % n == 0)
         return Mesh(np.array(devices[:count]), ("seeds",))
 
     @property
-    def idle(self) -> str:
-        """What to say where the learners do not divide among the devices; else nothing."""
-        used, there, learners = self.mesh.size, jax.local_device_count(), len(self.seeds)
-        if used == there:
+    def idle_note(self) -> str:
+        """A note if the learners do not divide evenly among all devices; else empty."""
+        used, count, learners = self.mesh.size, jax.local_device_count(), len(self.seeds)
+        if used == count:
             return ""
-        return f" {learners} learners divide evenly over {used} of its {there} devices only"
+        return f" {learners} learners divide evenly over {used} of its {count} devices only"
 
-    def shard(self, f: Callable[..., Any], takes: Any, gives: Any, **how: Any) -> Any:
-        """`jit(f)`, run on every device with its share of what has learners as an axis."""
-        parts: Any = jax.shard_map(
-            f, mesh=self.mesh, in_specs=takes, out_specs=gives, check_vma=False
-        )
-        return jax.jit(parts, **how)
+    def shard(self, f: Callable[..., Any], ins: Any, outs: Any, **options: Any) -> Any:
+        """`jit(f)`, run on every device with its share of the learners."""
+        parts: Any = jax.shard_map(f, mesh=self.mesh, in_specs=ins, out_specs=outs, check_vma=False)
+        return jax.jit(parts, **options)
 
-    def place(self, state: AgentState) -> AgentState:
-        """`state`, which was read from a file, on the devices."""
+    def on_devices(self, state: AgentState) -> AgentState:
+        """`state` moved from the host to the devices."""
         return jax.device_put(state, NamedSharding(self.mesh, SEEDS))
 
-    def replaced(self, state: AgentState, number: int, learner: AgentState) -> AgentState:
-        """`state` with `learner` [...] in row `number`; the memory of `state` is used again."""
+    def with_learner(self, state: AgentState, number: int, learner: AgentState) -> AgentState:
+        """`state` with learner `number` replaced by `learner` [...]; `state` is donated."""
         put = jax.jit(
-            lambda rows, row: jax.tree.map(lambda x, y: x.at[number].set(y), rows, row),
+            lambda all_, one: jax.tree.map(lambda x, y: x.at[number].set(y), all_, one),
             donate_argnums=0,
             out_shardings=NamedSharding(self.mesh, SEEDS),
         )
@@ -81,23 +79,23 @@ class Loop:
         return self.shard(jax.vmap(self.agent.init), SEEDS, SEEDS)(keys)
 
     def compile(self, state: AgentState) -> Any:
-        """The program (state, first step, rounds) -> (state, metrics)."""
+        """The compiled program (state, first step, rounds) -> (state, metrics)."""
         began = perf_counter()
-        parts = (SEEDS, SAME, SAME), (SEEDS, ROWS)
+        parts = (SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         program = self.shard(self._advance, *parts, donate_argnums=0)
         zero = jnp.zeros((), jnp.int32)
         lowered = program.lower(state, zero, zero)
         try:
             compiled = lowered.compile(COMPILER_OPTIONS.get(jax.default_backend()))
         except jax.errors.JaxRuntimeError as error:
-            if "No such compile option" not in str(error):  # of another release of XLA
+            if "No such compile option" not in str(error):  # another release of XLA lacks it
                 raise
             compiled = lowered.compile()
         self.compile_s += perf_counter() - began
         return compiled
 
     def memory(self, program: Any) -> float:
-        """[bytes] of a device that the compiled `program` takes, its state included; 0: unknown."""
+        """Memory [bytes] per device of the compiled `program` and its state; 0 if unknown."""
         used = program.memory_analysis()
         if used is None:
             return 0.0
@@ -107,7 +105,7 @@ class Loop:
     def _advance(
         self, state: AgentState, start: Array, rounds: Array
     ) -> tuple[AgentState, dict[str, Array]]:
-        """State after `rounds` rounds, and metrics [stride, S, ...] of which these are filled."""
+        """The state after `rounds` rounds, and their metrics [:rounds] of [stride, S, ...]."""
         step = trace_once(jax.vmap(self.agent.step, in_axes=(0, None)))
         shapes = jax.eval_shape(step, state, start)[1]
         rows = jax.tree.map(lambda m: jnp.zeros((self.stride, *m.shape), m.dtype), shapes)

@@ -1,4 +1,4 @@
-"""Episodes under a controller whose parameters stay as they are."""
+"""Episodes of a controller with fixed parameters."""
 
 import jax
 import jax.numpy as jnp
@@ -10,7 +10,7 @@ from hybrid_rl.types import EnvState, Params
 
 
 def begin(episode: Episode, controller: Controller, keys: Array) -> tuple:
-    """One episode per key [N] before its first decision: (states, controller states, keys)."""
+    """N episodes before their first decision, one per key: (states, controller states, keys)."""
     starts, keys = _split(keys)
     env = jax.vmap(episode.reset)(starts)
     rest = controller.init(episode.spec)
@@ -21,13 +21,13 @@ def begin(episode: Episode, controller: Controller, keys: Array) -> tuple:
 def advance(
     episode: Episode, controller: Controller, params: Params, carry: tuple, rounds: Array
 ) -> tuple:
-    """`carry` of `begin` after at most `rounds` [] more decisions in each episode.
+    """The `carry` of `begin` after at most `rounds` [] more decisions in each episode.
 
-    All N worlds run side by side; one that is done stands still.
+    All N environments run in parallel; one that is done keeps its last state.
     """
     act = jax.vmap(controller.act, in_axes=(None, 0, 0, 0))
 
-    def going(carry: tuple) -> Array:
+    def unfinished(carry: tuple) -> Array:
         return (carry[0] < rounds) & ~jnp.all(carry[1].done)
 
     def decide(carry: tuple) -> tuple:
@@ -44,13 +44,13 @@ def advance(
         )
         return i + 1, frozen, control, keys
 
-    return jax.lax.while_loop(going, decide, (jnp.zeros((), jnp.int32), *carry))[1:]
+    return jax.lax.while_loop(unfinished, decide, (jnp.zeros((), jnp.int32), *carry))[1:]
 
 
 def scores(env: EnvState) -> dict[str, Array]:
-    """Undiscounted `return` of each finished episode, and where the task has it `success`.
+    """Undiscounted `return` of each finished episode and, for tasks that have it, `success`.
 
-    Success is 1 where the last state counts as one, else 0.
+    Success is 1 if the last state is a success, else 0.
     """
     success = {"success": env.metrics["success"]} if "success" in env.metrics else {}
     return {"return": env.info["return"], **success}
@@ -59,7 +59,7 @@ def scores(env: EnvState) -> dict[str, Array]:
 def evaluate_episodes(
     episode: Episode, controller: Controller, params: Params, keys: Array
 ) -> dict[str, Array]:
-    """The `scores` [N] of one whole episode per key [N]."""
+    """The `scores` [N] of N whole episodes, one per key."""
     carry = begin(episode, controller, keys)
     return scores(advance(episode, controller, params, carry, jnp.int32(episode.steps))[0])
 
@@ -67,7 +67,7 @@ def evaluate_episodes(
 def rollout(
     episode: Episode, controller: Controller, params: Params, key: Array, steps: int
 ) -> EnvState:
-    """The states [steps+1, ...] of one episode, from its reset; it stands still once done."""
+    """The states [steps+1, ...] of one episode from its reset; the last is repeated once done."""
     return rollout_with_actions(episode, controller, params, key, steps)[1]
 
 
@@ -92,11 +92,11 @@ def rollout_with_actions(
 
 
 def evaluation_keys(seed: int, episodes: int) -> Array:
-    """Keys [N] of the evaluation of learner `seed`: the same at every evaluation."""
+    """The keys [N] of the evaluations of learner `seed`, the same for every evaluation."""
     return jax.random.split(jax.random.fold_in(jax.random.key(seed), 0xE7A1), episodes)
 
 
 def _split(keys: Array) -> tuple[Array, Array]:
-    """Two keys [N] from each of keys [N]."""
+    """Two arrays of keys [N], split from keys [N]."""
     pairs = jax.vmap(jax.random.split)(keys)
     return pairs[:, 0], pairs[:, 1]

@@ -96,8 +96,8 @@ def _with(array: np.ndarray, at: int, value: float) -> np.ndarray:
         ({"obs": _with(decisions().obs, 7, np.nan)}, "obs is not finite in row 7"),
         ({"reward": _with(decisions().reward, 2, np.inf)}, "reward is not finite in row 2"),
         ({"action": _with(decisions().action, 5, 1.5)}, r"action must lie in \[-1, 1\]"),
-        ({"truncated": _with(np.zeros(N), 1, 1)}, "goes on after its end, in row 1"),
-        ({"reward": np.full(N, "a")}, "reward is not made of numbers"),
+        ({"truncated": _with(np.zeros(N), 1, 1)}, "continues after its end, in row 1"),
+        ({"reward": np.full(N, "a")}, "reward must hold numbers"),
         ({"obs": np.array([object()])}, "is damaged, cut short, or no .npz file"),
         ({"reward": np.zeros(0)}, "holds no decision"),
         (

@@ -259,6 +259,6 @@ def test_a_learner_is_read_back_from_the_loop(tmp_path):
     loop = Loop(agent=None, seeds=(0, 1, 2), stride=1)
     wanted = np.array([[0, 1], [9, 9], [4, 5]])
     key = jax.random.key(7)
-    got = loop.replaced(loop.place(made), 1, {"a": jnp.full(2, 9.0), "key": key})
+    got = loop.with_learner(loop.on_devices(made), 1, {"a": jnp.full(2, 9.0), "key": key})
     np.testing.assert_array_equal(got["a"], wanted)
     assert jax.random.key_data(got["key"])[1].tolist() == jax.random.key_data(key).tolist()
