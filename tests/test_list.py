@@ -84,16 +84,22 @@ def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
     assert "  halfcheetah " in printed
 
 
+@pytest.fixture(scope="module")
+def marked():
+    """The methods that need an analytic task."""
+    return listed.marks()["algo"]
+
+
 @pytest.mark.parametrize("algo", ["sac", "bc", "ddpg", "kle3", "kle3_ddpg", "bayesopt", "ou_noise"])
-def test_what_needs_a_formula_is_marked(algo, tmp_path):
+def test_what_needs_an_analytic_task_is_marked(algo, marked, tmp_path):
     """The methods that MuJoCo's half-cheetah refuses, and no other."""
     given = ["task=halfcheetah", f"algo={algo}", "total_steps=100"]
     if algo == "bc":
         given.append(demonstrate(tmp_path, config.load(given)))
-    if algo not in listed.marks()["algo"]:
+    if algo not in marked:
         config.build(config.load(given))
         return
     with pytest.raises(config.UsageError) as raised:
         config.build(config.load(given))
-    line = f"task=halfcheetah: {algo} needs an analytic world; choose one of cart"
+    line = f"task=halfcheetah: {algo} needs an analytic environment; choose one of cart"
     assert str(raised.value).startswith(line)

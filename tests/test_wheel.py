@@ -66,7 +66,7 @@ def test_the_wheel_holds_the_package_and_its_entry_for_hydra(wheel):
     assert plugins == ["hydra_plugins/hybrid_rl_sweeper.py"]
     rest = {name.split("/")[0] for name in set(names) - set(plugins)}
     assert rest == {"hybrid_rl", f"{dist_of(wheel)}.dist-info"}
-    wanted = ["py.typed", "types.py", "envs/physics.py", "conf/train.yaml"]
+    wanted = ["py.typed", "types.py", "envs/mujoco/physics.py", "conf/train.yaml"]
     assert not {f"hybrid_rl/{name}" for name in wanted} - set(names)
     sources = [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml"), RECORDED]
     for source in sources:

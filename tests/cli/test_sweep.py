@@ -51,7 +51,10 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
         ("policy_learner.tau=0.005,3", "tau=3: must lie in (0, 1] (job 1: policy_learner.tau=3)"),
         ("algo=sac,scal", "algo=scal: unknown; choose one of"),
         ("algo=sac,nn_mppi adjoint_planner.horizon=3,4", "sac, nn_mppi do not use it"),
-        ("task=pendulum,halfcheetah algo=kle3", "task=halfcheetah: kle3 needs an analytic world"),
+        (
+            "task=pendulum,halfcheetah algo=kle3",
+            "task=halfcheetah: kle3 needs an analytic environment",
+        ),
         ("seed=0,1 total_step=3", "total_step: unknown key; did you mean total_steps?"),
         ("+sed=0,1", "sed: unknown key; did you mean seed?"),
     ],

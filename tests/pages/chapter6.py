@@ -23,10 +23,10 @@ from pages.chapter6_values import (
     by_area,
     cost,
     divergence,
+    fig_6_6,
     flight,
     guarded,
     learned,
-    of,
     plan_ms,
     regulators,
     searched,
@@ -39,7 +39,7 @@ PAGE = "docs/results/chapter6.md"
 CITED = [
     Table("after | 5 s | 10 s | 20 s | 40 s", divergence),
     Text(
-        "sum of Gaussians #, Fourier with 20 cosines a side # (#% of its mass negative), "
+        "sum of Gaussians #, Fourier with 20 cosines per axis # (#% of its mass negative), "
         "cells visited #",
         [
             TV["sum of Gaussians (6.1)"],
@@ -58,13 +58,13 @@ CITED = [
     ),
     Table(
         " | best after 20, median | after 40 | measurements until 0.95, median"
-        " | trials that get there | greatest V, median",
+        " | trials that reach it | greatest V, median",
         searched,
     ),
-    Text("optimisation without dynamics, # times as quick", [LQR / KLE3]),
+    Text("optimisation without dynamics, # times as fast", [LQR / KLE3]),
     Table(
         "the regulator's weight of the position | | greatest V | V after 10 s"
-        " | measurements until 0.95, median | trials that get there",
+        " | measurements until 0.95, median | trials that reach it",
         regulators,
     ),
     Text("greatest V to # times LQR's", [HALF]),
@@ -73,7 +73,7 @@ CITED = [
     Text("as in the thesis, by a factor of # and", [GREATEST[0] / GREATEST[1]]),
     Table(
         "level | greatest V, median (range) | measurements until 0.95, median"
-        " | trials that get there | best after 20",
+        " | trials that reach it | best after 20",
         guarded,
     ),
     Table(
@@ -97,26 +97,32 @@ CITED = [
         [
             x
             for name in ("kle3_model_learning 2.75", "normal_noise 0.1", "uniform_noise 0.1")
-            for x in (*of(name, "error"), of(name, "power_loss")[0])
+            for x in (*fig_6_6(name, "error"), fig_6_6(name, "power_loss")[0])
         ],
     ),
     Text(
         "(# [#, #] m against # [#, #])",
-        [*of("kle3_model_learning 2.75", "tracking"), *of("normal_noise 0.1", "tracking")],
+        [
+            *fig_6_6("kle3_model_learning 2.75", "tracking"),
+            *fig_6_6("normal_noise 0.1", "tracking"),
+        ],
     ),
     Text(
         "# [#, #] at # N, bands apart from KL-E3's at # N; in tracking they overlap (# and # m)",
         [
-            *of("ou_noise 0.3", "error"),
-            of("ou_noise 0.3", "power_loss")[0],
-            of("kle3_model_learning 2.75", "power_loss")[0],
-            of("ou_noise 0.3", "tracking")[0],
-            of("kle3_model_learning 2.75", "tracking")[0],
+            *fig_6_6("ou_noise 0.3", "error"),
+            fig_6_6("ou_noise 0.3", "power_loss")[0],
+            fig_6_6("kle3_model_learning 2.75", "power_loss")[0],
+            fig_6_6("ou_noise 0.3", "tracking")[0],
+            fig_6_6("kle3_model_learning 2.75", "tracking")[0],
         ],
     ),
     Text(
         "ends at # m, the exact one at #",
-        [of("ou_noise 0.3", "distance_after_4_s")[0], of("exact model", "distance_after_4_s")[0]],
+        [
+            fig_6_6("ou_noise 0.3", "distance_after_4_s")[0],
+            fig_6_6("exact model", "distance_after_4_s")[0],
+        ],
     ),
     Table("cartpole, decisions | 4,000 | 8,000 | 12,000 | 16,000", skill(CARTPOLE)),
     Table("half-cheetah, decisions | 5,000 | 12,000 | 25,000 | 50,000", skill(CHEETAH)),
@@ -173,6 +179,7 @@ PLAIN = [
     "(t_H 0.2 s, R 0.1, Sigma 0.1, N 20, line search)",
     "within 0.2 s",
     "after 10 s, medians of 10 trials",
+    "After 10 s V is",
     "(weight 500)",
     "gain 0.015 and the regulator of weight 5, 10 trials each",
     "At 150 KL-E3 keeps",
@@ -182,9 +189,11 @@ PLAIN = [
     "Norm of u at hover is 0.82 here",
     "that noise 0.1 does not",
     "R = 0.5, Sigma = 0.1, N = 100, 0.6 s",
-    "from -6 to 6; that reading, c = 10",
+    "from -6 to 6; this interpretation, c = 10",
+    "(0.01 s) late; since version 0.2.0",
+    "random numbers since version 0.2.0",
     "within 1 m/s and 1 rad/s",
-    "0.41 a rotor",
+    "0.41 per rotor",
     "0.15 per second",
     "2000 batches of 200",
     "a target 2 m away in each direction at most, 4 s",
@@ -194,12 +203,13 @@ PLAIN = [
     "normal noise of 0.1 too",
     "no noise of 0.1 or less",
     "OU noise of 0.3",
-    "of OU 0.3, ends",
+    "of OU noise 0.3, ends",
     "the 1 m/s and 1 rad/s that are",
     "a floor of 0.05",
-    "0.15 and 0.2 a decision",
+    "0.15 and 0.2 per decision",
     "(two layers of 256), rates (1e-4 and 1e-3, tau 0.01, batch 64), 200 random decisions and "
-    "episodes of 200 decisions, seeds 0 to 4, cartpole 0.033 s and half-cheetah 0.05 s a decision",
+    "episodes of 200 decisions, seeds 0 to 4, cartpole 0.033 s and half-cheetah 0.05 s per "
+    "decision",
     "averaged over 1,000 decisions",
     "IQM and 95% band:",
     "At 16,000 DDPG's",
@@ -208,7 +218,7 @@ PLAIN = [
     "up to 200:",
     "to 12,000, had",
     "At 11,000 decisions seed 4's",
-    "c = 1 and differences",
+    "c = 1 and large differences",
     "seeds 100 to 102",
     "root mean square 0.3",
     "R = 0.01 every action",
@@ -218,7 +228,7 @@ PLAIN = [
     "1/R",
     "0.13 of the first correction is left after 200 decisions",
     "seeds shown, 0 to 4",
-    "1,024 of each kind",
+    "1,024 robots of each kind",
     # the thesis' numbers
     "in the thesis 1.68",
     "about 0.67 there",

@@ -30,8 +30,8 @@ def cost(method: str, dimension: int) -> float:
     return 1e3 * one["seconds"][one["dimension"].index(dimension)]
 
 
-def when(trial: dict[str, Any]) -> float:
-    """Median measurements until 0.95, over the trials that get there."""
+def measurements(trial: dict[str, Any]) -> float:
+    """Median measurements until 0.95, over the trials that reach it."""
     return float(np.median([n for n in trial["measurements_to_95_percent"] if n is not None]))
 
 
@@ -43,7 +43,7 @@ def search(one: dict[str, Any], column: str) -> list[float]:
         peaks = one["V_peak"]
         return [np.median(peaks), min(peaks), max(peaks)]
     if column.startswith("measurements"):
-        return [when(one)]
+        return [measurements(one)]
     if column == "V after 10 s":
         return [float(np.median(one["V_mean_after_10_s"]))]
     late = one["measurements_to_95_percent"]
@@ -134,18 +134,18 @@ def plan_ms(label: str, column: str) -> list[float]:
     raise KeyError(label)
 
 
-def of(name: str, key: str) -> list[float]:
+def fig_6_6(name: str, key: str) -> list[float]:
     """A method's numbers in figure 6-6."""
     return read("fig_6_6")[name][key]
 
 
 SEARCHES, TV = read("fig_6_4"), read("fig_6_2")["total_variation_to_target"]
-LQR, KLE3 = when(SEARCHES["lqr_bayesopt"]), when(SEARCHES["kle3_bayesopt"])
+LQR, KLE3 = measurements(SEARCHES["lqr_bayesopt"]), measurements(SEARCHES["kle3_bayesopt"])
 WEIGHTS = read("fig_6_5_regulators")
 HEAVY = {
     name: WEIGHTS[f"weight 500, {name}"] for name in ("lqr_bayesopt", "kle3_bayesopt, gain 0.1")
 }
-QUICK = [when(one) for one in HEAVY.values()]
+QUICK = [measurements(one) for one in HEAVY.values()]
 GREATEST = [np.median(one["V_peak"]) for one in HEAVY.values()]
 HALF = np.median(WEIGHTS["weight 5, kle3_bayesopt, gain 0.015"]["V_peak"]) / np.median(
     WEIGHTS["weight 5, lqr_bayesopt"]["V_peak"]

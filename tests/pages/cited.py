@@ -62,7 +62,7 @@ class Table:
     plain: tuple[str, ...] = ()  # columns that are not our measurements
 
     def citations(self, page: str) -> list[Citation]:
-        found, first = [], ""
+        result, first = [], ""
         for cells in self.rows(page):
             first = _bare(cells[0][0]) or first
             label = f"{first}, {_bare(cells[1][0])}" if self._labels == 2 else first
@@ -74,8 +74,8 @@ class Table:
                 assert len(tokens) <= len(values), f"{label}, {column}: {cell[0]}"
                 for token, value in zip(tokens, values, strict=False):
                     span = cell.start() + token.start(), cell.start() + token.end()
-                    found.append(_citation(page, *span, value))
-        return found
+                    result.append(_citation(page, *span, value))
+        return result
 
     def labels(self, page: str) -> list[tuple[int, int]]:
         """Spans of the header, of each row's label and of the plain columns: settings."""
@@ -116,7 +116,7 @@ class Table:
 
 def citations(page: str, cited: Sequence[Text | Table]) -> list[Citation]:
     """All citations of a page, in order."""
-    return sorted({found for one in cited for found in one.citations(page)})
+    return sorted({number for one in cited for number in one.citations(page)})
 
 
 def uncited(page: str, cited: Sequence[Text | Table], plain: Sequence[str]) -> list[str]:

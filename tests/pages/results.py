@@ -14,7 +14,7 @@ LABELS = {
 }
 
 
-def of(task: str, label: str) -> list[float]:
+def at_end(task: str, label: str) -> list[float]:
     """IQM and band of a line of the picture at 100,000."""
     return curve(FILE, label, task=task).at(100_000)
 
@@ -40,7 +40,9 @@ def span(label: str) -> list[float]:
 
 def behind() -> float:
     """[%] of Stable-Baselines3's IQM on Gymnasium's half-cheetah that ours is short of."""
-    return 100 * (1 - of("halfcheetah", "sac")[0] / of("halfcheetah", "sb3_sac_gymnasium")[0])
+    return 100 * (
+        1 - at_end("halfcheetah", "sac")[0] / at_end("halfcheetah", "sb3_sac_gymnasium")[0]
+    )
 
 
 def p(x: float, other: str, ours: str = "sac") -> float:
@@ -67,8 +69,8 @@ CITED = [
     ),
     returns_at("hopper", "hopper, IQM and 95% band at | 50,000 | 80,000 | 100,000"),
     Text(
-        "end equal: # and # at 100,000 (Mann-Whitney p #)",
-        [of("halfcheetah", "sac")[0], of("halfcheetah", OURS)[0], p(100_000, OURS)],
+        "end level: # and # at 100,000 (Mann-Whitney p #)",
+        [at_end("halfcheetah", "sac")[0], at_end("halfcheetah", OURS)[0], p(100_000, OURS)],
     ),
     Text(
         "is ahead at 50,000 (bands disjoint, p #) and #% behind at 100,000 "
@@ -89,7 +91,7 @@ CITED = [
         "on seeds 10 and 11 (# at 60,000)",
         [curve(LIGHT, "settings=light, seeds 10 and 11").at(60_000)[0]],
     ),
-    Text("none of these passes # to its end", [max(map(highest, OTHERS))]),
+    Text("none of these exceeds # in its run", [max(map(highest, OTHERS))]),
     Text(
         "with networks of 256, has # at 60,000",
         [curve("defaults_halfcheetah", "sac").at(60_000)[0]],
@@ -98,10 +100,12 @@ CITED = [
 PLAIN = [
     # settings
     "95% bootstrap",
-    "5 episodes a seed",
+    "5 episodes per seed",
     "64 seeds in one program",
     "16 cores of its host",
+    "16 cores of their host",
     "MuJoCo 3.17.0",
+    "before 0.2.0",
     "jax was 0.11.2, on the two cores 0.10",
     "batch 256, two layers of 256, 10,000 random decisions",
     "Stable-Baselines3 2.9.2",
@@ -126,7 +130,7 @@ PLAIN = [
     # aims
     "The aim was 600",
     "within 10 minutes",
-    # read off the console; the page says so
+    # read from the console; the page says so
     "about 210 decisions/s",
     "about 4 decisions/s",
 ]

@@ -39,11 +39,11 @@ CITED = [
 ]
 PLAIN = [
     # settings
-    "seeds 0 to 9, 10 evaluation episodes a seed",
+    "seeds 0 to 9, 10 evaluation episodes per seed",
     "jax 0.11.2",
     "episodes of 10 s",
     "within 20 episodes",
-    "of 100 episodes, mean over seeds",
+    "of 100 episodes: mean over seeds",
     "from 5 demonstrations on",
     "learn at 0.003: with the thesis' rate of 0.01",
     "for 1 cm",

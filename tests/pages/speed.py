@@ -31,12 +31,12 @@ def rows(part: str, what: str, has: str = "") -> dict[str, dict[str, Any]]:
 
 
 def loop(label: str, column: str) -> list[float]:
-    """The whole loop: decisions/s, or [MB] a learner."""
+    """The whole loop: decisions/s, or [MB] per learner."""
     key = "memory" if column.startswith("memory") else "rate"
     count = "4,096" if column.startswith("memory") else column
     if label.endswith("64 cores") or label.startswith("the same"):
-        of = rows("loop", f"{LOOP}, native, default, one GPU, 64 cores")
-        row = of["512 learners" if label.endswith("64 cores") else "512, prototype's work"]
+        table = rows("loop", f"{LOOP}, native, default, one GPU, 64 cores")
+        row = table["512 learners" if label.endswith("64 cores") else "512, prototype's work"]
     else:
         physics, precision = label.lower().split(", ")
         row = rows("loop", f"{LOOP}, {precision}")[f"{count} learners, {physics}"]
@@ -45,8 +45,8 @@ def loop(label: str, column: str) -> list[float]:
 
 def gpus(label: str, column: str) -> list[float]:
     """Several GPUs."""
-    of = rows("loop", f"{LOOP}, native, default, 16 cores a GPU")
-    (row,) = (row for name, row in of.items() if name.startswith(f"{column} GPU"))
+    table = rows("loop", f"{LOOP}, native, default, 16 cores a GPU")
+    (row,) = (row for name, row in table.items() if name.startswith(f"{column} GPU"))
     return [row["ratio"] if label.startswith("times") else row["rate"]]
 
 
@@ -58,13 +58,13 @@ def physics(label: str, column: str) -> list[float]:
         "MJX": ("bare mjx.step", "ours, mjx"),
         "native (8 cores)": ("bare mujoco.rollout", "ours, native"),
     }[how]
-    of = rows("physics", f"{task.replace('-', '')}, {worlds}", ours)
-    rate = {"bare loop": of[bare]["rate"], "ours": of[ours]["rate"]}
+    table = rows("physics", f"{task.replace('-', '')}, {worlds}", ours)
+    rate = {"bare loop": table[bare]["rate"], "ours": table[ours]["rate"]}
     return [rate.get(column, rate["ours"] / rate["bare loop"])]
 
 
 def plan(label: str, column: str) -> list[float]:
-    """Model steps a second: three digits, millions where the page says M."""
+    """Model steps per second: three digits, or in millions."""
     learners = f"{column.removesuffix(' learner')} learners"
     if label.startswith("MPPI"):
         return [
@@ -109,9 +109,9 @@ FLOAT, LOW = ends("seeds_64"), ends("seeds_64_tf32")
 BEFORE = [curve("fig_3_2_halfcheetah", label).at(40_000)[0] for label in (LOOP, "sac")]
 BARE_MJX = rows("physics", "halfcheetah, 65,536 worlds", "ours, mjx")
 CITED = [
-    Table("learners | 1 | 64 | 512 | 4,096 | memory a learner", loop),
+    Table("learners | 1 | 64 | 512 | 4,096 | memory per learner", loop),
     Text(
-        "One learner is # times the aim of 400, 64 are # times the aim of 20,000",
+        "One learner reaches # times the aim of 400, 64 reach # times the aim of 20,000",
         [NATIVE["1 learners, native"]["rate"] / 400, NATIVE["64 learners, native"]["rate"] / 2e4],
     ),
     Text(
@@ -125,15 +125,15 @@ CITED = [
         physics("half-cheetah, 64 worlds, native (8 cores)", "ratio"),
     ),
     Text("three times the # M of the bare loop here", [BARE_MJX["bare mjx.step"]["rate"] / 1e6]),
-    Text("So # says that", physics("half-cheetah, 65,536 worlds, MJX", "ratio")),
-    Text("The hopper's ratio of # flatters", physics("hopper, 65,536 worlds, MJX", "ratio")),
-    Table("model steps a second | 1 learner | 512 | 4,096", plan),
+    Text("So # shows that", physics("half-cheetah, 65,536 worlds, MJX", "ratio")),
+    Text("The hopper's ratio of # overstates", physics("hopper, 65,536 worlds, MJX", "ratio")),
+    Table("model steps per second | 1 learner | 512 | 4,096", plan),
     Text(
         "so # M are # TFLOP/s",
         [TRUE["4,096 learners"]["rate"] / 1e6, TRUE["4,096 learners"]["rate"] * 37e3 / 1e12],
     ),
     Text(
-        "# M model steps a second, # ms a plan (float32: # M, # ms)",
+        "# M model steps per second, # ms per plan (float32: # M, # ms)",
         [x for rate in TF32 for x in (rate / 1e6, 16384 * 32 / rate * 1e3)],
     ),
     Text(
@@ -176,7 +176,7 @@ PLAIN = [
     "jax 0.11.2, MuJoCo 3.17.0, warp-lang 1.18.0",
     "a plan of K 20 and T 10",
     "batch 128",
-    "up to 40 worlds a core",
+    "up to 40 worlds per core",
     "at 65,536 worlds except",
     "with 64 worlds on MuJoCo C",
     "up to 100 solver iterations",
@@ -187,13 +187,13 @@ PLAIN = [
     "seeds 0 to 9 ended",
     "So 64 seeds show",
     # aims
-    "the aim of 400, 64 are",
+    "the aim of 400, 64 reach",
     "the aim of 20,000. **512 learners miss the aim of 100,000**",
     "where the aim was 600",
     "* 90% is reached",
     "The aim of 600 M is missed",
     "the aim of 1.2 ms is missed",
-    # measured elsewhere, or read off the console; the page says so
+    # measured elsewhere, or read from the console; the page says so
     "On a shared 2-core Xeon one learner makes about 210 decisions/s",
-    "with 4 iterations, had 4.46 M steps a second",
+    "with 4 iterations, had 4.46 M steps per second",
 ]

@@ -122,10 +122,10 @@ def areas(header: str, files: dict[str, str], ours: str, after: str = "") -> Tab
     """A table of areas under the curve to the row's x; "ahead of B": `ours` against B."""
 
     def values(label: str, column: str) -> list[float]:
-        def of(name: str) -> np.ndarray:
+        def area(name: str) -> np.ndarray:
             return curve(file_of(label, files), name, "eval/return").area(number(label))
 
         against = column.removeprefix("ahead of ")
-        return ahead(of(ours), of(against)) if against != column else spread(of(column))
+        return ahead(area(ours), area(against)) if against != column else spread(area(column))
 
     return Table(header, values, after)
