@@ -1,4 +1,4 @@
-"""A method is one YAML; a part is one Python file and one YAML; nothing else is edited."""
+"""The how-tos of CONTRIBUTING.md, run as they are printed, from a folder outside the repository."""
 
 import json
 import os
@@ -6,162 +6,134 @@ import re
 import sys
 from pathlib import Path
 
+import mujoco
+import numpy as np
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train
+from tiny import TINY, call, call_train, only_line
 
 from hybrid_rl import config, evaluate, render
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.run.drawing import draw
 
 pytestmark = pytest.mark.xdist_group("extend")
-ROOT = Path(__file__).resolve().parents[1]
-METHOD = """\
-# @package _global_
-# Planning around the plan, no policy.
-defaults:
-  - /family@_global_: hybrid
-  - override /proposal: noise
-  - _self_
-algo: toy
-planner:
-  policy: null  # none is learned
-controllers:
-  full: ${planner}
-learners:
-  model: ${model_learner}
-"""
-PART = '''\
-"""Candidates anywhere."""
-
-from dataclasses import dataclass
-
-import jax.numpy as jnp
-from jax.scipy.stats import norm
+PAGE = (Path(__file__).resolve().parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
+IMPORTS = (
+    "from dataclasses import dataclass\n\nimport jax.numpy as jnp\n\n\n"  # the page omits them
+)
 
 
-@dataclass(frozen=True)
-class NoDynamics:
-    """v ~ U(-reach, reach)."""
+def section(title: str) -> str:
+    """The text of a section of the page."""
+    return PAGE.split(f"## {title}\n")[1].split("\n## ")[0]
 
-    reach: float = 1.0
 
-    def init(self, spec, place):
-        return ()
-
-    def __call__(self, params, carry, x, plan, noise):
-        v = self.reach * (2 * norm.cdf(noise) - 1)
-        return v, -jnp.log(2 * self.reach) * plan.size, carry
-'''
-PART_YAML = """\
-# NoDynamics.
-_target_: my_part.NoDynamics
-reach: 0.5
-"""
+def blocks(title: str) -> list[str]:
+    """The code blocks of a section, in order."""
+    return re.findall(r"```(?:python|xml|yaml)\n(.*?)```", section(title), re.S)
 
 
 @pytest.fixture
-def conf(tmp_path):
-    folder = tmp_path / "my_conf"
-    (folder / "algo").mkdir(parents=True)
-    (folder / "algo" / "toy.yaml").write_text(METHOD)
-    return folder
-
-
-@pytest.fixture
-def part(conf, tmp_path, monkeypatch):
-    """Beside the method, a part of its own."""
-    (tmp_path / "my_part.py").write_text(PART)
-    (conf / "proposal").mkdir()
-    (conf / "proposal" / "toy.yaml").write_text(PART_YAML)
+def conf(tmp_path, monkeypatch):
+    """An empty configuration folder; modules are imported from the folder around it."""
+    modules = set(sys.modules)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
-    yield
-    sys.modules.pop("my_part", None)
+    for group in ("algo", "target", "task"):
+        (tmp_path / "my_conf" / group).mkdir(parents=True)
+    yield tmp_path / "my_conf"
+    for name in ("ring", "reward_average", "kettle", "crane"):
+        if name not in modules:
+            sys.modules.pop(name, None)
 
 
-def test_a_method_is_one_yaml(conf, tmp_path, capfd):
-    folder = tmp_path / "run"
-    line = ["--config-dir", conf, *TINY, "algo=toy", "total_steps=200", f"run_dir={folder}"]
-    assert call_train(*line) == 0
+@pytest.fixture
+def ring(conf, tmp_path):
+    """The files of "A part"."""
+    (tmp_path / "ring.py").write_text(IMPORTS + blocks("A part")[0])
+    lines = re.search(r"with two lines, `(.*?)` and `(.*?)`", section("A part")).groups()
+    (conf / "target" / "ring.yaml").write_text("\n".join(lines) + "\n")
+    return conf
+
+
+def train(conf, folder, *overrides):
+    """The configuration of a tiny run that ended well, without a warning."""
+    line = [*TINY, "total_steps=100", "eval_every=100", f"run_dir={folder}", *overrides]
+    assert call_train("--config-dir", conf, *line) == 0
+    return OmegaConf.load(folder / "config.yaml")
+
+
+def test_a_method_is_one_yaml_and_a_recursive_learner_one_file(conf, tmp_path, capfd):
+    """The method composes as printed, also from Python; with the learner added, it trains."""
+    method = conf / "algo" / "single_model.yaml"
+    method.write_text(blocks("A method")[0])
+    composed = config.load(["algo=single_model"], config_dir=conf)
+    assert list(composed.learners) == ["model", "policy"]
+    (tmp_path / "reward_average.py").write_text(IMPORTS + blocks("A recursive learner")[0])
+    entry = re.search(r"`(average: \{.*?\})`", section("A recursive learner"))[1]
+    method.write_text(f"{method.read_text()}  {entry}\n")
+    written = train(conf, tmp_path / "run", "algo=single_model")
     assert capfd.readouterr().err == ""
-    kept = OmegaConf.load(folder / "config.yaml")
-    assert kept.controllers.full.proposal._target_.endswith("NoiseProposal")
-    assert list(kept.learners) == ["model"]
-    said = json.loads((folder / "summary.json").read_text())
-    assert (said["algo"], said["finished"]) == ("toy", True)
+    assert list(written.learners) == ["model", "policy", "average"]
+    trained = evaluate.load(tmp_path / "run")
+    total, count = np.asarray(trained.params.belief[0])
+    assert count == 100
+    assert total < 0  # rewards of the pendulum
 
 
-def test_python_takes_the_same_folder(conf):
-    made = config.load(["task=pendulum", "algo=toy"], config_dir=conf)
-    assert list(made.learners) == ["model"]
+def test_a_configuration_folder_that_does_not_exist_is_one_line():
     with pytest.raises(config.UsageError, match="config_dir=nowhere: no such folder"):
         config.load(config_dir="nowhere")
 
 
-def test_a_part_is_one_file_and_one_yaml(conf, part, tmp_path, capfd):
-    folder = tmp_path / "run"
-    line = [*TINY, "algo=toy", "proposal=toy", "total_steps=200", f"run_dir={folder}"]
-    assert call_train("--config-dir", conf, *line) == 0
+def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
+    """Trained with the command of the page."""
+    arguments = re.search(r"--config-dir my_conf (task=point_mass .*?)`", section("A part"))[1]
+    written = train(ring, tmp_path / "run", *arguments.split(), "explorer.horizon=3")
     assert capfd.readouterr().err == ""
-    kept = OmegaConf.load(folder / "config.yaml")
-    assert kept.controllers.full.proposal == {"_target_": "my_part.NoDynamics", "reach": 0.5}
-    assert call(lambda: command.guarded(evaluate.main), f"run={folder}", "episodes=1") == 0
+    objective = written.controllers.full.controller.objective
+    assert objective.target == {"_target_": "ring.Ring", "radius": 0.4}
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert (summary["algo"], summary["finished"]) == ("kle3", True)
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("overrides", "words"),
     [
-        (["proposal=toys"], "proposal=toys: unknown; choose one of mixture, noise, policy, toy"),
-        (["proposal=toy", "proposal.reach=far"], "proposal.reach=far: must be a number"),
+        (["target=rings"], "target=rings: unknown; choose one of mixture, model_uncertainty, ring"),
+        (["target=ring", "target.radius=far"], "target.radius=far: must be a number"),
         (
-            ["proposal=toy", "proposal.reech=1"],
-            "proposal.reech: unknown key; did you mean proposal.reach?",
+            ["target=ring", "target.radios=1"],
+            "target.radios: unknown key; did you mean target.radius?",
         ),
-        (["proposal=toy", "proposal._target_=my_part.Any"], "proposal._target_=my_part.Any: "),
+        (["target=ring", "target._target_=ring.Any"], "target._target_=ring.Any: "),
         (
-            ["proposal=toy", "proposal._target_=their.Any"],
+            ["target=ring", "target._target_=their.Any"],
             "(No module named 'their'); is its folder on PYTH",
         ),
         (
-            ["algo=nn_mppi", "proposal=toy"],
+            ["algo=nn_mppi", "proposal=noise"],
             "proposal: nn_mppi does not use it; it uses model_proposal",
         ),
     ],
-    ids=lambda given: given[-1] if isinstance(given, list) else "",
+    ids=["name", "value", "key", "class", "module", "unused"],
 )
-def test_what_is_wrong_with_a_part_is_one_line(conf, part, tmp_path, capfd, given, words):
-    line = ["--config-dir", conf, *TINY, "algo=toy", f"run_dir={tmp_path / 'run'}", *given]
-    assert call_train(*line) == 2
-    said = capfd.readouterr().err
-    assert said.count("\n") == 1
-    assert words in said
+def test_an_error_about_a_part_is_one_line(ring, tmp_path, capfd, overrides, words):
+    line = [*TINY, "task=point_mass", "algo=kle3", f"run_dir={tmp_path / 'run'}", *overrides]
+    assert call_train("--config-dir", ring, *line) == 2
+    assert words in only_line(capfd)
     assert not (tmp_path / "run").exists()
 
 
-@pytest.fixture
-def world(tmp_path, monkeypatch):
-    """The configuration folder of the analytic world of CONTRIBUTING.md, outside the repository."""
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    section = text.split("## An analytic world\n")[1].split("\n## ")[0]
-    code, yaml = re.findall(r"```(?:python|yaml)\n(.*?)```", section, re.S)
+def test_an_analytic_environment_is_one_file_and_one_yaml(conf, tmp_path, monkeypatch, capfd):
+    """It is trained and loaded from another folder; it cannot be drawn, which is one line."""
+    code, yaml = blocks("An analytic world")
     (tmp_path / "kettle.py").write_text(code)
-    (tmp_path / "my_conf" / "task").mkdir(parents=True)
-    (tmp_path / "my_conf" / "task" / "kettle.yaml").write_text(yaml)
-    monkeypatch.syspath_prepend(tmp_path)
-    yield tmp_path / "my_conf"
-    sys.modules.pop("kettle", None)
-
-
-def test_the_analytic_world_of_the_how_to_runs(world, tmp_path, monkeypatch, capfd):
-    """Trained, read back from another folder, and drawn as far as it can be."""
+    (conf / "task" / "kettle.yaml").write_text(yaml)
     folder = tmp_path / "run"
-    tiny = [text for text in TINY if text not in ("task=pendulum", "total_steps=600")]
-    given = ["task=kettle", "algo=sac", "total_steps=100", "episode.steps=20", f"run_dir={folder}"]
-    assert call_train("--config-dir", world, *tiny, *given, "env.power=4") == 0
+    train(conf, folder, "task=kettle", "algo=sac", "episode.steps=20", "env.power=4")
     assert capfd.readouterr().err == ""
-    said = json.loads((folder / "summary.json").read_text())
-    assert (said["task"], said["finished"]) == ("kettle", True)
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     trained = evaluate.load(folder)
@@ -169,6 +141,24 @@ def test_the_analytic_world_of_the_how_to_runs(world, tmp_path, monkeypatch, cap
     assert (evaluate.evaluate(trained, episodes=2)["return"] < 0).all()
     monkeypatch.setattr(offscreen, "backend", lambda: "egl")
     assert call(lambda: command.guarded(render.main), f"run={folder}") == 2
-    line = capfd.readouterr().err
-    assert line.count("\n") == 1
-    assert "Kettle has no `scene` and no `pose`: the world cannot be drawn" in line
+    assert "Kettle has no `scene` and no `pose`" in only_line(capfd)
+
+
+def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, can_draw):
+    """It is trained, evaluated and drawn."""
+    code, xml, yaml = blocks("A MuJoCo world")
+    (tmp_path / "crane.py").write_text(code)
+    (tmp_path / "crane.xml").write_text(xml)
+    (conf / "task" / "crane.yaml").write_text(yaml)
+    train(conf, tmp_path / "run", "task=crane", "algo=sac", "episode.steps=10")
+    assert capfd.readouterr().err == ""
+    trained = evaluate.load(tmp_path / "run")
+    assert (evaluate.evaluate(trained, episodes=1)["return"] < 0).all()
+    env = trained.episode.env
+    offscreen.check_drawable(env)
+    film = render.episode(trained, steps=3)
+    assert film.poses.shape == (4, mujoco.MjModel.from_xml_string(env.scene()).nq)
+    if can_draw:
+        picture = tmp_path / "crane.gif"
+        draw(env.scene(), film.poses, picture, 20, 64, 48)
+        assert picture.stat().st_size > 0

@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parents[1]
 CODE = ("hybrid_rl/**/*.py", "envs/**/*.py", "hydra_plugins/*.py", "tests/**/*.py", "scripts/*.py")
 TEXT = ("conf/**/*.yaml", "tests/conf/**/*.yaml", "*.md", "docs/**/*.md", "pyproject.toml")
 PICTURES = re.compile(
-    r"hybrid_rl/(studies|benchmark|drawing|render)|tests/(studies|run/test_drawing)"
+    r"hybrid_rl/(studies|benchmark|drawing|render)|tests/(studies|run/test_drawing|test_figures|test_render)"
 )
 WORDS = {  # regular expression -> what to write
     "told": "the verb for what happens: print, log, report",
@@ -29,6 +29,11 @@ WORDS = {  # regular expression -> what to write
     r"(?<!\bin )(?<!\btakes )(?<!\btake )(?<!decimal )places?(?! of\b)": "position, folder, index",
     r"rows(?=\s*=\s*(scan_)?unroll)": "unroll",
 }
+QUOTED = {  # file -> regular expression of names that are quoted there
+    "CHANGELOG.md": r"`[^`]*`",
+    "docs/results/chapter6.md": r"`explorer\.level`",
+    "tests/pages/chapter6_values.py": r"explorer\.level=\{label\}",
+}
 IN_CODE = {r"def _?once(?=\()": "what the function does once"}
 IN_CODE_WITHOUT_PICTURES = {r"colour(s|ed)?(?=\s*[=(,):\]])": "correlation (noise), denormalise"}
 
@@ -47,10 +52,8 @@ def texts() -> Iterator[tuple[str, str, re.Pattern[str]]]:
             name, content = file.relative_to(ROOT).as_posix(), file.read_text(encoding="utf-8")
             if file == Path(__file__).resolve():
                 continue
-            if name == "CHANGELOG.md":  # quotes the names that it replaces
-                content = re.sub(
-                    r"`[^`]*`", lambda quoted: re.sub(r"[^\n]", "-", quoted[0]), content
-                )
+            if name in QUOTED:
+                content = re.sub(QUOTED[name], lambda quote: "\n" * quote[0].count("\n"), content)
             pattern = text if globs is TEXT else code if PICTURES.match(name) else most
             yield name, content, pattern
 
