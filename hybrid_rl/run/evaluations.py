@@ -11,7 +11,7 @@ from jax import Array
 
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
-from hybrid_rl.training.loop import SAME, SEEDS, Loop
+from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Params
 
@@ -58,7 +58,7 @@ class Evaluator:
         more = partial(advance, loop.agent.episode, controller)
         program = loop.shard(jax.vmap(first), SEEDS, SEEDS)
         self._begin = program.lower(keys).compile()
-        takes = SEEDS, SEEDS, SAME
+        takes = SEEDS, SEEDS, REPLICATED
         program = loop.shard(jax.vmap(more, (0, 0, None)), takes, SEEDS, donate_argnums=1)
         self._advance = program.lower(params, self._begin(keys), jnp.int32(0)).compile()
 
