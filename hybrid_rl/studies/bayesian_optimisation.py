@@ -5,7 +5,7 @@
 Figures 6-3 to 6-5. Best value over measurements and the Lyapunov function V over time, median and
 range over trials; and the measurements of the first trial of each method. The summary has the best
 value, how many trials get above 95% of the highest hill (1.0), after how many measurements, and the
-greatest V, as interquartile mean and 95% band over trials. group=guarded.level compares levels of
+greatest V, as interquartile mean and 95% band over trials. group=full.level compares levels of
 the guard instead of methods.
 """
 

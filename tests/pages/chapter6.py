@@ -108,7 +108,8 @@ CITED = [
         ],
     ),
     Text(
-        "# [#, #] at # N, bands apart from KL-E3's at # N; in tracking they overlap (# and # m)",
+        "# [#, #] at # N, with a band disjoint from KL-E3's at # N; "
+        "in tracking they overlap (# and # m)",
         [
             *fig_6_6("ou_noise 0.3", "error"),
             fig_6_6("ou_noise 0.3", "power_loss")[0],

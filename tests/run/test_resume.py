@@ -138,13 +138,13 @@ def test_without_replay_it_goes_on_and_says_so(interrupt, whole, tmp_path, capsy
 
 
 def test_seeds_side_by_side_are_the_seeds_alone(interrupt, halves, tmp_path):
-    """To rounding, which grows with every decision: 1e-6 after 100, 7e-4 after 300."""
+    """To rounding, which grows with every decision: 2e-5 after 100, 2e-4 after 300."""
     run(tmp_path / "run", *HYBRID, "total_steps=300", "num_seeds=3")
     together = interrupt.rows(tmp_path / "run")
     for seed, alone in enumerate(halves):
         ours, theirs = [r for r in together if r["seed"] == seed], interrupt.rows(alone)
         assert [r.keys() for r in ours] == [r.keys() for r in theirs]
         for one, two in zip(ours, theirs, strict=True):
-            tolerance = 1e-5 if one["step"] <= 100 else 1e-2
+            tolerance = 1e-4 if one["step"] <= 100 else 1e-2
             got, wanted = [*one.values()], [*two.values()]
             np.testing.assert_allclose(got, wanted, rtol=tolerance, atol=1e-3 * tolerance)
