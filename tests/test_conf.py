@@ -2,17 +2,18 @@
 
 import dataclasses
 from pathlib import Path
+from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 import pytest
-from hydra import compose, initialize_config_dir
 from hydra.utils import get_class, instantiate
-from omegaconf import OmegaConf
+from omegaconf import DictConfig, OmegaConf
 from tiny import SMALL, demonstrate
 
 from hybrid_rl import config
-from hybrid_rl.cli.command import CONF, options
+from hybrid_rl.cli.command import options
 from hybrid_rl.training.loop import Loop
 
 PARTS = [
@@ -36,7 +37,7 @@ def keys_of(path: Path) -> set[str]:
 
 
 @pytest.mark.parametrize("path", PARTS, ids=lambda p: str(p.relative_to(config.CONF)))
-def test_a_part_lists_every_field(path: Path) -> None:
+def test_the_yaml_of_a_part_lists_every_field(path: Path) -> None:
     """A part's YAML and its dataclass have the same names."""
     node = OmegaConf.load(path)
     fields = dataclasses.fields(get_class(node.get("env", node)._target_))
@@ -50,54 +51,77 @@ EACH = [  # every method on one task, the default method on the default task, on
 ]
 
 
+def put(node: Any, **values: Any) -> None:
+    """Set every key of these names in a composed configuration, here and below."""
+    for key, value in node.items():
+        if key in values:
+            node[key] = values[key]
+        elif isinstance(value, DictConfig):
+            put(value, **values)
+
+
+def with_demonstrations(composed: DictConfig, folder: Path) -> DictConfig:
+    """The configuration with a file of random decisions, if its method imitates."""
+    if composed.replay.demonstrations is not None:
+        put(composed, file=demonstrate(folder, composed).partition("=")[2])
+    return composed
+
+
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite."""
-    given = [f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL]
-    if task != "pendulum":
-        given += ["policy_learner.updates=1"] if "policy" in config.load(given).learners else []
-    whole = config.load(given)
-    if "model" in whole.learners:
-        given.append(f"{'model.model' if 'model' in whole.model else 'model'}.hidden=[8]")
-    if whole.pretrain:
-        given += ["pretrain=2", demonstrate(tmp_path, whole)]
-    run = config.build(config.load(given))
+    composed = config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *SMALL])
+    put(composed.controllers, hidden=[8])
+    put(composed.learners, hidden=[8], **({} if task == "pendulum" else {"updates": 1}))
+    composed.pretrain = min(composed.pretrain, 2)
+    run = config.build(with_demonstrations(composed, tmp_path))
     loop = Loop(run.agent, run.seeds, stride=8)
     state = loop.init()
     program = loop.compile(state)
     state, metrics = program(state, jnp.int32(0), jnp.int32(8))
-    assert all(bool(jnp.isfinite(leaf).all()) for leaf in jax.tree.leaves(run.agent.params(state)))
-    shown = run.agent.replay.num_demonstrated(run.agent.num_envs)
-    assert (state.memory.count - shown == 8).all()
+    assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(run.agent.params(state)))
+    demonstrated = run.agent.replay.num_demonstrated(run.agent.num_envs)
+    assert (state.memory.count - demonstrated == 8).all()
     learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
     assert learned or not run.agent.learners
     for name in learned:
-        assert jnp.isfinite(metrics[name][-1]).all()
+        assert np.isfinite(metrics[name][-1]).all()
+
+
+def methods_of(experiment: str) -> list[list[str]]:
+    """The overrides for each method that an experiment compares; else for its own method."""
+    node = OmegaConf.load(config.CONF / "experiment" / f"{experiment}.yaml")
+    inherited = {str(k): v for default in node.defaults for k, v in _pairs(default)}
+    files = [node]
+    if "/settings@_global_" in inherited:
+        name = inherited["/settings@_global_"]
+        files.append(OmegaConf.load(config.CONF / "settings" / f"{name}.yaml"))
+    lists = [OmegaConf.select(each, "hydra.sweeper.params.algo") for each in files]
+    names = next(filter(None, lists), "")
+    return [[f"algo={name}"] for name in names.split(",")] if names else [[]]
+
+
+def _pairs(default: Any) -> Any:
+    return default.items() if isinstance(default, DictConfig) else ()
 
 
 @pytest.mark.parametrize("experiment", options("experiment"))
 def test_every_experiment_builds(experiment: str, tmp_path: Path) -> None:
     """The parts of an experiment accept its values, for every method that it compares."""
-    with initialize_config_dir(str(CONF), version_base="1.3"):
-        whole = compose("train", [f"experiment={experiment}"], return_hydra_config=True)
-    compared = OmegaConf.select(whole, "hydra.sweeper.params.algo")
-    for algo in compared.split(",") if compared else [whole.algo]:
-        line = [f"experiment={experiment}", f"algo={algo}"]
-        given = config.load(line)
-        if given.replay.demonstrations is not None:
-            given = config.load([*line, demonstrate(tmp_path, given)])
-        config.build(given)
+    for line in methods_of(experiment):
+        composed = config.load([f"experiment={experiment}", *line])
+        config.build(with_demonstrations(composed, tmp_path))
 
 
 @pytest.mark.parametrize("algo", ["kle3", "kle3_bayesopt"])
-def test_a_method_that_needs_an_analytic_environment_says_so(algo: str) -> None:
-    """Where the environment is MuJoCo's."""
+def test_a_method_that_needs_an_analytic_environment_refuses_others(algo: str) -> None:
+    """For an environment of MuJoCo."""
     with pytest.raises(config.UsageError, match="needs an analytic environment"):
         config.build(config.load(["task=halfcheetah", f"algo={algo}"]))
 
 
-def test_settings_stand_on_the_command_line() -> None:
-    """They come after the method, and before what else the line says."""
+def test_settings_can_be_overridden_on_the_command_line() -> None:
+    """They apply after the method and before other overrides."""
     c = config.load(["settings=thesis"])
     assert (c.planner.horizon, c.model.hidden, c.mbpo.share) == (5, [200], 0)
     c = config.load(["settings=light", "total_steps=10", "algo=hybrid_stochastic"])
@@ -107,7 +131,7 @@ def test_settings_stand_on_the_command_line() -> None:
 
 
 def test_thesis_parameters() -> None:
-    """Table B.1, with its swapped columns put right."""
+    """Table B.1, with its swapped columns corrected."""
     table = {  # H, T, K, lambda
         "pendulum": (5, 200, 20, 0.1),
         "cartpole": (5, 200, 20, 0.1),
@@ -143,8 +167,8 @@ PLANNERS = [  # methods that have mode=planner
 
 
 @pytest.mark.parametrize("algo", PLANNERS)
-def test_the_planner_alone_has_neither_policy_nor_critic(algo: str) -> None:
-    """Nor has its objective, for any objective of the method; its horizon is longer then."""
+def test_the_planner_of_a_method_has_neither_policy_nor_critic(algo: str) -> None:
+    """Nor does its objective; if that of the full method has a critic, its horizon is longer."""
     composed = config.load([f"algo={algo}"])
     planner, full = (
         instantiate(node, _convert_="all")
@@ -160,8 +184,8 @@ def test_the_planner_alone_has_neither_policy_nor_critic(algo: str) -> None:
 
 
 @pytest.mark.parametrize("algo", ["hybrid_stochastic", "hybrid_deterministic"])
-def test_the_planner_alone_does_not_depend_on_the_critic(algo: str) -> None:
-    """Its action is that of the model, the same with other parameters of critic and policy."""
+def test_the_planner_of_a_method_does_not_depend_on_the_critic(algo: str) -> None:
+    """Its action is the same with other parameters of critic and policy; that of `full` is not."""
     overrides = ["task=pendulum", f"algo={algo}", *SMALL, "model=gaussian", "model.hidden=[8]"]
     if algo == "hybrid_stochastic":
         overrides += ["model_planner.horizon=2", "model_planner.samples=3"]
@@ -186,14 +210,14 @@ def test_the_planner_alone_does_not_depend_on_the_critic(algo: str) -> None:
     assert (same != other).all()
 
 
-def test_slots_are_few() -> None:
-    """A method brings its own by its family; the root has what every method has."""
+def test_the_root_has_few_slots() -> None:
+    """The root has only those of every method; a family adds its own."""
     root = OmegaConf.load(config.CONF / "train.yaml")
     slots = [d for d in root.defaults if d != "_self_" and "override" not in str(next(iter(d)))]
     assert len(slots) <= 18
 
 
 def test_two_copies_are_equal_by_value() -> None:
-    """The planner's model and the learner's are two objects and one value."""
+    """The planner's model and the learner's are two equal objects."""
     run = config.build(config.load(["task=pendulum", *SMALL]))
     assert run.agent.learners["model"].model == run.agent.controller.model

@@ -33,11 +33,20 @@ def walk(length: int, seed: int = 0) -> np.ndarray:
 
 def after(objective, past: np.ndarray):
     """J of paths that begin at the last of the states `past` [P, 3]; the others are in memory."""
-    memory = objective.init(SPEC)
-    for i, x in enumerate(past):
-        key = jax.random.key(i)
-        value, memory = objective.prepare(Params(), memory, jnp.asarray(x), jnp.zeros(1), key)
-    return value
+    memory, remember = objective.init(SPEC), remembering(objective)
+    for x in past[:-1]:
+        memory = remember(memory, jnp.asarray(x))
+    x, key = jnp.asarray(past[-1]), jax.random.key(0)
+    return objective.prepare(Params(), memory, x, jnp.zeros(1), key)[0]
+
+
+def remembering(objective):
+    """(memory, x) -> memory after a decision at x, compiled."""
+
+    def remember(memory, x):
+        return objective.prepare(Params(), memory, x, jnp.zeros(1), jax.random.key(0))[1]
+
+    return jax.jit(remember)
 
 
 def p_of(s: np.ndarray) -> np.ndarray:
@@ -56,6 +65,7 @@ def test_gradients_equal_finite_differences(name) -> None:
         objective, x = EACH[name], walk(6)
         of_path = after(objective, walk(6, seed=1))
 
+        @jax.jit
         def value(x):
             return of_path(Path(x, jnp.zeros((5, 1))))
 
@@ -118,9 +128,9 @@ def test_fourier_metric_vanishes_on_a_path_that_is_the_target() -> None:
 def test_fourier_memory_is_the_mean_over_all_states() -> None:
     """The coefficients are those of all states together."""
     objective, x = EACH["fourier"], jnp.asarray(walk(9))
-    memory = objective.init(SPEC)
+    memory, remember = objective.init(SPEC), remembering(objective)
     for state in x[:4]:
-        memory = objective.prepare(Params(), memory, state, jnp.zeros(1), jax.random.key(0))[1]
+        memory = remember(memory, state)
     got = objective.average(memory, Path(x[4:], jnp.zeros((4, 1))))
     np.testing.assert_allclose(got, objective.features(x[:, jnp.array([2, 0])]).mean(0), atol=1e-5)
 

@@ -37,14 +37,24 @@ def with_reward(agent: Agent, reward: Array | float):
     return replace(agent, episode=replace(agent.episode, env=env))
 
 
-def after(agent: Agent, decisions: int):
-    """The parameters after a number of decisions."""
+def history(agent: Agent, decisions: int):
+    """The parameters before the first decision and after each one [decisions + 1, ...]."""
 
     def run(key):
-        one = lambda state, t: (agent.step(state, t)[0], None)  # noqa: E731
-        return agent.params(jax.lax.scan(one, agent.init(key), jnp.arange(decisions))[0])
+        def one(state, t):
+            state = agent.step(state, t)[0]
+            return state, agent.params(state)
+
+        first = agent.init(key)
+        rest = jax.lax.scan(one, first, jnp.arange(decisions))[1]
+        return jax.tree.map(lambda a, b: jnp.append(a[None], b, 0), agent.params(first), rest)
 
     return jax.jit(run)(KEY)
+
+
+def at(params: Params, decision: int) -> Params:
+    """The parameters after a number of decisions."""
+    return jax.tree.map(lambda each: each[decision], params)
 
 
 def same(a, b) -> bool:
@@ -54,9 +64,9 @@ def same(a, b) -> bool:
 
 def test_experience_changes_the_models_and_not_the_policy(agent):
     """With different rewards the policies are equal and the reward models are not; all learn."""
-    learned = jax.jit(lambda reward: after(with_reward(agent, reward), 6))
-    one, other = learned(1.0), learned(-1.0)
-    first = agent.params(jax.jit(agent.init)(KEY))
+    learned = jax.jit(lambda reward: history(with_reward(agent, reward), 6))
+    params, others = learned(1.0), learned(-1.0)
+    first, one, other = at(params, 0), at(params, -1), at(others, -1)
     assert same(one.policy, other.policy)
     assert not same(one.reward, other.reward)
     assert not same(first.policy, one.policy)
@@ -72,10 +82,11 @@ def test_pretraining_is_gradient_steps_on_demonstrations(agent):
     )
     count = ahead.optimiser[0].count
     assert (int(count), int(still.optimiser[0].count)) == (3, 0)
-    state = still
+    state, cloning = still, learners["cloning"]
+    update = jax.jit(lambda state, key: cloning.update(state, Params(), None, key)[0])
     for key in jax.random.split(jax.random.split(KEY, 4)[3], 3):
         ((_, updating),) = jax.random.split(key, (1, 2))
-        state = learners["cloning"].update(state, Params(), None, updating)[0]
+        state = update(state, updating)
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-6), ahead, state)
 
 
@@ -103,8 +114,8 @@ def test_the_model_learns_from_random_decisions_and_the_policy_after_them() -> N
     """So imagined data never come from an untrained model."""
     line = [*TINY, "algo=hybrid_stochastic", "random_steps=24"]
     early = config.build(config.load(line)).agent
-    first = early.params(jax.jit(early.init)(KEY))
-    during, later = after(early, 24), after(early, 25)
+    learned = history(early, 25)
+    first, during, later = (at(learned, decision) for decision in (0, 24, 25))
     assert not same(first.model, during.model)
     assert same(first.policy, during.policy)
     assert not same(first.policy, later.policy)
