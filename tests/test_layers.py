@@ -1,4 +1,4 @@
-"""Who may import whom, and how long a page may be.
+"""Which layers import which, and the size of files.
 
 types, errors
       ^
@@ -6,9 +6,9 @@ core, networks
       ^
 models objectives controllers ... data <- training <- config <- run <- studies <- commands
                                                                  cli
-parts never import each other: they meet in a YAML file
+parts never import each other: YAML files combine them
 
-envs -> types alone; benchmark -> everything
+envs -> types, protocols; benchmark -> all but parts
 """
 
 import ast
@@ -33,12 +33,12 @@ ALLOWED = {
     "training": {*SHARED, "data", "training"},
     "overrides": {"errors"},
     "config": CONFIG,  # builds the parts that YAML names
-    "run": {*CONFIG, "run"},  # one run on the host: its folder, its session
+    "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "studies": {*SHARED, *CONFIG, "data", "run", "cli", "studies"},
     "benchmark": {*CONFIG, "run", "cli", "studies", "benchmark"},
 }
-KNOW_HYDRA = {"command", "config", "overrides", "run", "cli", "studies"}
+HYDRA = {"command", "config", "overrides", "run", "cli", "studies"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
 over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))
@@ -52,7 +52,7 @@ def module_of(file):
 
 
 def layer_of(module):
-    """The folder of a module; the name of a file that others import; "command" of any other."""
+    """The folder of a module, or the name of its file; "command" for a command."""
     parts = module.split(".")
     if len(parts) < 2 or parts[1].startswith("__"):
         return "package"
@@ -61,16 +61,16 @@ def layer_of(module):
 
 
 def imports_of(file):
-    """Full names of all that a file imports, wherever in it."""
-    found = set()
+    """Full names of all modules and objects that a file imports."""
+    names = set()
     for node in ast.walk(ast.parse(file.read_text())):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             outer = module_of(file).split(".")[: -node.level] if node.level else []
             inner = [*outer, *filter(None, [node.module])]
-            found |= {".".join([*inner, alias.name]) for alias in node.names}
-    return found
+            names |= {".".join([*inner, alias.name]) for alias in node.names}
+    return names
 
 
 @over_files
@@ -81,22 +81,22 @@ def test_imports_point_inward(file):
     allowed = {"package", *ALLOWED.get(layer, SHARED)}
     ours = {name for name in imports_of(file) if name.split(".")[0] == "hybrid_rl"}
     outward = {name for name in ours if layer_of(name) not in allowed}
-    assert not outward, f"{layer} may import {sorted(allowed)} alone"
+    assert not outward, f"{layer} may import only {sorted(allowed)}"
 
 
 @over_files
-def test_parts_and_worlds_know_no_configuration(file):
+def test_only_the_host_imports_hydra(file):
     third_party = {name.split(".")[0] for name in imports_of(file)}
-    assert layer_of(module_of(file)) in KNOW_HYDRA or not third_party & {"hydra", "omegaconf"}
+    assert layer_of(module_of(file)) in HYDRA or not third_party & {"hydra", "omegaconf"}
 
 
 @over_files
-def test_worlds_are_imported_by_their_one_name(file):
+def test_environments_are_imported_from_the_package(file):
     assert not {name for name in imports_of(file) if name.split(".")[0] in ("envs", "conf")}
 
 
 @over_files
-def test_names_say_what_is_inside(file):
+def test_file_names_are_specific(file):
     assert not VAGUE & set(file.relative_to(ROOT).with_suffix("").parts)
 
 
@@ -113,7 +113,7 @@ def test_a_file_is_at_most_300_lines_and_a_function_50(file):
     assert not {name: lines for name, lines in sizes.items() if lines > 50}
 
 
-def test_importing_the_package_imports_nothing_heavy():
+def test_importing_the_package_imports_no_heavy_module():
     code = "import hybrid_rl, sys; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
