@@ -3,7 +3,7 @@
 Parts do not inherit from them: a class that has these methods and fields is a part.
 """
 
-from typing import Protocol
+from typing import Literal, Protocol
 
 from jax import Array
 
@@ -238,16 +238,9 @@ class Demonstrations(Protocol):
         """All of them [N, ...], in order."""
 
 
-class Learner(Protocol):
-    """data -> parameters.
+class _Learner(Protocol):
+    """What both kinds of learners have."""
 
-    `data` names the transitions that an update gets:
-
-        uniform   a batch drawn from the replay memory; see UniformLearner
-        latest    this step's transitions [E, ...], each one once; see LatestLearner
-    """
-
-    data: str
     owns: tuple[str, ...]  # the fields of `Params` that it learns
 
     def init(self, key: Array, spec: Spec) -> PyTree:
@@ -262,20 +255,25 @@ class Learner(Protocol):
         """The next state, and metrics name -> []; `params` of all learners before the update."""
 
 
-class UniformLearner(Learner, Protocol):
+class UniformLearner(_Learner, Protocol):
     """A learner whose updates get batches [batches * batch_size] of the replay memory."""
 
+    data: Literal["uniform"]
     batch_size: int  # transitions of a batch
     batches: int  # batches of one update, concatenated
     updates: float  # per decision
     early: bool  # whether it also learns while decisions are random
 
 
-class LatestLearner(Learner, Protocol):
+class LatestLearner(_Learner, Protocol):
     """A learner that takes each decision once, with its true next observation.
 
     Its updates get the transitions [E] of the step that just ended, without delay, from the
     first decision of the run on, random ones included.
     """
 
+    data: Literal["latest"]
     every: int  # decisions of each environment between two updates; 1: uses them all
+
+
+Learner = UniformLearner | LatestLearner  # data -> parameters

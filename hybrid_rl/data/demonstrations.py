@@ -15,6 +15,7 @@ that does not exist in the working directory is searched there.
 
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -116,7 +117,7 @@ class Demonstrations:
     file: str
     task: str
     world: Env
-    episode: Any = None  # has `action_repeat`, as in the configuration; None: 1
+    episode: Mapping[str, int] | None = None  # with `action_repeat`; None: 1
     episodes: int | None = None  # None: all
 
     def __post_init__(self) -> None:

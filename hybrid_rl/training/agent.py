@@ -10,7 +10,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.data.replay import Memory, Replay, as_batch
-from hybrid_rl.protocols import Controller
+from hybrid_rl.protocols import Controller, Learner, UniformLearner
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
@@ -42,7 +42,7 @@ class Agent:
 
     episode: Episode
     controller: Controller
-    learners: Mapping[str, Any]  # UniformLearner or LatestLearner
+    learners: Mapping[str, Learner]
     replay: Replay
     num_envs: int = 1
     random_steps: int = 0
@@ -133,7 +133,7 @@ class Agent:
 
         return jax.lax.scan(one, states, jax.random.split(key, self.pretrain))[0]
 
-    def _sample(self, memory: Memory, learner: Any, key: Array) -> Batch:
+    def _sample(self, memory: Memory, learner: UniformLearner, key: Array) -> Batch:
         """The batch of one update of a `uniform` learner. The key is consumed."""
         return self.replay.sample(memory, self.spec, learner.batches * learner.batch_size, key)
 
@@ -207,10 +207,11 @@ class Agent:
         for k, (name, learner) in zip(keys, self.learners.items(), strict=True):
             count, every = update_schedule(name, learner, self.num_envs)
 
-            def one(state: Any, keys: Array, learner: Any = learner) -> tuple[Any, Any]:
+            def one(state: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
                 drawing, updating = keys
-                latest = learner.data == "latest"
-                batch = as_batch(new) if latest else self._sample(memory, learner, drawing)
+                if learner.data == "latest":
+                    return learner.update(state, params, as_batch(new), updating)
+                batch = self._sample(memory, learner, drawing)
                 return learner.update(state, params, batch, updating)
 
             @trace_once
@@ -228,7 +229,7 @@ class Agent:
         return learned, metrics
 
 
-def update_schedule(name: str, learner: Any, num_envs: int) -> tuple[int, int]:
+def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:
     """(n, k) of a learner: n updates after every k decisions of each environment."""
     if learner.data == "latest":
         return 1, learner.every
