@@ -155,7 +155,7 @@ def load(folder: Path | str) -> Trained:
         like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
         like = like.replace(env=None, control=None, memory=None, key=None)
         step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
-    params = jax.vmap(run.agent.params)(state)
+    params = jax.vmap(run.agent.params, axis_size=len(run.seeds))(state)  # state may be empty
     return Trained(
         config.task, run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes)
     )

@@ -55,6 +55,7 @@ USAGE = [  # overrides of train, words of the line
     ("algo=nn_mppi proposal=mixture", "proposal: nn_mppi does not use it; it uses model_proposal"),
     ("algo=nn_mppi planner.execute=mean", "it uses model_planner.execute"),
     ("algo=deterministic_mpc planner.horizon=7", "it uses adjoint_planner.horizon"),
+    ("algo=sac target=mixture", "target: the method has no such part"),
     ("domain.low=[0]", "domain.low: hybrid_stochastic does not use it"),
     ("demonstrations=file algo=sac", "demonstrations: sac does not use it"),
     ("task=cartpole env.reward=foo", "env.reward=foo: choose one of cos, dm_control"),

@@ -96,6 +96,8 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
     assert objective.target == {"_target_": "ring.Ring", "radius": 0.4}
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert (summary["algo"], summary["finished"]) == ("kle3", True)
+    folder = f"run={tmp_path / 'run'}"  # of a method that learns nothing
+    assert call(lambda: command.guarded(evaluate.main), folder, "episodes=1") == 0
 
 
 @pytest.mark.parametrize(

@@ -162,6 +162,8 @@ def explain(error: Exception) -> str:
         return overrides.unknown(cause.parent_node, str(cause.full_key))
     if isinstance(error, OverrideParseException):
         return f"{error.override}: {str(error).splitlines()[-2]}; write key=value, text in quotes"
+    if absent := re.match(r"Could not override '([^']+)'", str(error)):
+        return f"{absent[1]}: the method has no such part; `python -m hybrid_rl.list` shows methods"
     return f"{error} {cause or ''}"
 
 

@@ -88,7 +88,8 @@ def read(path: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
     host = dict.fromkeys(filled, ocp.RestoreArgs(restore_type=np.ndarray))
     args = ocp.args.PyTreeRestore(item=filled, restore_args=host, partial_restore=True)
     with _quiet(), ocp.Checkpointer(ocp.PyTreeCheckpointHandler()) as reader:
-        arrays = reader.restore(path.resolve() / "state", args)
+        # Orbax refuses an empty selection, which a method that learns nothing has.
+        arrays = reader.restore(path.resolve() / "state", args) if filled else {}
     state = []
     for name, leaf in wanted.items():
         array = jax.numpy.array(arrays.pop(name) if name in arrays else np.zeros(**_empty(leaf)))

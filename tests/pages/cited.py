@@ -42,7 +42,7 @@ class Text:
     values: Sequence[float]
 
     def citations(self, page: str) -> list[Citation]:
-        match = _once(re.compile(_pattern(self.phrase)), page, self.phrase)
+        match = only_match(re.compile(_pattern(self.phrase)), page, self.phrase)
         spans = [match.span(i + 1) for i in range(len(self.values))]
         return [_citation(page, *span, x) for span, x in zip(spans, self.values, strict=True)]
 
@@ -108,7 +108,7 @@ class Table:
         header = r"\s*\|\s*".join(re.escape(cell.strip()) for cell in self.header.split("|"))
         whole = re.compile(rf"\|\s*{header}\s*\|\n\|[-| ]+\|\n((?:\|.*\n?)+)")
         if not self.after:
-            return _once(whole, page, self.header)
+            return only_match(whole, page, self.header)
         match = whole.search(page, page.index(self.after))
         assert match, f"not after {self.after!r}: {self.header}"
         return match
@@ -142,7 +142,7 @@ def uncited(page: str, cited: Sequence[Text | Table], plain: Sequence[str]) -> l
     ]
 
 
-def _once(pattern: re.Pattern, page: str, name: str) -> re.Match:
+def only_match(pattern: re.Pattern, page: str, name: str) -> re.Match:
     matches = list(pattern.finditer(page))
     assert len(matches) == 1, f"{len(matches)} times on the page: {name}"
     return matches[0]

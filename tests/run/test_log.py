@@ -138,7 +138,7 @@ def test_a_rewind_says_where_rows_are_gone(tmp_path, edit):
     assert all(json.loads(line) for line in lines(tmp_path) if line)
 
 
-def test_versions_commit_and_device_are_told():
+def test_versions_commit_and_device_are_reported():
     versions = provenance.versions()
     assert {"python", "hybrid_rl", *provenance.PACKAGES} == set(versions)
     assert re.fullmatch(r"\d+\.\d+.*", versions["jax"])
@@ -216,7 +216,7 @@ def test_an_evaluation_is_shown_with_its_own_step(capsys, now):
     ]
 
 
-def test_no_speed_is_told_before_it_is_steady(capsys, now):
+def test_no_speed_is_shown_before_it_is_steady(capsys, now):
     with Progress(1000, steady=500) as shown:
         for step in (100, 200, 300):
             now[0] += 9
