@@ -33,6 +33,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.config import load
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.studies.style import STYLE
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ def main() -> None:
     values, _ = read(doc, (*of_all, *arguments(study)))
     out = output("out", values.pop("out"), SUFFIXES, ".json")
     del values["study"]
-    command.prepare(load([]))
+    prepare(load([]))
     figure, numbers = study.figure(**values)
     save(figure, numbers, out)
     print(*study.summary(numbers), f"{out} and {out.with_suffix('.json')}", sep="\n")

@@ -19,7 +19,6 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.jax_settings import prepare as prepare
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),

@@ -5,7 +5,8 @@
 
 For changes that must not affect results: record before, compare after, on the same machine,
 since float32 rounds differently on another processor. Networks, batches and horizons are cut down;
-the method, the task and every other setting are those of the configuration.
+the method, the task and every other setting are those of the configuration. The golden.json in the
+repository has the numbers of version 0.1.0, from two cores of an AMD EPYC.
 """
 
 import hashlib

@@ -4,8 +4,6 @@ import json
 import shutil
 import signal
 import time
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,18 +14,8 @@ from hybrid_rl import __version__
 from hybrid_rl.run import checkpoint
 
 pytestmark = pytest.mark.xdist_group("resume")
-SCRIPT = Path(__file__).parents[2] / "scripts" / "interrupt.py"
 HYBRID = ["algo=hybrid_stochastic", "eval_modes=[full,policy]", "replay.capacity=1000000"]
 NATIVE = ["task=cartpole", "algo=hybrid_stochastic", "physics=native", "episode.steps=40"]
-
-
-@pytest.fixture(scope="module")
-def interrupt():
-    """scripts/interrupt.py."""
-    spec = spec_from_file_location("interrupt", SCRIPT)
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")

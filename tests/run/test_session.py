@@ -2,8 +2,6 @@
 
 import json
 import signal
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 
 import jax
 import jax.numpy as jnp
@@ -22,16 +20,6 @@ from hybrid_rl.training.loop import Loop
 
 pytestmark = pytest.mark.xdist_group("session")
 SAC = ["algo=sac", "num_seeds=2"]
-
-
-@pytest.fixture(scope="module")
-def interrupt():
-    """scripts/interrupt.py."""
-    script = Path(__file__).parents[2] / "scripts" / "interrupt.py"
-    spec = spec_from_file_location("interrupt_script", script)
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
