@@ -28,17 +28,31 @@ class Env(Protocol):
         """The positions qpos [nq] of `scene` at `state`."""
 
 
-class AnalyticEnv(Env, Protocol):
+class BalancedEnv(Env, Protocol):
+    """An environment that stays at its equilibrium under a constant action."""
+
+    def equilibrium(self) -> tuple[Array, Array]:
+        """The observation [o] and the action [m] at rest."""
+
+
+class TrackingEnv(BalancedEnv, Protocol):
+    """An environment whose observation contains a reference that the robot is to follow."""
+
+    def reference(self, obs: Array) -> tuple[Array, Array]:
+        """The observations [o] that the robot should have at `obs` [o] and one decision later.
+
+        Their own reference entries are those of `obs`.
+        """
+
+
+class AnalyticEnv(BalancedEnv, Protocol):
     """An environment with known dynamics whose observation is its whole state.
 
     Near its equilibrium it has local coordinates e [d], zero there, in which it is linearised.
     """
 
     def dynamics(self, x: Array, u: Array) -> Array:
-        """The next observation [o] after action u [m] at x [o]."""
-
-    def equilibrium(self) -> tuple[Array, Array]:
-        """x [o] and u [m] with dynamics(x, u) = x."""
+        """The next observation [o] after action u [m] at x [o]; at the equilibrium, x itself."""
 
     def to_local(self, x: Array) -> Array:
         """Local coordinates e [d] of x [o]."""
