@@ -9,6 +9,7 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
+import jax
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.errors import InstantiationException
@@ -51,6 +52,11 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("matmul_precision", "distributed"),
 )
 
+NEEDS = {  # words of a part's message -> a method of the environments that it accepts
+    "needs an analytic environment": "dynamics",
+    "needs an environment with an equilibrium": "equilibrium",
+    "needs an environment with a reference": "reference",
+}
 MODES = ("full", "policy", "planner")
 PRECISIONS = ("highest", "high", "default")
 KINDS = {  # type of a part's field -> its name in messages
@@ -123,10 +129,14 @@ def build(config: DictConfig) -> Run:
         controllers = {mode: _instantiate(node) for mode, node in parts.controllers.items()}
         replay = _instantiate(parts.replay)
         longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
+        env = _instantiate(parts.env)
+        learners = {name: _instantiate(node) for name, node in parts.learners.items()}
+        for learner in learners.values():  # a part may refuse the sizes of the task
+            jax.eval_shape(lambda key, init=learner.init: init(key, env.spec), jax.random.key(0))
         agent = Agent(
-            Episode(_instantiate(parts.env), config.episode.steps, config.episode.action_repeat),
+            Episode(env, config.episode.steps, config.episode.action_repeat),
             controllers["full"],
-            {name: _instantiate(node) for name, node in parts.learners.items()},
+            learners,
             replace(
                 replay, capacity=min(replay.capacity, max(longest, replay.num_demonstrated(1)))
             ),
@@ -188,9 +198,10 @@ def _usage(config: DictConfig) -> Iterator[None]:
         if not isinstance(cause, (ValueError, TypeError)):
             raise
         line = str(cause)
-        if "needs an analytic environment" in line:
-            needs = f"task={config.task}: {config.algo} needs an analytic environment"
-            line = f"{needs}; choose one of {', '.join(analytic_tasks())}"
+        for needs, method in NEEDS.items():
+            if needs in line:
+                names = ", ".join(tasks_with(method))
+                line = f"task={config.task}: {config.algo} {needs}; choose one of {names}"
         field = line.partition("=")[0]  # a field of the world is typed as env.FIELD
         raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error
 
@@ -199,13 +210,13 @@ def _of_world(config: DictConfig, field: str) -> bool:
     return field in config.env and field not in config
 
 
-def analytic_tasks(conf: Path = CONF) -> list[str]:
-    """Tasks with an analytic world, which has dynamics and an equilibrium in closed form."""
+def tasks_with(method: str, conf: Path = CONF) -> list[str]:
+    """Tasks whose environment has this method: `dynamics` if it is analytic, `equilibrium`."""
     names = []
     for path in sorted((conf / "task").glob("*.yaml")):
         task: Any = OmegaConf.load(path)
         with suppress(ImportError, KeyError, AttributeError):  # an unfinished task of the user
-            names += [path.stem] if hasattr(_class(task.env._target_), "equilibrium") else []
+            names += [path.stem] if hasattr(part_class(task.env._target_), method) else []
     return names
 
 
@@ -253,7 +264,7 @@ def _check_kinds(node: DictConfig, where: str = "") -> None:
             raise UsageError(f"{where}{key}={value}: must be {called}")
 
 
-def _class(target: str) -> Any:
+def part_class(target: str) -> Any:
     """The object that a `_target_` names; Hydra's own log lines are suppressed."""
     logging.getLogger("hydra").addHandler(logging.NullHandler())
     return get_object(target)
@@ -264,7 +275,7 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     if "_target_" not in node:
         return {}
     try:
-        part = _class(node._target_)
+        part = part_class(node._target_)
     except (ImportError, ValueError) as error:
         hint = "is its folder on PYTHONPATH?"
         line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"

@@ -23,10 +23,16 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, read
-from hybrid_rl.config import CONF, analytic_tasks
+from hybrid_rl.config import CONF, part_class, tasks_with
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import plain, reached, search_path
 
+HAS = {"equilibrium": "equilibrium", "reference": "reference", "dynamics": "analytic"}
+NEEDS = {  # type of a part's environment, the most demanding first -> mark of its method
+    "TrackingEnv": "tasks with a reference",
+    "AnalyticEnv": "analytic tasks",
+    "BalancedEnv": "tasks with an equilibrium",
+}
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
 ARGUMENTS = (Argument("config_dir", "", "folder with configuration groups of yours"),)
 
@@ -52,22 +58,28 @@ def about(path: Path) -> str:
 
 
 def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
-    """Group -> name -> what restricts it: analytic tasks, and methods that need one."""
-    tasks = dict.fromkeys(analytic_tasks(conf), "analytic")
+    """Group -> name -> what the environment of a task has, or that of a method must have."""
+    tasks: dict[str, str] = {}
+    for method, mark in HAS.items():
+        tasks |= dict.fromkeys(tasks_with(method, conf), mark)
     names = [path.stem for path in sorted((conf / "algo").glob("*.yaml"))]
     more = [] if conf == CONF else [search_path(conf)]
     with initialize_config_dir(str(CONF), version_base="1.3"):
-        methods = {name: "analytic tasks" for name in names if _needs_an_analytic_task(name, more)}
+        methods = {name: needs for name in names if (needs := _needs(name, more))}
     return {"task": tasks, "algo": methods, "experiment": {}}
 
 
-def _needs_an_analytic_task(algo: str, more: Sequence[str]) -> bool:
-    """Whether a part of the method, demonstrations aside, holds the environment."""
+def _needs(algo: str, more: Sequence[str]) -> str:
+    """What the parts of a method need of their environment, by the type of their field `world`."""
+    kinds: set[str] = set()
     with suppress(HydraException, OmegaConfBaseException):  # a file that the user has not finished
         raw = plain(compose("train", [*more, f"algo={algo}"]))
         read = reached(raw, ("controllers", "learners"))
-        return any(value == "${env}" and key != "recorded.world" for key, value in read.items())
-    return False
+        for key, value in read.items():
+            if value == "${env}":
+                part = part_class(read[f"{key.rpartition('.')[0]}._target_"])
+                kinds.add(part.__annotations__["world"].__name__)
+    return next((mark for kind, mark in NEEDS.items() if kind in kinds), "")
 
 
 def main() -> None:

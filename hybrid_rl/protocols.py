@@ -7,7 +7,17 @@ from typing import Literal, Protocol
 
 from jax import Array
 
-from hybrid_rl.types import Batch, EnvState, Params, Path, PyTree, Return, Spec, Transition
+from hybrid_rl.types import (
+    Batch,
+    EnvState,
+    Params,
+    Path,
+    PyTree,
+    Return,
+    Spec,
+    Step,
+    Transition,
+)
 
 
 class Env(Protocol):
@@ -61,6 +71,16 @@ class AnalyticEnv(BalancedEnv, Protocol):
         """x [o] of local coordinates e [d]."""
 
 
+class Features(Protocol):
+    """z(o): the functions of an observation in which a model is linear."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, with "weights" as an entry if they are learned."""
+
+    def __call__(self, params: PyTree, obs: Array) -> Array:
+        """z [n] of an observation [o]."""
+
+
 class Model(Protocol):
     """x' = f(x, u)."""
 
@@ -68,7 +88,10 @@ class Model(Protocol):
         """Initial parameters."""
 
     def lift(self, params: PyTree, obs: Array) -> Array:
-        """The planning state x [n] of an observation [o]; x[:o] is the observation."""
+        """The planning state x [n] of an observation [o].
+
+        Parts that read observations in planning states need x[:o] to be the observation.
+        """
 
     def step(self, params: PyTree, x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
@@ -96,6 +119,17 @@ class Uncertain(Model, Protocol):
         """Standard deviation [n] of the change at x [n], in running standard deviations."""
 
 
+class LinearModel(Uncertain, Protocol):
+    """x' = K s(x, u), linear in its parameters.
+
+    Parameters: "K" [n, r], and "root" U [r, r], upper triangular, with U'U the information of the
+    data about K.
+    """
+
+    def regressors(self, params: PyTree, x: Array, u: Array) -> Array:
+        """s [r] at x [n] and u [m]."""
+
+
 class Policy(Protocol):
     """u = pi(x), stochastic."""
 
@@ -120,6 +154,13 @@ class LearnedPolicy(Policy, Protocol):
 
     def log_prob(self, params: PyTree, x: Array, u: Array) -> Array:
         """Log-density [...] of actions u [..., m] at x [..., n]."""
+
+
+class GoalPolicy(Policy, Protocol):
+    """A policy that leads to a goal, which can be changed."""
+
+    def aim(self, params: PyTree, goal: Array, after: Array, step: Step) -> PyTree:
+        """Parameters for the goal [n] now and `after` [n] a decision later, by the model `step`."""
 
 
 class StabilizingPolicy(Policy, Protocol):

@@ -10,8 +10,8 @@ Everything is written for ONE environment and ONE sample; `jax.vmap` adds E, K, 
 Actions u lie in [-1, 1]^m; an environment scales them to its own units. J is a return and is
 maximised. A key is always the last argument and is consumed.
 
-A model lifts an observation [o] to a planning state x [n], whose first o entries are the
-observation. Policies, critics, rewards and objectives see x.
+A model lifts an observation [o] to a planning state x [n]. Policies, critics, rewards and
+objectives see x.
 """
 
 from collections.abc import Callable
@@ -97,3 +97,4 @@ class Params(NamedTuple):
 
 
 Return = Callable[[Path], Array]  # path -> J []
+Step = Callable[[Array, Array], Array]  # x [n], u [m] -> the next x [n]

@@ -23,10 +23,11 @@ class StagesState(NamedTuple):
 class StagesController:
     """Each of `stages` acts for its number of `decisions`; the last one acts to the end.
 
-    A stage that is not acting keeps its state. Metrics that the acting stage lacks are NaN.
+    A stage of 0 decisions is skipped. A stage that is not acting keeps its state. Metrics that the
+    acting stage lacks are NaN.
 
     Raises:
-        ValueError: unless every stage but the last has a positive number of decisions.
+        ValueError: unless every stage but the last has a number of decisions, 0 or more.
     """
 
     stages: Mapping[str, Controller]  # in order
@@ -36,15 +37,22 @@ class StagesController:
         """Check the fields."""
         object.__setattr__(self, "decisions", tuple(self.decisions))
         counts = len(self.stages) - 1
-        if len(self.decisions) != counts or not all(n >= 1 for n in self.decisions):
+        if len(self.decisions) != counts or not all(n >= 0 for n in self.decisions):
             raise ValueError(
-                f"stages.decisions={list(self.decisions)}: needs {counts} whole numbers above 0, "
-                "one for each stage but the last"
+                f"stages.decisions={list(self.decisions)}: needs {counts} whole numbers, 0 or "
+                "more, one for each stage but the last"
             )
+
+    @property
+    def _acting(self) -> tuple[list[str], list[int]]:
+        """The stages that are not skipped, and the decisions of all but the last."""
+        counts = [n for n in self.decisions if n]
+        each = zip(self.stages, (*self.decisions, 1), strict=True)
+        return [name for name, n in each if n], counts
 
     def init(self, spec: Spec) -> StagesState:
         """The initial states of all stages."""
-        each = {name: stage.init(spec) for name, stage in self.stages.items()}
+        each = {name: self.stages[name].init(spec) for name in self._acting[0]}
         return StagesState(each, jnp.zeros((), jnp.int32))
 
     def act(
@@ -59,7 +67,8 @@ class StagesController:
 
             return act
 
-        branches = [branch_of(name) for name in self.stages]
+        names, decisions = self._acting
+        branches = [branch_of(name) for name in names]
         shapes: dict[str, Any] = {}
         for branch in branches:
             shapes |= jax.eval_shape(branch, state.each)[2]
@@ -72,7 +81,7 @@ class StagesController:
 
             return act
 
-        ends = jnp.cumsum(jnp.array(self.decisions, jnp.int32))
+        ends = jnp.cumsum(jnp.array(decisions, jnp.int32))
         stage = jnp.sum(state.count >= ends)
         u, each, metrics = jax.lax.switch(stage, [filled(b) for b in branches], state.each)
         return u, StagesState(each, state.count + 1), metrics

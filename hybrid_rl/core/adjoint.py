@@ -15,10 +15,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Path
-
-Step = Callable[[Array, Array], Array]
-Return = Callable[[Path], Array]
+from hybrid_rl.types import Path, Return, Step
 
 
 class Adjoint(NamedTuple):

@@ -7,7 +7,7 @@ import jax
 import numpy as np
 from jax import Array
 
-from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.protocols import AnalyticEnv, BalancedEnv
 
 
 def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tuple[Array, Array]:
@@ -30,8 +30,12 @@ def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
 
 def require(name: str, world: AnalyticEnv) -> None:
     """Raise ValueError unless `world`, a field of the part `name`, is analytic."""
-    try:
-        world.equilibrium()
-    except AttributeError as error:
+    if not hasattr(world, "dynamics"):
+        raise ValueError(f"{name}.world={type(world).__name__}: needs an analytic environment")
+
+
+def require_equilibrium(name: str, world: BalancedEnv) -> None:
+    """Raise ValueError unless `world`, a field of the part `name`, has an equilibrium."""
+    if not hasattr(world, "equilibrium"):
         kind = type(world).__name__
-        raise ValueError(f"{name}.world={kind}: needs an analytic environment") from error
+        raise ValueError(f"{name}.world={kind}: needs an environment with an equilibrium")

@@ -30,3 +30,16 @@ def lifted_spec(model: Model | None, spec: Spec) -> Spec:
         return model.lift(model.init(key, spec), jnp.zeros(spec.obs))
 
     return spec._replace(state=jax.eval_shape(state, jax.random.key(0)).size)
+
+
+def select(obs: Array, coordinates: tuple[int, ...] | None) -> Array:
+    """These coordinates [c] of an observation [o]; None: all."""
+    return obs if coordinates is None else obs[jnp.array(coordinates)]
+
+
+def check_coordinates(name: str, coordinates: tuple[int, ...] | None, size: int) -> None:
+    """Raise ValueError unless an observation [size] has `coordinates`, a field `name`."""
+    if coordinates and not (min(coordinates) >= 0 and max(coordinates) < size):
+        raise ValueError(
+            f"{name}={list(coordinates)}: the observation of this task has entries 0 to {size - 1}"
+        )

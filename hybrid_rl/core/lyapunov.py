@@ -15,9 +15,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Path
+from hybrid_rl.types import Path, Step
 
-Step = Callable[[Array, Array], Array]
 Policy = Callable[[Array], Array]
 Scalar = Callable[[Array], Array]
 

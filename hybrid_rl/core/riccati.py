@@ -3,12 +3,19 @@
     e' = A e + B u,   P = Q + A' P A - A' P B K,   K = (R + B' P B)^-1 B' P A,   u = -K e
 
 V(e) = e' P e decreases along e' = (A - B K) e: V(e') - V(e) = -e' (Q + K' R K) e.
-Source: discrete algebraic Riccati equation, solved by SciPy.
+Source: discrete algebraic Riccati equation, solved by SciPy for constants. In compiled programs T
+steps from P = 0 take log2(T) doublings (structure-preserving doubling, Chu et al. 2004):
+
+    A <- A (I + G H)^-1 A,   G <- G + A (I + G H)^-1 G A',   H <- H + A' H (I + G H)^-1 A
+
+from G = B R^-1 B', H = Q. H of k doublings is the cost to go over 2^k steps.
 """
 
 from typing import NamedTuple
 
+import jax.numpy as jnp
 import numpy as np
+from jax import Array
 from scipy.linalg import solve_discrete_are
 
 
@@ -27,6 +34,38 @@ def regulator(A: np.ndarray, B: np.ndarray, Q: np.ndarray, R: np.ndarray) -> Reg
     """
     P = solve_discrete_are(A, B, Q, R)
     return Regulator(np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A), P)
+
+
+def finite_horizon(A: Array, B: Array, Q: Array, R: Array, steps: int) -> Array:
+    """P [n, n] of the cost over `steps` decisions: A [n, n], B [n, m], Q [n, n], R [m, m].
+
+    It is finite also where no gain stabilises the system, unless float32 overflows.
+    """
+    eye = jnp.eye(len(A), dtype=A.dtype)
+    G, H, P = _symmetric(B @ jnp.linalg.solve(R, B.T)), Q, None
+    while True:
+        if steps % 2:  # put 2^k steps, of which A, G and H are the map, before those of P
+            back = H if P is None else H + A.T @ P @ jnp.linalg.solve(eye + G @ P, A)
+            P = _symmetric(back)
+        steps //= 2
+        if not steps:
+            return P
+        both = jnp.linalg.solve(eye + G @ H, jnp.concatenate([A, G], axis=1))
+        forward, spread = jnp.split(both, 2, axis=1)
+        A, G, H = (
+            A @ forward,
+            _symmetric(G + A @ spread @ A.T),
+            _symmetric(H + A.T @ H @ forward),
+        )
+
+
+def gain(A: Array, B: Array, P: Array, R: Array) -> Array:
+    """K [m, n] = (R + B' P B)^-1 B' P A."""
+    return jnp.linalg.solve(_symmetric(R + B.T @ P @ B), B.T @ P @ A)
+
+
+def _symmetric(P: Array) -> Array:
+    return 0.5 * (P + P.T)
 
 
 def as_weights(name: str, weights: tuple[float, ...], size: int) -> np.ndarray:

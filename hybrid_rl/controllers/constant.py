@@ -1,0 +1,38 @@
+"""u = constant: motor babble with noise around it, and nothing else without."""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Params, Spec
+
+
+@dataclass(frozen=True)
+class ConstantController:
+    """The same action at every decision.
+
+    Raises:
+        ValueError: for an action outside [-1, 1].
+    """
+
+    action: float = 0.0  # of every actuator
+
+    def __post_init__(self) -> None:
+        """Check the field."""
+        if not -1 <= self.action <= 1:
+            raise ValueError(f"constant.action={self.action}: must lie in [-1, 1]")
+
+    def init(self, spec: Spec) -> Array:
+        """The action [m]."""
+        return jnp.full(spec.act, self.action)
+
+    def act(
+        self, params: Params, state: Array, obs: Array, key: Array
+    ) -> tuple[Array, Array, dict[str, Array]]:
+        """The action [m]."""
+        return state, state, {}
+
+    def greedy(self) -> "ConstantController":
+        """The same controller."""
+        return self

@@ -1,0 +1,54 @@
+"""Follow the reference in the observation: `controller` acts with the reference as its goal.
+
+    goal = z(reference now),  hold: the action that leads to z(reference one decision later)
+
+Source: thesis section 7.5; feed-forward is ours.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from jax import Array
+
+from hybrid_rl.protocols import Controller, GoalPolicy, Model, TrackingEnv
+from hybrid_rl.types import Params, Spec
+
+
+@dataclass(frozen=True)
+class TrackController:
+    """`controller`, whose policy aims at the reference instead of the equilibrium.
+
+    Raises:
+        ValueError: for a world without a reference.
+    """
+
+    controller: Controller
+    model: Model
+    policy: GoalPolicy
+    world: TrackingEnv
+
+    def __post_init__(self) -> None:
+        """Check the world."""
+        if not hasattr(self.world, "reference"):
+            kind = type(self.world).__name__
+            raise ValueError(f"track.world={kind}: needs an environment with a reference")
+
+    def init(self, spec: Spec) -> Any:
+        """The initial state of the inner controller."""
+        return self.controller.init(spec)
+
+    def act(
+        self, params: Params, state: Any, obs: Array, key: Array
+    ) -> tuple[Array, Any, dict[str, Array]]:
+        """Action [m], next state, metrics of the inner controller. The key is consumed."""
+        now, after = (self.model.lift(params.model, x) for x in self.world.reference(obs))
+
+        def step(x: Array, u: Array) -> Array:
+            return self.model.step(params.model, x, u)
+
+        policy = self.policy.aim(params.policy, now, after, step)
+        return self.controller.act(params._replace(policy=policy), state, obs, key)
+
+    def greedy(self) -> "TrackController":
+        """The same around the controller without exploration."""
+        return replace(self, controller=self.controller.greedy())

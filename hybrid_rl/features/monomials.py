@@ -1,0 +1,76 @@
+"""z = (y, 1, products of entries of y): hand-made features of an observation.
+
+    y_i = (o_c(i) - centre_i) scale_i,   with `terms` such as (0, 1, 1) for y_0 y_1^2
+
+Powers grow fast: scale coordinates to about 1. Source: thesis sections 7.1, 7.3 and 7.5.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core.lifting import check_coordinates, select
+from hybrid_rl.types import Spec
+
+
+@dataclass(frozen=True)
+class Monomials:
+    """Coordinates of the observation, a constant, and products of the coordinates.
+
+    Raises:
+        ValueError: for indices out of range, or lists of the wrong length.
+    """
+
+    coordinates: tuple[int, ...] | None = None  # of the observation; None: all
+    scale: tuple[float, ...] = (1.0,)  # one for all coordinates, or one each
+    centre: tuple[float, ...] = (0.0,)  # one for all coordinates, or one each [unit of o]
+    constant: bool = False
+    terms: tuple[tuple[int, ...], ...] = ()  # indices into the coordinates; repeated for powers
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("scale", "centre"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "terms", tuple(tuple(term) for term in self.terms))
+        if not all(len(term) >= 1 and min(term) >= 0 for term in self.terms):
+            raise ValueError("features.terms: each must be a list of indices, 0 or more")
+        if self.coordinates is not None:
+            object.__setattr__(self, "coordinates", tuple(self.coordinates))
+            self._check(len(self.coordinates))
+
+    def _check(self, size: int) -> None:
+        """Raise ValueError unless all lists fit `size` coordinates."""
+        for name in ("scale", "centre"):
+            values = getattr(self, name)
+            if len(values) not in (1, size):
+                raise ValueError(
+                    f"features.{name}={list(values)}: must hold 1 number or {size}, one for each "
+                    "coordinate"
+                )
+        wrong = [list(term) for term in self.terms if max(term) >= size]
+        if wrong:
+            raise ValueError(
+                f"features.terms={wrong[0]}: has an index above {size - 1}, the last coordinate"
+            )
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """No parameters.
+
+        Raises:
+            ValueError: if the observation lacks a coordinate.
+        """
+        self._check(spec.obs if self.coordinates is None else len(self.coordinates))
+        check_coordinates("features.coordinates", self.coordinates, spec.obs)
+        return {}
+
+    def __call__(self, params: dict[str, Any], obs: Array) -> Array:
+        """z [n] of an observation [o]."""
+        y = select(obs, self.coordinates)
+        y = (y - jnp.array(self.centre, y.dtype)) * jnp.array(self.scale, y.dtype)
+        parts = [y]
+        if self.constant:
+            parts.append(jnp.ones(1, y.dtype))
+        parts += [jnp.prod(y[jnp.array(term)])[None] for term in self.terms]
+        return jnp.concatenate(parts)

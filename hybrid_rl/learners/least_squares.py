@@ -1,0 +1,125 @@
+"""Learn K of a linear model by recursive least squares, one update per decision.
+
+    K = argmin sum_i f^(N-i) |x'_i - K s_i|^2 + lam |K - K_0|^2
+
+f < 1 forgets: where the features do not close under the dynamics, K is a local model. The prior is
+not forgotten. K_0 = [I 0] predicts that nothing changes; `deviation` adds noise to it, in
+continuous time: K_0 = [I 0] + s N(0, 1) dt. Source: thesis eq. (2.11) and Algorithm 7; forgetting
+and prior are ours.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import jax
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+
+from hybrid_rl.core import least_squares
+from hybrid_rl.core.least_squares import Factor
+from hybrid_rl.protocols import Demonstrations, LinearModel
+from hybrid_rl.types import Batch, Params, Spec
+
+MEANS = ("identity", "zero")
+
+
+@struct.dataclass
+class RegressionState:
+    """The state of the regression, of the change x' - [I 0] s."""
+
+    factor: Factor
+    mean: Array  # [n, r] K_0 - [I 0]
+    model: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class LeastSquares:
+    """Recursive least squares on a linear model.
+
+    Raises:
+        ValueError: for numbers out of range.
+    """
+
+    model: LinearModel
+    forgetting: float = 1.0  # f per decision
+    prior: float = 0.01  # lam
+    mean: str = "identity"  # K_0 = [I 0], or zero
+    deviation: float = 0.0  # s [1/s] of K_0
+    until: int | None = None  # decisions of the run until learning ends; None: never
+    recorded: Demonstrations | None = None  # decisions that are learned before the first one
+
+    data: ClassVar[str] = "latest"
+    owns: ClassVar[tuple[str, ...]] = ("model",)
+    every: ClassVar[int] = 1
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 < self.forgetting <= 1:
+            raise ValueError(f"model_learner.forgetting={self.forgetting}: must lie in (0, 1]")
+        if not self.prior > 0:
+            raise ValueError(f"model_learner.prior={self.prior}: must be above 0")
+        if self.mean not in MEANS:
+            raise ValueError(f"model_learner.mean={self.mean}: choose {', '.join(MEANS)}")
+        if self.deviation < 0:
+            raise ValueError(f"model_learner.deviation={self.deviation}: must be 0 or more")
+        if self.until is not None and self.until < 0:
+            raise ValueError(f"model_learner.until={self.until}: must be 0 or more, or null")
+
+    def init(self, key: Array, spec: Spec) -> RegressionState:
+        """K_0, then what the recorded decisions add. The key is consumed.
+
+        Raises:
+            ValueError: for fewer recorded decisions than regressors.
+        """
+        of_model, of_mean = jax.random.split(key)
+        model = self.model.init(of_model, spec)
+        n, r = model["K"].shape
+        mean = jnp.eye(n, r) * (-1.0 if self.mean == "zero" else 0.0)
+        mean = mean + self.deviation * spec.dt * jax.random.normal(of_mean, (n, r))
+        state = RegressionState(least_squares.begin(mean, self.prior), mean, model)
+        if self.recorded is not None:
+            decisions = self.recorded.load()
+            if len(decisions.obs) < r:
+                raise ValueError(
+                    f"demonstrations: {len(decisions.obs)} decisions are too few for {r} "
+                    "regressors; record more, or use fewer features"
+                )
+            rows = self._rows(model, decisions.obs, decisions.action, decisions.next_obs)
+            state = state.replace(factor=least_squares.fold(state.factor, *rows))
+        return self._solved(state)
+
+    def _rows(self, model: Any, obs: Any, action: Any, next_obs: Any) -> tuple[Array, Array]:
+        """Regressors [B, r] and changes x' - [I 0] s [B, n] of B decisions."""
+
+        def one(obs: Array, u: Array, next_obs: Array) -> tuple[Array, Array]:
+            x = self.model.lift(model, obs)
+            change = self.model.lift(model, next_obs) - x
+            return self.model.regressors(model, x, u), change
+
+        return jax.vmap(one)(*map(jnp.asarray, (obs, action, next_obs)))
+
+    def _solved(self, state: RegressionState) -> RegressionState:
+        """The state with K and its root from the factor."""
+        change = least_squares.solve(state.factor)
+        K = jnp.eye(change.shape[0], change.shape[1]) + change
+        return state.replace(model={**state.model, "K": K, "root": state.factor.U})
+
+    def params(self, state: RegressionState) -> dict[str, Any]:
+        """The model."""
+        return {"model": state.model}
+
+    def update(
+        self, state: RegressionState, params: Params, batch: Batch, key: Array
+    ) -> tuple[RegressionState, dict[str, Array]]:
+        """One regression step with B decisions; the loss is the squared error before it."""
+        s, change = self._rows(state.model, batch.obs, batch.action, batch.next_obs)
+        error = change - s @ least_squares.solve(state.factor).T
+        metrics = {"model/loss": jnp.mean(error**2)}
+        factor = least_squares.add(state.factor, s, change, state.mean, self.prior, self.forgetting)
+        after = self._solved(state.replace(factor=factor))
+        if self.until is not None:
+            learns = jnp.asarray(params.decisions) < self.until
+            after = jax.tree.map(lambda new, old: jnp.where(learns, new, old), after, state)
+        metrics["model/log_det_information"] = least_squares.log_det(after.factor.U)
+        return after, metrics

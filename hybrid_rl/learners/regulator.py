@@ -1,0 +1,125 @@
+"""Solve the linear-quadratic regulator of a learned model, and its feed-forward.
+
+    f(x, u) to first order at the goal: A = f_x, B = f_u;   P_0 = 0, T Riccati steps -> F
+    hold = argmin |Q^1/2 (goal - f(goal, hold))|
+
+The horizon is finite: a lift that does not close under the dynamics has modes that no action
+reaches, and with an infinite horizon their cost has no bound. The model can be any with
+derivatives; for a Koopman operator A and B are K itself. A solution that is not finite is rejected
+and the last one kept. Source: thesis eq. (7.4) and Algorithm 7, line 5.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+
+from hybrid_rl.core import riccati
+from hybrid_rl.core.analytic import linearise, require_equilibrium
+from hybrid_rl.core.lifting import lifted_spec
+from hybrid_rl.protocols import BalancedEnv, GoalPolicy, Model
+from hybrid_rl.types import Batch, Params, Spec
+
+
+@struct.dataclass
+class SolutionState:
+    """The policy's parameters, and how many solutions were rejected."""
+
+    policy: dict[str, Array]
+    rejected: Array  # []
+
+
+@dataclass(frozen=True)
+class RegulatorLearner:
+    """A linear policy that regulates a model to the equilibrium of `world`.
+
+    Raises:
+        ValueError: for weights or counts out of range, or a world without an equilibrium.
+    """
+
+    model: Model
+    policy: GoalPolicy
+    world: BalancedEnv
+    state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: of the first entries of x; 1: of all
+    action_weights: tuple[float, ...] = (1.0,)  # diagonal of R: one for all actions, or one each
+    horizon: int = 128  # T [decisions]
+    feedforward: bool = True  # false: hold = 0
+    every: int = 1  # decisions between two solutions
+
+    data: ClassVar[str] = "latest"
+    owns: ClassVar[tuple[str, ...]] = ("policy",)
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("state_weights", "action_weights"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        require_equilibrium("policy_learner", self.world)
+        if not all(weight >= 0 for weight in self.state_weights):
+            weights = list(self.state_weights)
+            raise ValueError(f"policy_learner.state_weights={weights}: must be 0 or more")
+        if not all(weight > 0 for weight in self.action_weights):
+            weights = list(self.action_weights)
+            raise ValueError(f"policy_learner.action_weights={weights}: must be above 0")
+        for name in ("horizon", "every"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be 1 or more")
+
+    def init(self, key: Array, spec: Spec) -> SolutionState:
+        """No gain yet. The key is consumed.
+
+        Raises:
+            ValueError: for more weights than entries.
+        """
+        lifted = lifted_spec(self.model, spec)
+        self._weights(lifted.n, spec.act)
+        return SolutionState(self.policy.init(key, lifted), jnp.zeros(()))
+
+    def _weights(self, n: int, m: int) -> tuple[Array, Array]:
+        """Q [n, n] and R [m, m]."""
+        q, r = self.state_weights, self.action_weights
+        if len(q) > n:
+            raise ValueError(
+                f"policy_learner.state_weights={list(q)}: the planning state has {n} entries"
+            )
+        q = q * n if len(q) == 1 else (*q, *[0.0] * (n - len(q)))
+        R = riccati.as_weights("policy_learner.action_weights", r, m)
+        return jnp.diag(jnp.array(q)), jnp.asarray(R, jnp.float32)
+
+    def params(self, state: SolutionState) -> dict[str, Any]:
+        """The policy."""
+        return {"policy": state.policy}
+
+    def update(
+        self, state: SolutionState, params: Params, batch: Batch, key: Array
+    ) -> tuple[SolutionState, dict[str, Array]]:
+        """The solution for the model as it is; the decisions are not used."""
+        solved = self.solve(params.model, state.policy)
+        finite = jnp.all(jnp.array([jnp.all(jnp.isfinite(leaf)) for leaf in solved.values()]))
+        policy = {name: jnp.where(finite, solved[name], old) for name, old in state.policy.items()}
+        rejected = state.rejected + ~finite
+        metrics = {
+            "policy/gain": jnp.linalg.norm(policy["gain"]),
+            "policy/rejected_solutions": rejected,
+        }
+        return SolutionState(policy, rejected), metrics
+
+    def solve(self, model: Any, policy: dict[str, Array]) -> dict[str, Array]:
+        """The policy's parameters for the model's; those before are where u is linearised."""
+
+        def step(x: Array, u: Array) -> Array:
+            return self.model.step(model, x, u)
+
+        obs, _ = self.world.equilibrium()
+        goal = self.model.lift(model, obs.astype(policy["goal"].dtype))
+        A, B = linearise(step, goal, policy["hold"])
+        Q, R = self._weights(*B.shape)
+        P = riccati.finite_horizon(A, B, Q, R, self.horizon)
+        solved = {**policy, "gain": riccati.gain(A, B, P, R)}
+        if not self.feedforward:
+            return {**solved, "goal": goal}
+        square = B.T @ Q @ B
+        ridge = 1e-6 * jnp.trace(square) + 1e-12
+        solved["inverse"] = jnp.linalg.solve(square + ridge * jnp.eye(len(R)), B.T @ Q)
+        return self.policy.aim(solved, goal, goal, step)

@@ -1,0 +1,73 @@
+"""x' = K s(x, u): a model that is linear in lifted coordinates x = z(o), a Koopman operator.
+
+    s = (x, u) or (x, u, x_i u, ...),   K = [A B]
+
+K is discrete in time, so that it needs no matrix logarithm. With products x_i u it is bilinear.
+Source: thesis eq. (2.9)-(2.11) and (7.2).
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import least_squares
+from hybrid_rl.protocols import Features
+from hybrid_rl.types import Spec
+
+
+@dataclass(frozen=True)
+class Koopman:
+    """A linear model of `features`.
+
+    Raises:
+        ValueError: for a bound that is not positive, or indices below 0.
+    """
+
+    features: Features
+    products: tuple[int, ...] = ()  # i of the regressors x_i u; (): linear
+    bound: float = 1e4  # of |x_i|: predictions of a poor K stay finite
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "products", tuple(self.products))
+        if not self.bound > 0:
+            raise ValueError(f"model.bound={self.bound}: must be above 0")
+        if min(self.products, default=0) < 0:
+            raise ValueError(f"model.products={list(self.products)}: indices must be 0 or more")
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """Features, K [n, r] = [I 0] and its "root" [r, r]. The key is consumed.
+
+        Raises:
+            ValueError: for a product with an entry that x lacks.
+        """
+        features = self.features.init(key, spec)
+        n = self.features(features, jnp.zeros(spec.obs)).size
+        if max(self.products, default=0) >= n:
+            raise ValueError(f"model.products={list(self.products)}: x has entries 0 to {n - 1}")
+        r = n + spec.act * (1 + len(self.products))
+        return {"features": features, "K": jnp.eye(n, r), "root": jnp.eye(r)}
+
+    def lift(self, params: dict[str, Any], obs: Array) -> Array:
+        """z [n] of an observation [o]."""
+        return self.features(params["features"], obs)
+
+    def regressors(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """s [r] at x [n] and u [m]."""
+        return jnp.concatenate([x, u, *(x[i] * u for i in self.products)])
+
+    def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """The next x [n], clipped to the bound."""
+        after = params["K"] @ self.regressors(params, x, u)
+        return jnp.clip(after, -self.bound, self.bound)
+
+    def std(self, params: dict[str, Any], x: Array) -> Array:
+        """Standard deviation [n] of K s at x [n] without action, in units of the noise's."""
+        s = self.regressors(params, x, jnp.zeros(self._actions(params, x.size)))
+        return jnp.broadcast_to(jnp.sqrt(least_squares.leverage(params["root"], s)), x.shape)
+
+    def _actions(self, params: dict[str, Any], n: int) -> int:
+        """m, from the sizes of K."""
+        return (params["K"].shape[1] - n) // (1 + len(self.products))

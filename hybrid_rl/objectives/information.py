@@ -1,0 +1,66 @@
+"""J = sum_t of the information of x_t, u_t about a linear model's parameters K.
+
+    gain   log(1 + s' S s / sigma^2),  S = (U'U)^-1: the information of one more measurement of K s
+    norm   -1 / (s's + eps), as printed: the reciprocal of the trace of Fisher's information
+
+Under the norm no data count, and a state far from zero is informative. Source: thesis eq. (7.10);
+the gain is ours, that of a Bayesian linear regression (D-optimality; Chaloner and Verdinelli 1995).
+"""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import least_squares
+from hybrid_rl.protocols import LinearModel
+from hybrid_rl.types import Params, Path, Return, Spec
+
+CRITERIA = ("gain", "norm")
+
+
+@dataclass(frozen=True)
+class Information:
+    """Information along a path about the model in `Params`.
+
+    Raises:
+        ValueError: for an unknown criterion, or numbers that are not positive.
+    """
+
+    model: LinearModel
+    criterion: str = "gain"  # or norm
+    noise: float = 0.1  # sigma of gain
+    floor: float = 1e-5  # eps of norm
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if self.criterion not in CRITERIA:
+            raise ValueError(f"objective.criterion={self.criterion}: choose {', '.join(CRITERIA)}")
+        for name in ("noise", "floor"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"objective.{name}={getattr(self, name)}: must be above 0")
+
+    def init(self, spec: Spec) -> tuple[()]:
+        """No memory: what the data say is in the model's parameters."""
+        return ()
+
+    def prepare(
+        self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
+    ) -> tuple[Return, tuple[()]]:
+        """J of a path; the key is not used."""
+        return lambda path: self.rewards(params, path).sum(), memory
+
+    def rewards(self, params: Params, path: Path) -> Array:
+        """r [T] along path, x [T+1, n] and u [T, m]."""
+        regressors = jax.vmap(self.model.regressors, (None, 0, 0))
+        s = regressors(params.model, path.x[:-1], path.u)
+        if self.criterion == "norm":
+            return -1 / (jnp.sum(s**2, -1) + self.floor)
+        spread = jax.vmap(least_squares.leverage, (None, 0))(params.model["root"], s)
+        return jnp.log1p(spread / self.noise**2)
+
+    def reward_to_go(self, params: Params, path: Path) -> Array:
+        """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is 0."""
+        to_go = jnp.cumsum(self.rewards(params, path)[::-1])[::-1]
+        return jnp.append(to_go, 0.0)
