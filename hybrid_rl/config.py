@@ -9,7 +9,6 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
-import jax
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.errors import InstantiationException
@@ -129,14 +128,10 @@ def build(config: DictConfig) -> Run:
         controllers = {mode: _instantiate(node) for mode, node in parts.controllers.items()}
         replay = _instantiate(parts.replay)
         longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
-        env = _instantiate(parts.env)
-        learners = {name: _instantiate(node) for name, node in parts.learners.items()}
-        for learner in learners.values():  # a part may refuse the sizes of the task
-            jax.eval_shape(lambda key, init=learner.init: init(key, env.spec), jax.random.key(0))
         agent = Agent(
-            Episode(env, config.episode.steps, config.episode.action_repeat),
+            Episode(_instantiate(parts.env), config.episode.steps, config.episode.action_repeat),
             controllers["full"],
-            learners,
+            {name: _instantiate(node) for name, node in parts.learners.items()},
             replace(
                 replay, capacity=min(replay.capacity, max(longest, replay.num_demonstrated(1)))
             ),
@@ -144,6 +139,7 @@ def build(config: DictConfig) -> Run:
             config.random_steps,
             config.pretrain,
         )
+        agent.check()
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
 
 

@@ -28,6 +28,11 @@ def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
         return np.asarray(a), np.asarray(b)
 
 
+def sizes(world: AnalyticEnv) -> tuple[int, int]:
+    """d and m: the numbers of local coordinates and of actions."""
+    return jax.eval_shape(lambda: world.to_local(world.equilibrium()[0])).size, world.spec.act
+
+
 def require(name: str, world: AnalyticEnv) -> None:
     """Raise ValueError unless `world`, a field of the part `name`, is analytic."""
     if not hasattr(world, "dynamics"):

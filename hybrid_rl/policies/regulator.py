@@ -43,13 +43,17 @@ class Regulator:
             if not all(weight > 0 for weight in weights):
                 raise ValueError(f"equilibrium.{name}={list(weights)}: must be above 0")
         object.__setattr__(self, "free", tuple(self.free))
+        self._weights()
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """K [m, d] and P [d, d]."""
-        a, b = analytic.at_equilibrium(self.world)
-        q = riccati.as_weights("equilibrium.state_weights", self.state_weights, len(a))
-        r = riccati.as_weights("equilibrium.action_weights", self.action_weights, b.shape[1])
-        return riccati.regulator(a, b, q, r)
+        return riccati.regulator(*analytic.at_equilibrium(self.world), *self._weights())
+
+    def _weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Q [d, d] and R [m, m]."""
+        d, m = analytic.sizes(self.world)
+        q = riccati.as_weights("equilibrium.state_weights", self.state_weights, d)
+        return q, riccati.as_weights("equilibrium.action_weights", self.action_weights, m)
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
         """No parameters."""

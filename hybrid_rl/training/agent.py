@@ -76,6 +76,12 @@ class Agent:
         """The environment's sizes and time step."""
         return self.episode.spec
 
+    def check(self) -> None:
+        """Raise ValueError if a part refuses the sizes of the environment."""
+        for part in self.learners.values():
+            jax.eval_shape(lambda key, init=part.init: init(key, self.spec), jax.random.key(0))
+        jax.eval_shape(lambda: self.controller.init(self.spec))
+
     def starts(self) -> dict[str, int]:
         """Decisions before the first update of each learner, apart from pretraining."""
         demonstrated = self.replay.num_demonstrated(self.num_envs) * self.num_envs

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy.linalg import expm, logm
@@ -104,3 +105,38 @@ def test_free_coordinates_minimise_the_lyapunov_function() -> None:
         values = jax.vmap(counted.lyapunov)(positions)
         minimum = jax.vmap(free.lyapunov)(positions)
         np.testing.assert_allclose(minimum, values.min(), rtol=1e-4)
+
+
+N, M = 6, 2
+RNG = np.random.default_rng(0)
+SYSTEM = (0.6 * RNG.normal(size=(N, N)), RNG.normal(size=(N, M)), np.eye(N), 0.5 * np.eye(M))
+
+
+@pytest.mark.parametrize("steps", [1, 2, 5, 8, 20, 100])
+def test_doubling_is_the_recursion(steps: int) -> None:
+    """P <- Q + A' P (A - B K), from 0, for any number of steps."""
+    A, B, Q, R = SYSTEM
+    P = np.zeros((N, N))
+    for _ in range(steps):
+        P = Q + A.T @ P @ (A - B @ np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A))
+    with jax.enable_x64(True):
+        doubled = riccati.finite_horizon(*map(jnp.asarray, SYSTEM), steps)
+    np.testing.assert_allclose(doubled, P, rtol=1e-8)
+
+
+def test_a_long_horizon_is_the_algebraic_equation() -> None:
+    """2^10 steps, against SciPy."""
+    with jax.enable_x64(True):
+        A, B, _, R = map(jnp.asarray, SYSTEM)
+        P = riccati.finite_horizon(*map(jnp.asarray, SYSTEM), 1024)
+        K = riccati.gain(A, B, P, R)
+    np.testing.assert_allclose(K, riccati.regulator(*SYSTEM).gain, rtol=1e-6)
+
+
+def test_a_mode_out_of_reach_has_a_finite_cost() -> None:
+    """It grows by 1.1 a decision, where SciPy finds no stabilising solution."""
+    A, B = np.diag([0.9, 1.1]), np.array([[1.0], [0.0]])
+    with pytest.raises(np.linalg.LinAlgError):
+        riccati.regulator(A, B, np.eye(2), np.eye(1))
+    P = riccati.finite_horizon(*map(jnp.asarray, (A, B, np.eye(2), np.eye(1))), 16)
+    assert P[1, 1] == pytest.approx(sum(1.1 ** (2 * t) for t in range(16)), rel=1e-5)

@@ -1,0 +1,276 @@
+"""Koopman models, their regression, regulator and information, against closed forms."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.linalg import expm, solve_discrete_are
+
+from hybrid_rl.core import adjoint
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.analytic.point_mass import PointMass
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.features.monomials import Monomials
+from hybrid_rl.learners.least_squares import LeastSquares
+from hybrid_rl.learners.regulator import RegulatorLearner
+from hybrid_rl.models.exact import Exact
+from hybrid_rl.models.koopman import Koopman
+from hybrid_rl.objectives.information import Information
+from hybrid_rl.policies.linear import Linear
+from hybrid_rl.types import Batch, Params, Path, Spec
+
+SPEC = Spec(obs=2, act=1, dt=0.1)
+MU, LAMBDA, DT = -0.3, -1.2, 0.1
+CLOSED = Koopman(Monomials(terms=((0, 0),)))  # z = (x1, x2, x1^2)
+RNG = np.random.default_rng(0)
+
+
+def batch(obs: np.ndarray, u: np.ndarray, after: np.ndarray) -> Batch:
+    """Decisions for a learner."""
+    none = jnp.zeros(len(obs))
+    return Batch(jnp.asarray(obs), jnp.asarray(u), none, none, none, jnp.asarray(after))
+
+
+def test_a_closed_system_has_its_exponential() -> None:
+    """x1' = mu x1, x2' = lambda (x2 - x1^2), sampled exactly (Brunton et al. 2016)."""
+    generator = np.array([[MU, 0, 0], [0, LAMBDA, -LAMBDA], [0, 0, 2 * MU]])
+    x = RNG.uniform(-1, 1, (200, 2))
+    z = np.column_stack([x, x[:, 0] ** 2]) @ expm(generator * DT).T
+    with jax.enable_x64(True):
+        learner = LeastSquares(CLOSED, prior=1e-12)
+        state = learner.init(jax.random.key(0), SPEC)
+        data = batch(x, RNG.uniform(-1, 1, (200, 1)), z[:, :2])
+        state, _ = jax.jit(learner.update)(state, Params(), data, jax.random.key(0))
+        K = state.model["K"]
+    np.testing.assert_allclose(K[:, :3], expm(generator * DT), atol=1e-8)
+    np.testing.assert_allclose(K[:, 3], 0, atol=1e-8)
+
+
+def test_pykoopman_agrees() -> None:
+    """EDMD with control, where pykoopman is installed."""
+    pk = pytest.importorskip("pykoopman")
+    x, u = RNG.uniform(-1, 1, (100, 2)), RNG.uniform(-1, 1, (100, 1))
+    after = x + 0.1 * np.column_stack([x[:, 1], u[:, 0] - x[:, 0]])
+    with jax.enable_x64(True):
+        learner = LeastSquares(Koopman(Monomials()), prior=1e-13)
+        state = learner.init(jax.random.key(0), SPEC)
+        state, _ = learner.update(state, Params(), batch(x, u, after), jax.random.key(0))
+    theirs = pk.Koopman(observables=pk.observables.Identity(), regressor=pk.regression.EDMDc())
+    theirs.fit(x, after, u=u)
+    np.testing.assert_allclose(state.model["K"], np.hstack([theirs.A, theirs.B]), atol=1e-10)
+
+
+def test_learning_ends_and_k0_is_random_in_continuous_time() -> None:
+    """`until` counts decisions of the run; K_0 - [I 0] has deviation s dt, or K_0 is zero."""
+    learner = LeastSquares(CLOSED, deviation=2.0, until=1)
+    many = jax.vmap(lambda k: learner.init(k, SPEC).model["K"])(
+        jax.random.split(jax.random.key(0), 500)
+    )
+    np.testing.assert_allclose(many.std(0), 2.0 * SPEC.dt, rtol=0.2)
+    np.testing.assert_allclose(many.mean(0), np.eye(3, 4), atol=0.05)
+    state = learner.init(jax.random.key(0), SPEC)
+    data = batch(*(np.ones((1, n)) for n in (2, 1, 2)))
+    for decision, learns in ((0, True), (1, False)):
+        params = Params(decisions=jnp.int32(decision))
+        after, _ = learner.update(state, params, data, jax.random.key(0))
+        assert (np.abs(after.model["K"] - state.model["K"]).max() > 0) == learns
+    nothing = LeastSquares(CLOSED, mean="zero").init(jax.random.key(0), SPEC).model["K"]
+    np.testing.assert_allclose(nothing, 0, atol=1e-7)
+
+
+def test_predictions_stay_within_the_bound() -> None:
+    """Also those of a K that explodes, many decisions ahead."""
+    model = Koopman(Monomials(), bound=50.0)
+    params = {**model.init(jax.random.key(0), SPEC), "K": 9.0 * jnp.ones((2, 3))}
+    x = jnp.ones(2)
+    for _ in range(20):
+        x = model.step(params, x, jnp.ones(1))
+    np.testing.assert_array_equal(x, 50.0)
+
+
+def test_products_make_the_model_bilinear() -> None:
+    """s = (x, u, x_1 u); K of the bilinear system is recovered."""
+    model = Koopman(Monomials(), products=(1,))
+    truth = RNG.normal(size=(2, 4))
+    x, u = RNG.normal(size=(50, 2)), RNG.normal(size=(50, 1))
+    after = np.column_stack([x, u, x[:, 1:] * u]) @ truth.T
+    with jax.enable_x64(True):
+        learner = LeastSquares(model, prior=1e-12)
+        state = learner.init(jax.random.key(0), SPEC)
+        state, _ = learner.update(state, Params(), batch(x, u, after), jax.random.key(0))
+        np.testing.assert_allclose(state.model["K"], truth, atol=1e-9)
+
+
+def linear_params(A: np.ndarray, B: np.ndarray) -> dict:
+    """Parameters of a linear Koopman model."""
+    r = A.shape[1] + B.shape[1]
+    return {"features": {}, "K": jnp.asarray(np.hstack([A, B])), "root": jnp.eye(r)}
+
+
+def test_the_regulator_of_a_known_system_is_scipys() -> None:
+    """The point mass, in coordinates of the observation: gain, goal and feed-forward."""
+    world = PointMass()
+    with jax.enable_x64(True):
+        A, B = (np.asarray(m) for m in jax.jacobian(world.dynamics, (0, 1))(*world.equilibrium()))
+        learner = RegulatorLearner(
+            Koopman(Monomials()), Linear(), world, (3.0, 2.0, 1.0, 1.0), (0.5,), horizon=4096
+        )
+        zero = Linear().init(jax.random.key(0), world.spec)
+        zero = jax.tree.map(lambda x: x.astype(float), zero)
+        solved = jax.jit(learner.solve)(linear_params(A, B), zero)
+    Q, R = np.diag([3.0, 2.0, 1.0, 1.0]), 0.5 * np.eye(2)
+    P = solve_discrete_are(A, B, Q, R)
+    F = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
+    np.testing.assert_allclose(solved["gain"], F, rtol=1e-6)
+    np.testing.assert_allclose(solved["goal"], world.equilibrium()[0])
+    np.testing.assert_allclose(solved["hold"], 0, atol=1e-6)
+
+
+def test_feed_forward_holds_a_goal_that_needs_an_action() -> None:
+    """A linear system with a drift, whose hold is B^-1 (I - A) goal."""
+    A, B = np.array([[0.9, 0.1], [0.0, 0.8]]), np.array([[0.0], [0.4]])
+
+    def step(x, u):
+        return A @ x + B @ u
+
+    params = {**Linear().init(jax.random.key(0), SPEC), "inverse": jnp.linalg.pinv(jnp.asarray(B))}
+    goal = jnp.array([0.3, 0.3])  # the first row holds for any u
+    aimed = Linear().aim(params, goal, goal, step)
+    np.testing.assert_allclose(step(goal, aimed["hold"]), goal, atol=1e-6)
+    np.testing.assert_allclose(Linear().mean(aimed, goal), aimed["hold"])
+
+
+def test_any_model_with_derivatives_has_a_regulator() -> None:
+    """The exact model of the pendulum, upright: its gain over 200 decisions."""
+    world = Pendulum()
+    learner = RegulatorLearner(Exact(world), Linear(), world, (1.0,), (0.1,), horizon=200)
+    state = learner.init(jax.random.key(0), world.spec)
+    state, metrics = learner.update(state, Params(), None, jax.random.key(0))
+    A, B = (np.asarray(m) for m in jax.jacobian(world.dynamics, (0, 1))(*world.equilibrium()))
+    P = np.zeros((3, 3))
+    for _ in range(200):
+        K = np.linalg.solve(0.1 * np.eye(1) + B.T @ P @ B, B.T @ P @ A)
+        P = np.eye(3) + A.T @ P @ (A - B @ K)
+    K = np.linalg.solve(0.1 * np.eye(1) + B.T @ P @ B, B.T @ P @ A)
+    np.testing.assert_allclose(state.policy["gain"], K, rtol=1e-3, atol=1e-4)
+    assert metrics["policy/rejected_solutions"] == 0
+
+
+def test_a_solution_that_is_not_finite_is_rejected() -> None:
+    """The last gain stays, and the rejection is counted."""
+    world = PointMass()
+    learner = RegulatorLearner(Koopman(Monomials()), Linear(), world)
+    state = learner.init(jax.random.key(0), world.spec)
+    good = learner.model.init(jax.random.key(0), world.spec)
+    good = {**good, "K": good["K"].at[:, 4:].set(0.3 * jnp.eye(4, 2, -2))}
+    state, _ = learner.update(state, Params(model=good), None, jax.random.key(0))
+    bad = {**good, "K": good["K"] * jnp.nan}
+    after, metrics = learner.update(state, Params(model=bad), None, jax.random.key(0))
+    np.testing.assert_array_equal(after.policy["gain"], state.policy["gain"])
+    assert np.abs(after.policy["gain"]).max() > 0
+    assert metrics["policy/rejected_solutions"] == 1
+
+
+def informed(criterion: str) -> tuple[Information, Params, Path]:
+    """An objective, a model with some data, and a path."""
+    with jax.enable_x64(True):
+        model = Koopman(Monomials(terms=((0, 1),)), products=(0,))
+        params = model.init(jax.random.key(0), SPEC)
+        root = np.linalg.qr(RNG.normal(size=(9, 5)))[1] + 2 * np.eye(5)
+        params = {**params, "K": jnp.asarray(RNG.normal(size=(3, 5))), "root": jnp.asarray(root)}
+        path = Path(jnp.asarray(RNG.normal(size=(7, 3))), jnp.asarray(RNG.normal(size=(6, 1))))
+        return Information(model, criterion), Params(model=params), path
+
+
+def test_gain_is_the_growth_of_the_information_of_the_regression() -> None:
+    """log det (U'U + s s' / sigma^2) - log det U'U."""
+    objective, params, path = informed("gain")
+    U = np.asarray(params.model["root"])
+    with jax.enable_x64(True):
+        got = objective.rewards(params, path)
+        for t, r in enumerate(got):
+            x, u = path.x[t], path.u[t]
+            s = np.concatenate([x, u, x[0] * u])
+            more = U.T @ U + np.outer(s, s) / 0.1**2
+            expected = np.linalg.slogdet(more)[1] - np.linalg.slogdet(U.T @ U)[1]
+            assert float(r) == pytest.approx(expected, rel=1e-10)
+
+
+@pytest.mark.parametrize("criterion", ["gain", "norm"])
+def test_the_gradient_of_information_is_that_of_central_differences(criterion: str) -> None:
+    """In every entry of the path, in float64; and the adjoint's is that of reverse mode."""
+    objective, params, path = informed(criterion)
+    with jax.enable_x64(True):
+        value, _ = objective.prepare(params, (), path.x[0], path.u[0], jax.random.key(0))
+        gradient, value = jax.jit(jax.grad(value))(path), jax.jit(value)
+        for name in ("x", "u"):
+            field = getattr(path, name)
+            for at in np.ndindex(field.shape):
+                up, down = (
+                    value(path._replace(**{name: field.at[at].add(e)})) for e in (1e-6, -1e-6)
+                )
+                difference = float(up - down) / 2e-6
+                assert float(getattr(gradient, name)[at]) == pytest.approx(difference, abs=1e-7)
+        step = lambda x, u: objective.model.step(params.model, x, u)  # noqa: E731
+        policy = lambda x: jnp.clip(-0.4 * x[:1], -1, 1)  # noqa: E731
+        x0, v = 0.1 * path.x[0], 0.05 * path.u
+        along = adjoint.adjoint(step, policy, value, adjoint.roll(step, policy, x0, v))
+        reverse = jax.grad(lambda v: value(adjoint.roll(step, policy, x0, v)))(v)
+        np.testing.assert_allclose(along.gradient, reverse, rtol=1e-10, atol=1e-12)
+
+
+def test_the_state_of_rest_is_a_saddle_of_information() -> None:
+    """Without knowledge of B, zero action is stationary: exploration needs a first excitation."""
+    model = Koopman(Monomials())
+    params = Params(model=model.init(jax.random.key(0), SPEC))
+    value, _ = Information(model).prepare(params, (), jnp.zeros(2), jnp.zeros(1), jax.random.key(0))
+    path = adjoint.roll(
+        lambda x, u: model.step(params.model, x, u),
+        lambda x: jnp.zeros(1),
+        jnp.ones(2),
+        jnp.zeros((4, 1)),
+    )
+    np.testing.assert_array_equal(jax.grad(value)(path).u, 0)
+
+
+def test_a_hovering_quadcopter_has_the_gain_and_the_thrust_of_its_linearisation() -> None:
+    """K of small motions around the hover, against SciPy on the eight controllable coordinates.
+
+    The vertical component of gravity is the constant that the feed-forward balances.
+    """
+    world = QuadcopterSE3()
+    model = Koopman(Monomials((9, 10, 11, 15, 16, 17, 12, 13, 14), (*[-9.81] * 3, *[1.0] * 6)))
+    moved = [0, 1, *range(3, 9)]
+    Q, R = np.diag([10.0] * 6 + [50.0] * 3), 36 * np.eye(4)
+    with jax.enable_x64(True):
+        hover = world.equilibrium()[1]
+        local = np.zeros((2000, 12))
+        local[:, 3:] = 1e-3 * RNG.uniform(-1, 1, (2000, 9))
+        obs = jax.vmap(world.from_local)(jnp.asarray(local))
+        u = hover[None] + 1e-3 * RNG.uniform(-1, 1, (2000, 4))
+        after = jax.jit(jax.vmap(world.dynamics))(obs, u)
+        learner = LeastSquares(model, prior=1e-14)
+        state = learner.init(jax.random.key(0), world.spec)
+        state, _ = learner.update(state, Params(), batch(obs, u, after), jax.random.key(0))
+        regulator = RegulatorLearner(
+            model, Linear(), world, tuple(np.diag(Q)), tuple(np.diag(R)), horizon=1024
+        )
+        policy = Linear().init(jax.random.key(0), world.spec._replace(state=9))
+        policy = jax.tree.map(lambda x: x.astype(float), policy)
+        solved = jax.jit(regulator.solve)(state.model, policy)
+        np.testing.assert_allclose(solved["hold"], hover, rtol=0.01)
+
+        def reduced(y, u):
+            """The next eight coordinates of a small motion y."""
+            s = jnp.stack([y[1] / 9.81, -y[0] / 9.81, 0.0])  # gravity in the body frame: -g R' e3
+            e = jnp.concatenate([jnp.zeros(3), -s, y[5:], y[2:5]])
+            x = world.dynamics(world.from_local(e), u)
+            return model.lift(state.model, x)[jnp.array(moved)]
+
+        A, B = (np.asarray(m) for m in jax.jit(jax.jacobian(reduced, (0, 1)))(jnp.zeros(8), hover))
+    Q = Q[np.ix_(moved, moved)]
+    P = solve_discrete_are(A, B, Q, R)
+    F = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
+    np.testing.assert_allclose(
+        np.asarray(solved["gain"])[:, moved], F, rtol=0.01, atol=0.01 * np.abs(F).max()
+    )
