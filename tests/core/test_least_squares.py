@@ -15,11 +15,13 @@ PRIOR = 0.3
 
 def recursive(forgetting: float, batch: int = 1) -> least_squares.Factor:
     """The factor after all rows, `batch` at a time, in float64."""
+
+    def follow(factor: least_squares.Factor, row: tuple) -> tuple:
+        return least_squares.add(factor, *row, jnp.asarray(MEAN), PRIOR, forgetting), None
+
+    rows = (jnp.asarray(each.reshape(-1, batch, each.shape[1])) for each in (S, Y))
     factor = least_squares.begin(jnp.asarray(MEAN), PRIOR)
-    for s, y in zip(S.reshape(-1, batch, R), Y.reshape(-1, batch, A), strict=True):
-        rows = jnp.asarray(s), jnp.asarray(y)
-        factor = least_squares.add(factor, *rows, jnp.asarray(MEAN), PRIOR, forgetting)
-    return factor
+    return jax.lax.scan(follow, factor, tuple(rows))[0]
 
 
 @pytest.mark.parametrize(("forgetting", "batch"), [(1.0, 1), (0.9, 1), (0.9, 4)])
