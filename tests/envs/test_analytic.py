@@ -26,6 +26,7 @@ ENVS = [
     CartDoublePendulum(),
     QuadcopterSE3(),
     QuadcopterSE3(drag=False),
+    QuadcopterSE3(turn=1.0, terminate=False),
     Pendulum(),
     NoDynamics(),
     VanDerPol(),
