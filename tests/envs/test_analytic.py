@@ -11,6 +11,7 @@ from worlds import follow, jitted
 from hybrid_rl.envs.analytic import cart_double_pendulum as cart
 from hybrid_rl.envs.analytic import quadcopter_se3 as quad
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
+from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
@@ -18,6 +19,7 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import ACCELERATION, DT, PointMass
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.analytic.van_der_pol import VanDerPol
 from hybrid_rl.envs.mujoco import mjcf
 
@@ -30,6 +32,8 @@ ENVS = [
     Pendulum(),
     NoDynamics(),
     VanDerPol(),
+    CartPendulum(),
+    TwoLink(),
 ]
 over_envs = pytest.mark.parametrize("env", ENVS, ids=repr)
 

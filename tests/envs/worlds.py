@@ -9,10 +9,12 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
+from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.analytic.van_der_pol import VanDerPol
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
@@ -24,6 +26,7 @@ from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 
 DECISIONS = 20
+STATE = {"two_link": 4, "sprk_sand": 4}  # entries of the observation before a reference
 ANALYTIC = {
     "no_dynamics": NoDynamics,
     "pendulum": Pendulum,
@@ -31,6 +34,8 @@ ANALYTIC = {
     "cart_double_pendulum": CartDoublePendulum,
     "quadcopter_se3": QuadcopterSE3,
     "van_der_pol": VanDerPol,
+    "cart_pendulum": CartPendulum,
+    "two_link": TwoLink,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,
