@@ -14,6 +14,7 @@ from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.envs.analytic.sprk_sand import SprkSand
 from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.analytic.van_der_pol import VanDerPol
 from hybrid_rl.envs.ant import Ant
@@ -36,6 +37,7 @@ ANALYTIC = {
     "van_der_pol": VanDerPol,
     "cart_pendulum": CartPendulum,
     "two_link": TwoLink,
+    "sprk_sand": SprkSand,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,
