@@ -115,11 +115,12 @@ def test_every_experiment_builds(experiment: str, tmp_path: Path) -> None:
         config.build(with_demonstrations(composed, tmp_path))
 
 
+@pytest.mark.parametrize("task", ["halfcheetah", "sprk_sand"])
 @pytest.mark.parametrize("algo", ["kle3", "kle3_bayesopt"])
-def test_a_method_that_needs_an_analytic_environment_refuses_others(algo: str) -> None:
-    """For an environment of MuJoCo."""
+def test_a_method_that_needs_an_analytic_environment_refuses_others(algo: str, task: str) -> None:
+    """For an environment of MuJoCo, and for one whose observation is not its whole state."""
     with pytest.raises(config.UsageError, match="needs an analytic environment"):
-        config.build(config.load(["task=halfcheetah", f"algo={algo}"]))
+        config.build(config.load([f"task={task}", f"algo={algo}"]))
 
 
 def test_settings_can_be_overridden_on_the_command_line() -> None:
