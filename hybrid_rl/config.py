@@ -205,7 +205,7 @@ def analytic_tasks(conf: Path = CONF) -> list[str]:
     for path in sorted((conf / "task").glob("*.yaml")):
         task: Any = OmegaConf.load(path)
         with suppress(ImportError, KeyError, AttributeError):  # an unfinished task of the user
-            names += [path.stem] if hasattr(_class(task.env._target_), "equilibrium") else []
+            names += [path.stem] if hasattr(_class(task.env._target_), "dynamics") else []
     return names
 
 
