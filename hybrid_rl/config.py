@@ -149,8 +149,10 @@ def expert(config: DictConfig) -> Controller:
     Raises:
         UsageError: if it has none.
     """
-    if config.expert is None:
-        raise UsageError(f"task={config.task}: has no scripted expert; give run=DIR instead")
+    if config.get("expert") is None:
+        raise UsageError(
+            f"task={config.task}: has no scripted expert; give expert=babble or run=DIR"
+        )
     with _usage(config):
         return _instantiate(config.expert)
 

@@ -1,11 +1,13 @@
 """An expert's decisions, as a file to learn from.
 
     python -m hybrid_rl.demonstrate task=panda_stack episodes=20
+    python -m hybrid_rl.demonstrate task=quadcopter_se3 expert=babble env.twist=2
     python -m hybrid_rl.demonstrate run=DIR mode=policy out=demonstrations/ant.npz
 
-The file is demonstrations/T.npz by default. The expert is the task's scripted one, in
-the task with its defaults or with env.KEY=VALUE, episode.KEY=VALUE, expert.KEY=VALUE; with run=DIR
-it is the trained controller (mode: full, policy or planner; the first seed), without exploration.
+The file is demonstrations/T.npz by default. The expert is the task's scripted one, or another of
+conf/expert, such as babble (random actions); in the task with its defaults or with env.KEY=VALUE,
+episode.KEY=VALUE, expert.KEY=VALUE. With run=DIR it is the trained controller (mode: full, policy
+or planner; the first seed), without exploration.
 Episode i starts from key i of `seed`.
 """
 

@@ -1,16 +1,18 @@
 """J = -sum_t e_{t+1}' Q e_{t+1} + (u_t - u_0)' R (u_t - u_0): a quadratic cost around equilibrium.
 
-e are the environment's local coordinates. The return is known: nothing is learned.
+e are the environment's local coordinates; with a model, e = x - z(o_0), in its planning states. The
+return is known: nothing is learned.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import analytic
-from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.protocols import Model
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
@@ -19,17 +21,22 @@ class Quadratic:
     """Minus the squared distance to the equilibrium, summed along a path.
 
     Raises:
-        ValueError: for an environment that is not analytic, or weights below 0.
+        ValueError: for an environment that is not analytic, one without an equilibrium if there is
+            a model, or weights below 0.
     """
 
-    world: AnalyticEnv
-    state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
+    world: Any  # an AnalyticEnv; with a model, a BalancedEnv
+    model: Model | None = None  # None: local coordinates
+    state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or the first of e
     action_weights: tuple[float, ...] = (0.0,)  # diagonal of R: one for all, or [m]
     discount: float = 1.0  # per decision
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        analytic.require("objective", self.world)
+        if self.model is None:
+            analytic.require("objective", self.world)
+        else:
+            analytic.require_equilibrium("objective", self.world)
         for name in ("state_weights", "action_weights"):
             weights = tuple(getattr(self, name))
             object.__setattr__(self, name, weights)
@@ -49,8 +56,13 @@ class Quadratic:
     def rewards(self, params: Params, path: Path) -> Array:
         """r [T] along path, x [T+1, n] and u [T, m]."""
         rest, hold = self.world.equilibrium()
-        e = jax.vmap(self.world.to_local)(path.x[1:, : rest.size])
         q, r = jnp.array(self.state_weights), jnp.array(self.action_weights)
+        if self.model is None:
+            e = jax.vmap(self.world.to_local)(path.x[1:, : rest.size])
+        else:
+            e = path.x[1:] - self.model.lift(params.model, rest.astype(path.x.dtype))[None]
+        if len(q) > 1:
+            e = e[:, : len(q)]
         return -jnp.sum(q[None] * e**2, -1) - jnp.sum(r[None] * (path.u - hold[None]) ** 2, -1)
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
