@@ -17,7 +17,7 @@ from jax import Array
 
 from hybrid_rl.envs import sawyer_torque
 from hybrid_rl.envs.mujoco import inverse_dynamics
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.envs.sawyer_torque import DT, LIMITS, SawyerTorque
 from hybrid_rl.types import Params, Spec
 
 Nothing = tuple[()]
@@ -25,19 +25,24 @@ Nothing = tuple[()]
 
 @dataclass(frozen=True)
 class ComputedTorque:
-    """Feedback linearisation of `sawyer_torque`."""
+    """Feedback linearisation of `sawyer_torque`.
 
-    damping: str = "none"  # of the environment
+    Raises:
+        ValueError: for another environment, or a frequency that is not positive.
+    """
+
+    world: SawyerTorque = SawyerTorque()
     frequency: float = 20.0  # [rad/s] w of the errors
 
     def __post_init__(self) -> None:
-        one_of("expert.damping", self.damping, tuple(sawyer_torque.DAMPING))
+        """Check the fields."""
+        _check(self.world)
         if self.frequency <= 0:
             raise ValueError(f"expert.frequency={self.frequency}: must be above 0")
 
     def init(self, spec: Spec) -> Nothing:
         """No state."""
-        return _check(spec)
+        return ()
 
     def act(
         self, params: Params, state: Nothing, obs: Array, key: Array
@@ -45,8 +50,8 @@ class ComputedTorque:
         """Action [7], no state, no metrics; deterministic."""
         q, rate, q_ref, rate_ref, _, rate_next = jnp.split(obs, 6)
         feedback = self.frequency**2 * (q_ref - q) + 2 * self.frequency * (rate_ref - rate)
-        acceleration = (rate_next - rate_ref) / sawyer_torque.DT + feedback
-        model = sawyer_torque.asset(self.damping)
+        acceleration = (rate_next - rate_ref) / DT + feedback
+        model = sawyer_torque.asset(self.world.damping)
         return _action(inverse_dynamics.torques(model, q, rate, acceleration)), state, {}
 
     def greedy(self) -> "ComputedTorque":
@@ -56,12 +61,19 @@ class ComputedTorque:
 
 @dataclass(frozen=True)
 class JointPD:
-    """Proportional and derivative feedback at each joint of `sawyer_torque`."""
+    """Proportional and derivative feedback at each joint of `sawyer_torque`.
 
+    Raises:
+        ValueError: for another environment, or gains that are not 7 numbers, 0 or more.
+    """
+
+    world: SawyerTorque = SawyerTorque()
     stiffness: tuple[float, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
     damping: tuple[float, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
 
     def __post_init__(self) -> None:
+        """Check the fields."""
+        _check(self.world)
         for name in ("stiffness", "damping"):
             gains = tuple(getattr(self, name))
             object.__setattr__(self, name, gains)
@@ -70,7 +82,7 @@ class JointPD:
 
     def init(self, spec: Spec) -> Nothing:
         """No state."""
-        return _check(spec)
+        return ()
 
     def act(
         self, params: Params, state: Nothing, obs: Array, key: Array
@@ -85,13 +97,12 @@ class JointPD:
         return self
 
 
-def _check(spec: Spec) -> Nothing:
-    """No state, for a task of the right sizes; else ValueError."""
-    if (spec.obs, spec.act) != (42, 7):
-        raise ValueError("controllers.full: this controller needs task=sawyer_torque")
-    return ()
+def _check(world: SawyerTorque) -> None:
+    if not isinstance(world, SawyerTorque):
+        kind = type(world).__name__
+        raise ValueError(f"world={kind}: this controller needs task=sawyer_torque")
 
 
 def _action(torques: Array) -> Array:
     """The action [7] that gives these torques [7] [N m], within their limits."""
-    return jnp.clip(torques / jnp.array(sawyer_torque.LIMITS), -1.0, 1.0)
+    return jnp.clip(torques / jnp.array(LIMITS), -1.0, 1.0)
