@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import jax
 import jax.numpy as jnp
 import mujoco
+import numpy as np
 from jax import Array
 
 from hybrid_rl.envs import sawyer_reference, sensor_noise
@@ -97,7 +98,7 @@ class SawyerTorque:
     def scene(self) -> str:
         """MJCF text of the scene for rendering, with points along the path."""
         spec = mujoco.MjSpec.from_file(str(mjcf.path(SCENE)))
-        marks = sawyer_reference.path(sawyer_reference.PERIOD / 60 * jnp.arange(60.0))
+        marks = sawyer_reference.path(sawyer_reference.PERIOD / 60 * np.arange(60))
         for mark in marks:
             spec.worldbody.add_site(pos=mark, size=[0.004, 0, 0], rgba=[0.95, 0.6, 0.15, 1])
         spec.compile()

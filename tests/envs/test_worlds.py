@@ -45,7 +45,7 @@ def test_finite_and_never_truncated(env):
     assert not path.truncated.any()
 
 
-@pytest.mark.parametrize("task", ["ant", "quadcopter", "sawyer_push", "panda_stack"])
+@pytest.mark.parametrize("task", ["ant", "quadcopter", "sawyer_push", "panda_stack", "sawyer_torque"])
 def test_finite_for_long(task):
     """Random decisions beyond the end of episodes."""
     env = TASKS[task](physics="native")
@@ -76,7 +76,7 @@ def test_nan_propagates_within_its_lane_only(env):
     path = rollout(env)
     obs, reward = np.asarray(path.obs), np.asarray(path.reward)
     assert np.isfinite(obs[BROKEN][:5]).all()
-    assert np.isnan(obs[BROKEN][5:]).all()
+    assert np.isnan(obs[BROKEN][5:]).any(-1).all()  # a reference in it stays finite
     assert np.isnan(reward[BROKEN][5:]).all()
     assert np.isfinite(obs[OTHER]).all()
 
