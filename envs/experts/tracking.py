@@ -31,7 +31,7 @@ class ComputedTorque:
         ValueError: for another environment, or a frequency that is not positive.
     """
 
-    world: SawyerTorque = SawyerTorque()
+    world: SawyerTorque
     frequency: float = 20.0  # [rad/s] w of the errors
 
     def __post_init__(self) -> None:
@@ -67,7 +67,7 @@ class JointPD:
         ValueError: for another environment, or gains that are not 7 numbers, 0 or more.
     """
 
-    world: SawyerTorque = SawyerTorque()
+    world: SawyerTorque
     stiffness: tuple[float, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
     damping: tuple[float, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
 

@@ -1,6 +1,7 @@
 """Sawyer under torque control: reference, model, inverse dynamics and controllers."""
 
 from functools import cache
+from typing import Any, cast
 
 import jax
 import jax.numpy as jnp
@@ -211,8 +212,8 @@ def test_values_out_of_range_are_named(field, value, line):
 
 def test_controllers_refuse_other_tasks_and_gains():
     with pytest.raises(ValueError, match="needs task=sawyer_torque"):
-        JointPD(world=TIP)
+        JointPD(cast(Any, TIP))
     with pytest.raises(ValueError, match="frequency=0: must be above 0"):
-        ComputedTorque(frequency=0)
+        ComputedTorque(SawyerTorque(), frequency=0)
     with pytest.raises(ValueError, match=r"stiffness=\[1\.0\]: must be 7 numbers"):
-        JointPD(stiffness=(1.0,))
+        JointPD(SawyerTorque(), stiffness=(1.0,))
