@@ -44,8 +44,9 @@ def test_the_yaml_of_a_part_lists_every_field(path: Path) -> None:
     assert keys_of(path) == {"_target_", *(field.name for field in fields)}
 
 
+OF_SAWYER = ("computed_torque", "joint_pd")  # methods of task=sawyer_torque alone
 EACH = [  # every method on one task, the default method on the default task, one on every task
-    *(("pendulum", algo) for algo in options("algo")),
+    *(("sawyer_torque" if a in OF_SAWYER else "pendulum", a) for a in options("algo")),
     ("halfcheetah", "hybrid_stochastic"),
     *((task, "nn_mppi") for task in options("task") if task != "pendulum"),
 ]

@@ -20,13 +20,13 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
-LAYER_FILES = {"types", "protocols", "networks", "errors", "config", "overrides"}
+LAYER_FILES = {"types", "networks", "errors", "config", "overrides"}
 SHARED = {"types", "protocols", "core", "networks"}
 CONFIG = {"types", "protocols", "errors", "envs", "training", "config", "overrides"}
 ALLOWED = {
     "types": set(),
     "errors": set(),
-    "protocols": {"types"},
+    "protocols": {"types", "protocols"},
     "core": {"types", "protocols", "core"},
     "networks": {"types", "core"},
     "envs": {"types", "protocols", "envs"},

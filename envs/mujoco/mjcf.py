@@ -1,8 +1,11 @@
 """MuJoCo models by file name: XML text and compiled model, both cached.
 
+    sawyer_torque.xml?joint.j0.damping=10.0?geom.rod.mass=0.55     a file with other values
+
 Source: the MJCF reference of MuJoCo, "XML Reference".
 """
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -36,6 +39,14 @@ def text(asset: str) -> str:
     return spec.to_xml()
 
 
+def changed(asset: str, values: Mapping[str, float]) -> str:
+    """The name of `asset` with other values, for `load`.
+
+    values: ELEMENT.NAME.FIELD of mujoco.MjSpec -> value; of a vector, its first entry.
+    """
+    return "?".join([asset, *(f"{key}={float(value)!r}" for key, value in values.items())])
+
+
 @cache
 def load(asset: str) -> mujoco.MjModel:
     """The compiled model of `asset`, which is shared: do not modify it.
@@ -43,13 +54,28 @@ def load(asset: str) -> mujoco.MjModel:
     Raises:
         ValueError: for a model with automatic resets.
     """
-    model = mujoco.MjModel.from_xml_path(str(path(asset)))
+    file, *values = asset.split("?")
+    spec = mujoco.MjSpec.from_file(str(path(file)))
+    for change in values:
+        key, _, value = change.partition("=")
+        _set(spec, key, float(value))
+    model = spec.compile()
     if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
         raise ValueError(
             f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '
             "silently reset a simulation that diverged"
         )
     return model
+
+
+def _set(spec: mujoco.MjSpec, key: str, value: float) -> None:
+    """Set ELEMENT.NAME.FIELD of `spec`."""
+    kind, name, field = key.split(".")
+    element = getattr(spec, kind)(name)
+    if np.ndim(getattr(element, field)):
+        getattr(element, field)[0] = value
+    else:
+        setattr(element, field, value)
 
 
 @cache

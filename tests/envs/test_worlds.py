@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from worlds import (
     ANALYTIC,
+    ARMS,
     BROKEN,
     DECISIONS,
     IMPLEMENTATIONS,
@@ -47,7 +48,7 @@ def test_finite_and_never_truncated(env):
     assert not path.truncated.any()
 
 
-@pytest.mark.parametrize("task", ["ant", "quadcopter", "sawyer_push", "panda_stack"])
+@pytest.mark.parametrize("task", ["ant", "quadcopter", *ARMS, "sawyer_torque"])
 def test_finite_for_long(task):
     """Random decisions beyond the end of episodes."""
     env = TASKS[task](physics="native")

@@ -25,9 +25,14 @@ from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
+from hybrid_rl.envs.sawyer_torque import SawyerTorque
 
 DECISIONS = 20
-STATE = {"two_link": 4, "sprk_sand": 4}  # entries of the observation before a reference
+STATE = {
+    "two_link": 4,
+    "sprk_sand": 4,
+    "sawyer_torque": 14,
+}  # entries of the observation before a reference
 ANALYTIC = {
     "no_dynamics": NoDynamics,
     "pendulum": Pendulum,
@@ -47,6 +52,7 @@ TASKS = {
     "quadcopter": Quadcopter,
     "sawyer_push": SawyerPush,
     "panda_stack": PandaStack,
+    "sawyer_torque": SawyerTorque,
     **ANALYTIC,
 }
 FIELDS = {
@@ -77,6 +83,7 @@ REFERENCE = {
     "quadcopter": Reference("quadcopter.xml", 1),
     "sawyer_push": Reference("sawyer_push.xml", 20, (9,), 30.0),
     "panda_stack": Reference("panda_stack.xml", 20, (11, 18), 30.0),
+    "sawyer_torque": Reference("sawyer_torque.xml", 5),
 }
 
 
@@ -109,6 +116,9 @@ def observe(task, data, state):
         case "panda_stack":
             closed = data.ctrl[7:] < 0.02
             return np.concatenate([data.site("tool").xpos, qpos[9:12], closed, data.sensordata])
+        case "sawyer_torque":
+            neutral = np.array([0, -1.18, 0, 2.18, 0, 0.57, 3.3161, *np.zeros(7)])
+            return np.concatenate([qpos, qvel, neutral, neutral])
     return np.concatenate([qpos[1:], np.clip(qvel, -10, 10) if task == "hopper" else qvel])
 
 

@@ -1,0 +1,108 @@
+"""Controllers for Sawyer under torque control that do not learn.
+
+    computed torque   tau = M(q) (q''_ref + w^2 e + 2 w e') + C(q, q') q' + D q'
+    joint PD          tau = P e + D e'
+    e = q_ref - q,   q''_ref = (q'_ref next - q'_ref now) / dt
+
+Computed torque uses the arm's true model, damping included, but without payload. The arm itself
+compensates gravity. The gains are our choice.
+
+Source: Siciliano et al. 2009, "Robotics", section 8.5 (inverse dynamics control, PD control).
+"""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs import sawyer_torque
+from hybrid_rl.envs.mujoco import inverse_dynamics
+from hybrid_rl.envs.sawyer_torque import DT, LIMITS, SawyerTorque
+from hybrid_rl.types import Params, Spec
+
+Nothing = tuple[()]
+
+
+@dataclass(frozen=True)
+class ComputedTorque:
+    """Feedback linearisation of `sawyer_torque`.
+
+    Raises:
+        ValueError: for another environment, or a frequency that is not positive.
+    """
+
+    world: SawyerTorque
+    frequency: float = 20.0  # [rad/s] w of the errors
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        _check(self.world)
+        if self.frequency <= 0:
+            raise ValueError(f"expert.frequency={self.frequency}: must be above 0")
+
+    def init(self, spec: Spec) -> Nothing:
+        """No state."""
+        return ()
+
+    def act(
+        self, params: Params, state: Nothing, obs: Array, key: Array
+    ) -> tuple[Array, Nothing, dict[str, Array]]:
+        """Action [7], no state, no metrics; deterministic."""
+        q, rate, q_ref, rate_ref, _, rate_next = jnp.split(obs, 6)
+        feedback = self.frequency**2 * (q_ref - q) + 2 * self.frequency * (rate_ref - rate)
+        acceleration = (rate_next - rate_ref) / DT + feedback
+        model = sawyer_torque.asset(self.world.damping)
+        return _action(inverse_dynamics.torques(model, q, rate, acceleration)), state, {}
+
+    def greedy(self) -> "ComputedTorque":
+        """This controller, which does not explore."""
+        return self
+
+
+@dataclass(frozen=True)
+class JointPD:
+    """Proportional and derivative feedback at each joint of `sawyer_torque`.
+
+    Raises:
+        ValueError: for another environment, or gains that are not 7 numbers, 0 or more.
+    """
+
+    world: SawyerTorque
+    stiffness: tuple[float, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
+    damping: tuple[float, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        _check(self.world)
+        for name in ("stiffness", "damping"):
+            gains = tuple(getattr(self, name))
+            object.__setattr__(self, name, gains)
+            if len(gains) != 7 or not all(gain >= 0 for gain in gains):
+                raise ValueError(f"expert.{name}={list(gains)}: must be 7 numbers, 0 or more")
+
+    def init(self, spec: Spec) -> Nothing:
+        """No state."""
+        return ()
+
+    def act(
+        self, params: Params, state: Nothing, obs: Array, key: Array
+    ) -> tuple[Array, Nothing, dict[str, Array]]:
+        """Action [7], no state, no metrics; deterministic."""
+        q, rate, q_ref, rate_ref, *_ = jnp.split(obs, 6)
+        stiffness, damping = jnp.array(self.stiffness), jnp.array(self.damping)
+        return _action(stiffness * (q_ref - q) + damping * (rate_ref - rate)), state, {}
+
+    def greedy(self) -> "JointPD":
+        """This controller, which does not explore."""
+        return self
+
+
+def _check(world: SawyerTorque) -> None:
+    if not isinstance(world, SawyerTorque):
+        kind = type(world).__name__
+        raise ValueError(f"world={kind}: this controller needs task=sawyer_torque")
+
+
+def _action(torques: Array) -> Array:
+    """The action [7] that gives these torques [7] [N m], within their limits."""
+    return jnp.clip(torques / jnp.array(LIMITS), -1.0, 1.0)

@@ -1,0 +1,50 @@
+"""The protocols that parts follow; shapes as in hybrid_rl.types.
+
+Parts do not inherit from them: a class that has these methods and fields is a part.
+"""
+
+from hybrid_rl.protocols.control import Controller, Objective, Proposal, Staged, Target
+from hybrid_rl.protocols.environments import AnalyticEnv, BalancedEnv, Env, TrackingEnv
+from hybrid_rl.protocols.learned import (
+    Belief,
+    Critic,
+    Features,
+    GoalPolicy,
+    LearnedPolicy,
+    LinearModel,
+    Model,
+    Policy,
+    Reward,
+    StabilizingPolicy,
+    Trainable,
+    Uncertain,
+)
+from hybrid_rl.protocols.learning import Demonstrations, LatestLearner, Learner, UniformLearner
+
+__all__ = [
+    "AnalyticEnv",
+    "BalancedEnv",
+    "Belief",
+    "Controller",
+    "Critic",
+    "Demonstrations",
+    "Env",
+    "Features",
+    "GoalPolicy",
+    "LatestLearner",
+    "LearnedPolicy",
+    "Learner",
+    "LinearModel",
+    "Model",
+    "Objective",
+    "Policy",
+    "Proposal",
+    "Reward",
+    "StabilizingPolicy",
+    "Staged",
+    "Target",
+    "TrackingEnv",
+    "Trainable",
+    "Uncertain",
+    "UniformLearner",
+]

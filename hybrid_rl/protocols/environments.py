@@ -1,0 +1,58 @@
+"""Environments."""
+
+from typing import Protocol
+
+from jax import Array
+
+from hybrid_rl.types import EnvState, Spec
+
+
+class Env(Protocol):
+    """An environment. Frozen and hashable; everything that changes is in EnvState."""
+
+    spec: Spec
+
+    def reset(self, key: Array) -> EnvState:
+        """The first state of an episode."""
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later. action: [m] in [-1, 1]."""
+
+    def scene(self) -> str:
+        """MJCF text, for drawing."""
+
+    def pose(self, state: EnvState) -> Array:
+        """The positions qpos [nq] of `scene` at `state`."""
+
+
+class BalancedEnv(Env, Protocol):
+    """An environment that stays at its equilibrium under a constant action."""
+
+    def equilibrium(self) -> tuple[Array, Array]:
+        """The observation [o] and the action [m] at rest."""
+
+
+class TrackingEnv(BalancedEnv, Protocol):
+    """An environment whose observation contains a reference that the robot is to follow."""
+
+    def reference(self, obs: Array) -> tuple[Array, Array]:
+        """The observations [o] that the robot should have at `obs` [o] and one decision later.
+
+        Their own reference entries are those of `obs`.
+        """
+
+
+class AnalyticEnv(BalancedEnv, Protocol):
+    """An environment with known dynamics whose observation is its whole state.
+
+    Near its equilibrium it has local coordinates e [d], zero there, in which it is linearised.
+    """
+
+    def dynamics(self, x: Array, u: Array) -> Array:
+        """The next observation [o] after action u [m] at x [o]; at the equilibrium, x itself."""
+
+    def to_local(self, x: Array) -> Array:
+        """Local coordinates e [d] of x [o]."""
+
+    def from_local(self, e: Array) -> Array:
+        """x [o] of local coordinates e [d]."""

@@ -1,0 +1,160 @@
+"""What is learned: models, policies, critics, rewards and beliefs."""
+
+from typing import Protocol
+
+from jax import Array
+
+from hybrid_rl.protocols.environments import AnalyticEnv
+from hybrid_rl.types import PyTree, Spec, Step
+
+
+class Features(Protocol):
+    """z(o): the functions of an observation in which a model is linear."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, with "weights" as an entry if they are learned."""
+
+    def __call__(self, params: PyTree, obs: Array) -> Array:
+        """z [n] of an observation [o]."""
+
+
+class Model(Protocol):
+    """x' = f(x, u)."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters."""
+
+    def lift(self, params: PyTree, obs: Array) -> Array:
+        """The planning state x [n] of an observation [o].
+
+        Parts that read observations in planning states need x[:o] to be the observation.
+        """
+
+    def step(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Mean of the next planning state [n]."""
+
+
+class Trainable(Model, Protocol):
+    """A model that learns by gradients of its "weights", an entry of its parameters."""
+
+    members: int  # models in an ensemble, each with a batch of its own
+
+    def observe(self, params: PyTree, obs: Array, next_obs: Array) -> PyTree:
+        """Parameters with statistics updated by observations [B, o] and their successors."""
+
+    def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
+        """Mean loss [] of transitions [members * B, ...]."""
+
+    def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """Samples of the next planning states [B, n], for noise [B, n] ~ N(0, I)."""
+
+
+class Uncertain(Model, Protocol):
+    """A model with a predictive standard deviation."""
+
+    def std(self, params: PyTree, x: Array) -> Array:
+        """Standard deviation [n] of the change at x [n], in running standard deviations."""
+
+
+class LinearModel(Uncertain, Protocol):
+    """x' = K s(x, u), linear in its parameters.
+
+    Parameters: "K" [n, r], and "root" U [r, r], upper triangular, with U'U the information of the
+    data about K.
+    """
+
+    def regressors(self, params: PyTree, x: Array, u: Array) -> Array:
+        """s [r] at x [n] and u [m]."""
+
+
+class Policy(Protocol):
+    """u = pi(x), stochastic."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def mean(self, params: PyTree, x: Array) -> Array:
+        """The action [m] without noise."""
+
+    def sample(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array]:
+        """The action [m] for noise [m] ~ N(0, I), and its log-density []."""
+
+    def variance(self, params: PyTree, x: Array) -> Array:
+        """Variance [m] of the action."""
+
+
+class LearnedPolicy(Policy, Protocol):
+    """A policy that learns by gradients."""
+
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
+
+    def log_prob(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Log-density [...] of actions u [..., m] at x [..., n]."""
+
+
+class GoalPolicy(Policy, Protocol):
+    """A policy that leads to a goal, which can be changed."""
+
+    def aim(self, params: PyTree, goal: Array, after: Array, step: Step) -> PyTree:
+        """Parameters for the goal [n] now and `after` [n] a decision later, by the model `step`."""
+
+
+class StabilizingPolicy(Policy, Protocol):
+    """A policy that holds an analytic environment at its equilibrium."""
+
+    world: AnalyticEnv
+
+    def towards(self, x: Array, goal: Array) -> Array:
+        """The action [m] at x [n] that leads to `goal` [o] instead of the equilibrium."""
+
+    def lyapunov(self, x: Array) -> Array:
+        """V(x) [], a Lyapunov function under the policy."""
+
+
+class Critic(Protocol):
+    """Q(x, u), an ensemble."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def all(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Q [members, ...] at x [..., n] and u [..., m]."""
+
+    def value(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Q [...], reduced over the members."""
+
+
+class Reward(Protocol):
+    """r(x, u), learned; its parameters hold "weights" as a Trainable's do."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
+
+    def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
+        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
+
+    def loss(self, params: PyTree, x: Array, u: Array, target: Array, ended: Array) -> Array:
+        """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
+
+
+class Belief(Protocol):
+    """A distribution over an unknown function, updated recursively by measurements y at s."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """The belief before any measurement."""
+
+    def add(self, state: PyTree, s: Array, y: Array, key: Array) -> PyTree:
+        """The belief after y [] was measured at s [v]."""
+
+    def predict(self, state: PyTree, s: Array) -> tuple[Array, Array]:
+        """Mean and standard deviation [] of the function at s [v]."""
+
+    def loss(self, state: PyTree, s: Array, y: Array) -> Array:
+        """Negative log-likelihood [] of y [] at s [v], before it is added."""
+
+    def report(self, state: PyTree) -> dict[str, Array]:
+        """Metrics, name -> []."""

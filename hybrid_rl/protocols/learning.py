@@ -1,0 +1,55 @@
+"""What learns: demonstrations and learners."""
+
+from typing import Literal, Protocol
+
+from jax import Array
+
+from hybrid_rl.types import Batch, Params, PyTree, Spec, Transition
+
+
+class Demonstrations(Protocol):
+    """An expert's decisions."""
+
+    def load(self) -> Transition:
+        """All of them [N, ...], in order."""
+
+
+class _Learner(Protocol):
+    """What both kinds of learners have."""
+
+    owns: tuple[str, ...]  # the fields of `Params` that it learns
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial state: parameters, optimisers, targets."""
+
+    def params(self, state: PyTree) -> dict[str, PyTree]:
+        """The fields of `Params` that this learner owns."""
+
+    def update(
+        self, state: PyTree, params: Params, batch: Batch, key: Array
+    ) -> tuple[PyTree, dict[str, Array]]:
+        """The next state, and metrics name -> []; `params` of all learners before the update."""
+
+
+class UniformLearner(_Learner, Protocol):
+    """A learner whose updates get batches [batches * batch_size] of the replay memory."""
+
+    data: Literal["uniform"]
+    batch_size: int  # transitions of a batch
+    batches: int  # batches of one update, concatenated
+    updates: float  # per decision
+    early: bool  # whether it also learns while decisions are random
+
+
+class LatestLearner(_Learner, Protocol):
+    """A learner that takes each decision once, with its true next observation.
+
+    Its updates get the transitions [E] of the step that just ended, without delay, from the
+    first decision of the run on, random ones included.
+    """
+
+    data: Literal["latest"]
+    every: int  # decisions of each environment between two updates; 1: uses them all
+
+
+Learner = UniformLearner | LatestLearner  # data -> parameters

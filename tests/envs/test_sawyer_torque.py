@@ -1,0 +1,219 @@
+"""Sawyer under torque control: reference, model, inverse dynamics and controllers."""
+
+from functools import cache
+from typing import Any, cast
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+from scipy.linalg import null_space
+
+from hybrid_rl.envs import sawyer_reference
+from hybrid_rl.envs.experts.tracking import ComputedTorque, JointPD
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.inverse_dynamics import torques
+from hybrid_rl.envs.sawyer_torque import TIP, SawyerTorque, asset
+from hybrid_rl.types import Params
+
+NEUTRAL = (0, -1.18, 0, 2.18, 0, 0.57, 3.3161)  # [rad], Rethink Robotics' sawyer_robot
+LIMITS = (80, 80, 40, 40, 9, 9, 9)  # [N m], the same
+DAMPING = (10, 5, 5, 1, 2, 1, 1)  # [N m s/rad], the same
+DT = 0.01  # [s]
+BLEND = 100  # decisions to the path
+
+
+def _thesis(t):
+    """The path of the thesis [..., 3] [m]."""
+    return np.stack([0.8 + 0 * t, 0.1 * np.cos(2 * t), 0.1 * np.sin(4 * t) + 0.4], -1)
+
+
+def _tip(q):
+    """Position of the tip [3] and its Jacobian [3, 7] in MuJoCo C."""
+    model, jacobian = mjcf.load("sawyer_torque.xml"), np.zeros((3, 7))
+    data = mujoco.MjData(model)
+    data.qpos[:] = q
+    mujoco.mj_forward(model, data)
+    mujoco.mj_jacSite(model, data, jacobian, None, model.site("tip").id)
+    return data.site("tip").xpos, jacobian
+
+
+def test_the_reference_follows_the_path_of_the_thesis_near_the_neutral_pose():
+    table = sawyer_reference.table(2, DT)
+    on_path = table[BLEND:-1]
+    t = DT * np.arange(len(on_path))
+    np.testing.assert_allclose(on_path[:, 14:], _thesis(t), atol=1e-9)
+    assert len(on_path) == 629
+    for q, point in list(zip(on_path[:, :7], _thesis(t), strict=True))[::50]:
+        position, jacobian = _tip(q)
+        np.testing.assert_allclose(position, point, atol=1e-9)
+        free = null_space(jacobian)  # motions that leave the tip where it is
+        np.testing.assert_allclose(free.T @ (np.array(NEUTRAL) - q), 0, atol=1e-9)
+    ranges = {0: (-0.33, -0.15), 1: (-1.34, -1.08), 3: (1.55, 1.65)}
+    for joint, (low, high) in ranges.items():
+        assert low < on_path[:, joint].min() < on_path[:, joint].max() < high
+
+
+def test_the_rates_of_the_reference_are_its_derivative():
+    table = sawyer_reference.table(2, DT)[:-1]
+    q, rate = table[:, :7], table[:, 7:14]
+    slope = (q[2:] - q[:-2]) / (2 * DT)
+    ends = np.abs(np.arange(1, len(q) - 1) - BLEND) < 2  # its third derivative jumps there
+    np.testing.assert_allclose(rate[1:-1][~ends], slope[~ends], atol=2e-3)
+    assert np.abs(np.diff(rate, axis=0)).max() < 3.2 * DT  # [rad/s^2]
+    fine = sawyer_reference.joints(np.array([0.999, 1.0, 1.001]))
+    np.testing.assert_allclose(fine[1][1], (fine[0][2] - fine[0][0]) / 2e-3, atol=1e-5)
+    np.testing.assert_allclose(fine[2][1], (fine[1][2] - fine[1][0]) / 2e-3, atol=1e-4)
+    np.testing.assert_array_equal(table[0, :14], [*NEUTRAL, *np.zeros(7)])
+
+
+def test_kinematics_at_the_reference():
+    on_path = sawyer_reference.table(1, DT)[BLEND:-1:30]
+    points = jax.jit(jax.vmap(lambda q: TIP.pose(q)[0]))(jnp.asarray(on_path[:, :7], jnp.float32))
+    expected = _thesis(30 * DT * np.arange(len(on_path)))
+    np.testing.assert_allclose(points, expected, atol=2e-6)
+
+
+@cache
+def _play(kind, payload=0.0, learn=5, decisions=265):
+    """Observations [T, 42] and errors of the tip [T] [m] of a controller, or of no torque."""
+    env = SawyerTorque("native", payload=payload, learn=learn)
+
+    def decide(state, _):
+        act = jnp.zeros(7) if kind is None else kind(env).act(Params(), (), state.obs, None)[0]
+        state = env.step(state, act)
+        return state, (state.obs, state.metrics["tip_error"])
+
+    first = jax.jit(env.reset)(jax.random.key(0))
+    go = jax.jit(lambda state: jax.lax.scan(decide, state, length=decisions)[1])
+    return [np.asarray(x) for x in go(first)]
+
+
+def test_the_reference_of_the_next_decision_comes_true():
+    obs, error = _play(None)
+    np.testing.assert_array_equal(obs[1:, 14:28], obs[:-1, 28:])
+    rows = sawyer_reference.table(2, DT)[:, :14]
+    np.testing.assert_allclose(obs[4:, 14:28], rows[: len(obs) - 4], atol=1e-6)
+    np.testing.assert_array_equal(obs[:4, 14:28], np.tile(obs[4, 14:28], (4, 1)))
+    now, later = SawyerTorque().reference(jnp.asarray(obs[150]))
+    np.testing.assert_array_equal(now, obs[150, [*range(14, 28), *range(14, 42)]])
+    np.testing.assert_array_equal(later, obs[150, [*range(28, 42), *range(14, 42)]])
+    tips = [np.linalg.norm(_tip(o[:7])[0] - _tip(o[14:21])[0]) for o in obs[::40]]
+    np.testing.assert_allclose(error[::40], tips, atol=2e-6)
+
+
+def test_at_equilibrium_it_rests():
+    env = SawyerTorque("native", start_spread=0.0)
+    obs, action = env.equilibrium()
+    state = jax.jit(env.reset)(jax.random.key(0))
+    np.testing.assert_array_equal(state.obs, obs)
+    step = jax.jit(env.step)
+    for _ in range(5):
+        state = step(state, action)
+    np.testing.assert_allclose(state.obs, obs, atol=1e-5)
+    np.testing.assert_array_equal(env.reference(obs)[0], obs)
+
+
+def test_torques_accelerate_the_joints_as_the_mass_matrix_says():
+    """Within 5%: M changes along a decision, and joints move together."""
+    env = SawyerTorque("native", start_spread=0.0)
+    rest, size = jax.jit(env.reset)(jax.random.key(0)), 0.02
+    step = jax.jit(jax.vmap(env.step, (None, 0)))
+    rates = [step(rest, sign * size * jnp.eye(7)).obs[:, 7:14] for sign in (1, -1)]
+    gain = np.asarray(rates[0] - rates[1]).T / (2 * size)
+    model = mjcf.load("sawyer_torque.xml")
+    data, mass = mujoco.MjData(model), np.zeros((7, 7))
+    data.qpos[:] = NEUTRAL
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, mass)
+    expected = DT * np.linalg.inv(mass) @ np.diag(LIMITS)
+    assert np.linalg.norm(gain - expected) < 0.05 * np.linalg.norm(expected)
+    np.testing.assert_allclose(np.diag(gain), np.diag(expected), rtol=0.05)
+
+
+def test_gravity_pulls_the_payload_alone():
+    model = mjcf.load(asset("maker", 1.5))
+    np.testing.assert_array_equal(model.dof_damping.reshape(7, -1)[:, 0], DAMPING)
+    plain = mjcf.load(asset("none"))
+    assert not plain.dof_damping.any()
+    assert model.body_mass.sum() - plain.body_mass.sum() == pytest.approx(1.5)
+    data, jacobian = mujoco.MjData(model), np.zeros((3, 7))
+    data.qpos[:] = NEUTRAL
+    mujoco.mj_forward(model, data)
+    mujoco.mj_jacBodyCom(model, data, jacobian, None, model.body("rod").id)
+    pull = data.qfrc_passive - data.qfrc_bias
+    np.testing.assert_allclose(pull, jacobian.T @ [0, 0, -9.81 * 1.5], atol=1e-9)
+    np.testing.assert_array_equal(model.geom_size, plain.geom_size)
+
+
+@pytest.mark.parametrize(("damping", "payload"), [("none", 0.0), ("maker", 1.5)])
+def test_inverse_dynamics_agree_with_mujoco(damping, payload):
+    name, rng = asset(damping, payload), np.random.default_rng(0)
+    model = mjcf.load(name)
+    data, inverse = mujoco.MjData(model), jax.jit(lambda *x: torques(name, *x))
+    for _ in range(5):
+        x = [scale * rng.normal(size=7).astype(np.float32) for scale in (0.7, 2, 10)]
+        data.qpos[:], data.qvel[:], data.qacc[:] = x
+        mujoco.mj_inverse(model, data)
+        assert not data.nefc  # within the joints' ranges
+        np.testing.assert_allclose(inverse(*x), data.qfrc_inverse, atol=1e-4)
+
+
+def test_inverse_dynamics_of_a_tree_are_refused():
+    with pytest.raises(ValueError, match=r"halfcheetah\.xml: must be one chain of hinges"):
+        torques("halfcheetah.xml", *3 * [jnp.zeros(9)])
+
+
+def _rmse(kind, **fields):
+    """Error of the tip on the first 1.6 s of the path [m]."""
+    return np.sqrt((_play(kind, **fields)[1][5 + BLEND :] ** 2).mean())
+
+
+def test_computed_torque_tracks_within_a_millimetre():
+    """0.11 mm measured; joint PD 8 mm."""
+    assert _rmse(ComputedTorque) < 1e-3
+    assert 2e-3 < _rmse(JointPD) < 15e-3
+
+
+def test_an_unknown_payload_pulls_both_from_the_path():
+    """41 and 44 mm measured with 1 kg."""
+    for kind in (ComputedTorque, JointPD):
+        assert 20e-3 < _rmse(kind, payload=1.0) < 80e-3
+
+
+def test_noise_is_on_the_rates_alone():
+    keys = jax.random.split(jax.random.key(0), 2000)
+    clean, noisy = (
+        jax.jit(jax.vmap(SawyerTorque("native", sensor_noise=std).reset))(keys).obs
+        for std in (0.0, 0.1)
+    )
+    np.testing.assert_allclose(np.std(noisy - clean, axis=0)[7:14], 0.1, rtol=0.1)
+    np.testing.assert_array_equal(np.delete(noisy - clean, range(7, 14), 1), 0)
+    away = np.asarray(clean[:, :7]) - NEUTRAL
+    np.testing.assert_allclose(np.abs(away).max(0), 0.05, rtol=0.02)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "line"),
+    [
+        ("damping", "some", "damping='some': choose one of none, maker"),
+        ("payload", -0.1, "payload=-0.1: must be 0 or more"),
+        ("learn", -1, "learn=-1: must be 0 or more"),
+        ("rounds", 0, "rounds=0: must be 1 or more"),
+        ("start_spread", -1.0, "start_spread=-1.0: must be 0 or more"),
+        ("sensor_noise", -1.0, "sensor_noise=-1.0: must be 0 or more"),
+    ],
+)
+def test_values_out_of_range_are_named(field, value, line):
+    with pytest.raises(ValueError, match=line):
+        SawyerTorque(**{field: value})
+
+
+def test_controllers_refuse_other_tasks_and_gains():
+    with pytest.raises(ValueError, match="needs task=sawyer_torque"):
+        JointPD(cast(Any, TIP))
+    with pytest.raises(ValueError, match="frequency=0: must be above 0"):
+        ComputedTorque(SawyerTorque(), frequency=0)
+    with pytest.raises(ValueError, match=r"stiffness=\[1\.0\]: must be 7 numbers"):
+        JointPD(SawyerTorque(), stiffness=(1.0,))
