@@ -24,24 +24,17 @@ from hybrid_rl.config import Run, build, load
 from hybrid_rl.studies.style import STYLE
 
 FALL = "experiment=thesis/fig_7_2"
+HORIZONS = (16, 32, 64, 128, 256)
+FORGETTING = (0.9, 0.95, 0.97, 0.98, 0.985, 0.99, 0.995, 1.0)
+PRIORS = (1e-4, 1e-3, 1e-2, 0.1, 1.0)
 BELOW = 0.01  # of |v|^2 + |w|^2
 
 
 def figure(
     method: Annotated[str, "of the experiment thesis/fig_7_2"] = "koopman_active",
-    horizons: Annotated[Sequence, "of the regulator [decisions]", numbers_kind(whole())] = (
-        *(16, 32, 64, 128, 256),
-    ),
-    forgetting: Annotated[Sequence, "factors per decision", numbers_kind()] = (
-        *(0.9, 0.95, 0.97, 0.98, 0.985, 0.99, 0.995, 1.0),
-    ),
-    priors: Annotated[Sequence, "weights of the prior", numbers_kind()] = (
-        1e-4,
-        1e-3,
-        1e-2,
-        0.1,
-        1.0,
-    ),
+    horizons: Annotated[Sequence, "of the regulator [decisions]", numbers_kind(whole())] = HORIZONS,
+    forgetting: Annotated[Sequence, "factors per decision", numbers_kind()] = FORGETTING,
+    priors: Annotated[Sequence, "weights of the prior", numbers_kind()] = PRIORS,
     trials: Annotated[int, "of each setting", whole()] = 20,
     seed: Annotated[int, "of the first trial", whole(0)] = 1000,
 ) -> tuple[Any, dict[str, Any]]:
