@@ -13,6 +13,7 @@ from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.envs.analytic.van_der_pol import VanDerPol
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
@@ -29,6 +30,7 @@ ANALYTIC = {
     "point_mass": PointMass,
     "cart_double_pendulum": CartDoublePendulum,
     "quadcopter_se3": QuadcopterSE3,
+    "van_der_pol": VanDerPol,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,
@@ -163,6 +165,16 @@ def rollout(env):
         state = step_grid(env)(state, actions(env)[:, :, t])
         path.append(state)
     return jax.tree.map(lambda *leaves: np.stack(leaves, 2), *path)
+
+
+def follow(env, x, actions) -> np.ndarray:
+    """States [T+1, o] of the dynamics from x [o] under actions [T, m], in float64."""
+    with jax.enable_x64(True):
+        run = jax.jit(
+            lambda x, u: jax.lax.scan(lambda x, u: (env.dynamics(x, u),) * 2, x, u)[1],
+        )
+        x = jnp.asarray(x, jnp.float64)
+        return np.concatenate([x[None], run(x, jnp.asarray(actions))])
 
 
 def reference(task, implementation, lane):
