@@ -14,39 +14,44 @@ from hybrid_rl.studies.falls import (
     STILL,
     Fall,
     falls,
+    log_det,
     regressors,
     reported,
     settled,
     trace,
 )
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below, plain_log
+from hybrid_rl.studies.style import COLOURS, STROKES, legend_below, plain_log, thousands
 
 TILES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)  # [s]
-HEIGHT, WIDTH, CROP = 480, 640, 210  # [pixels] of a tile before it is cut to a square around it
-LOWEST = 1e-6  # of the errors' axis
+HEIGHT, WIDTH, CROP = 480, 640, 150  # [pixels] of a tile before it is cut to a square around it
+EVERY = 5  # decisions between two points of a line
+LOWEST = 1e-4  # of the errors' axis
 
 
 def information(pattern: str, strips: str) -> tuple[Any, dict[str, Any]]:
     """Figure 7-2: information, error, share at rest, and strips of some methods' first trials."""
+    from matplotlib.ticker import FuncFormatter
+
     each = falls(pattern, "falls")
     chosen = [_of(name, each) for name in strips.split(",") if name]
-    figure, (left, middle, right), below = _panels(len(chosen))
+    figure, (traces, determinants, errors, shares), below = _panels(len(chosen))
     numbers = {}
     for i, fall in enumerate(each):
         s = regressors(fall)
         numbers[fall.label] = reported(fall, s)
         line = _line(i, fall)
-        time = DT * np.arange(1, s.shape[1] + 1)
-        left.plot(time, np.median(trace(s), axis=0), **line)
-        _errors(middle, fall, line)
-        _at_rest(right, fall, line)
-    left.set(xlabel="Time [s]", title="Information, trace (median)", xscale="log", yscale="log")
-    left.axvline(FIRST, color="k", lw=0.6)
-    _finish(left, middle, right)
-    plain_log(left.xaxis)
-    plain_log(left.yaxis)
-    for row, fall in zip(below, chosen, strict=True):
-        _strip(row, fall)
+        counts = np.arange(EVERY, round(FIRST / DT) + 1, EVERY)
+        traces.plot(DT * counts, np.median(trace(s)[:, counts - 1], axis=0), **line)
+        volumes = [np.median(log_det(s[:, :count])) for count in counts]
+        determinants.plot(DT * counts, volumes, **line)
+        _errors(errors, fall, line)
+        _at_rest(shares, fall, line)
+    traces.set(xlabel="Time [s]", title="Trace of the information, median")
+    determinants.set(xlabel="Time [s]", title="Its log det, median")
+    traces.yaxis.set_major_formatter(FuncFormatter(thousands))
+    _finish(traces, determinants, errors, shares)
+    for part, fall in zip(below, chosen, strict=True):
+        _strip(part, fall)
     return figure, {"methods": numbers}
 
 
@@ -72,16 +77,16 @@ def _of(name: str, each: list[Fall]) -> Fall:
     return found[0]
 
 
-def _panels(strips: int, across: int = 3) -> tuple[Any, Any, Any]:
-    """A figure, its panels, and below them the tiles [strips, tiles]."""
+def _panels(strips: int, across: int = 4) -> tuple[Any, Any, Any]:
+    """A figure, its panels, and a subfigure below them for each strip."""
     from matplotlib.figure import Figure
 
-    heights = (4.4, *[1.5] * strips)
-    figure = Figure(figsize=(4.0 * across, sum(heights)), layout="constrained")
+    heights = (4.2, *[1.4 * across / 3] * strips)
+    figure = Figure(figsize=(3.5 * across, sum(heights)), layout="constrained")
     if not strips:
         return figure, figure.subplots(1, across), []
     parts: Any = figure.subfigures(1 + strips, 1, height_ratios=heights)
-    return figure, parts[0].subplots(1, across), [p.subplots(1, len(TILES)) for p in parts[1:]]
+    return figure, parts[0].subplots(1, across), parts[1:]
 
 
 def _line(i: int, fall: Fall) -> dict[str, Any]:
@@ -93,8 +98,8 @@ def _line(i: int, fall: Fall) -> dict[str, Any]:
 
 def _errors(axes: Any, fall: Fall, line: dict[str, Any]) -> None:
     """Median and 10 to 90% of the errors over time."""
-    low, middle, high = np.nanquantile(fall.error[:, ::5], [0.1, 0.5, 0.9], axis=0)
-    time = 5 * DT * np.arange(len(middle))
+    low, middle, high = np.nanquantile(fall.error[:, ::EVERY], [0.1, 0.5, 0.9], axis=0)
+    time = EVERY * DT * np.arange(len(middle))
     axes.plot(time, middle, **line)
     axes.fill_between(time, low, high, color=line["color"], alpha=0.1, lw=0)
 
@@ -118,7 +123,7 @@ def _finish(*panels: Any) -> None:
         legend_below(axes)
 
 
-def _strip(row: Any, fall: Fall) -> None:
+def _strip(part: Any, fall: Fall) -> None:
     """Tiles of the first trial: its attitude, drawn at the origin."""
     from hybrid_rl.run.drawing import frames
 
@@ -130,9 +135,11 @@ def _strip(row: Any, fall: Fall) -> None:
     pictures = frames(world.scene(), np.asarray(pose(still)), WIDTH, HEIGHT)
     middle, half = (HEIGHT // 2, WIDTH // 2), CROP // 2
     cut = tuple(slice(c - half, c + half) for c in middle)
-    for axes, picture, t, x in zip(row, pictures, TILES, seen, strict=True):
+    part.suptitle(fall.label, fontsize=9, x=0.01, ha="left")
+    for axes, picture, t, x in zip(
+        part.subplots(1, len(TILES)), pictures, TILES, seen, strict=True
+    ):
         axes.imshow(picture[cut])
-        axes.set(title=f"{t:g} s, {x[2]:.1f} m", xticks=[], yticks=[])
+        axes.set(title=f"{t:g} s, {thousands(round(float(x[2]), 1))} m", xticks=[], yticks=[])
         axes.title.set_fontsize(8)
         axes.grid(False)
-    row[0].set_ylabel(fall.label, fontsize=8)
