@@ -8,6 +8,7 @@ Shares have Wilson's 95% interval. With sensor noise the error is that of the tr
 over the decisions between two rows of metrics.jsonl.
 """
 
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -62,6 +63,8 @@ def of(recorded: Recorded, label: str) -> Fall:
     made, path = recorded.made, recorded.folder.path
     if made.terminated.any():
         raise UsageError(f"runs={path}: a trial ended upside down; train with env.terminate=false")
+    if recorded.decisions < round(FIRST / DT):
+        raise UsageError(f"runs={path}: needs trials of {FIRST:g} s or more, total_steps=200")
     if made.truncated[:, :-1].any():
         raise UsageError(f"runs={path}: needs one episode a trial, episode.steps=total_steps")
     obs = np.concatenate([made.obs, made.next_obs[:, -1:]], axis=1)
@@ -124,9 +127,15 @@ def wilson(successes: int, trials: int, level: float = 0.95) -> tuple[float, flo
 
 def regressors(fall: Fall) -> np.ndarray:
     """s [S, T, 22] in the thesis' features and units of u."""
-    features: Any = build(load(["experiment=thesis/fig_7_2"])).agent.learners["model"]
-    z = jax.jit(jax.vmap(jax.vmap(lambda obs: features.model.features({}, obs))))
-    return np.concatenate([z(fall.obs[:, :-1]), THRUST * fall.action], axis=-1).astype(float)
+    z = _lift()(fall.obs[:, :-1])
+    return np.concatenate([z, THRUST * fall.action], axis=-1).astype(float)
+
+
+@cache
+def _lift() -> Any:
+    """obs [S, T, 18] -> z [S, T, 18] in the thesis' features."""
+    learner: Any = build(load(["experiment=thesis/fig_7_2"])).agent.learners["model"]
+    return jax.jit(jax.vmap(jax.vmap(lambda obs: learner.model.features({}, obs))))
 
 
 def trace(s: np.ndarray) -> np.ndarray:
@@ -144,7 +153,9 @@ def reported(fall: Fall, s: np.ndarray) -> dict[str, Any]:
     """The numbers of one method; s: its regressors [S, T, r]."""
     error, (trials, length) = fall.error, fall.error.shape
     time = DT * settled(error)
-    at_rest = {mark: int((time <= mark + 1e-9).sum()) for mark in SHARES}
+    end = DT * (length - 1)
+    marks = [mark for mark in SHARES if mark <= end + 1e-9] or [end]
+    at_rest = {mark: int((time <= mark + 1e-9).sum()) for mark in marks}
     begun = round(FIRST / DT)
     known = {mark: error[:, round(mark / DT)] for mark in MARKS if round(mark / DT) < length}
     u = THRUST * fall.action
