@@ -20,7 +20,7 @@ from hybrid_rl.config import build, load
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT, THRUST
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.results import RunFolder
-from hybrid_rl.studies.recorded import Recorded, labels, matching, read
+from hybrid_rl.studies.recorded import Recorded, labels, matching, one_episode, read
 
 TWIST = slice(12, 18)  # v and w in an observation
 STILL = 0.01  # error at rest
@@ -60,13 +60,9 @@ def _named(folders: list[Path]) -> list[tuple[Path, str]]:
 
 def of(recorded: Recorded, label: str) -> Fall:
     """The trials of a run."""
-    made, path = recorded.made, recorded.folder.path
-    if made.terminated.any():
-        raise UsageError(f"runs={path}: a trial ended upside down; train with env.terminate=false")
+    made, path = one_episode(recorded), recorded.folder.path
     if recorded.decisions < round(FIRST / DT):
         raise UsageError(f"runs={path}: needs trials of {FIRST:g} s or more, total_steps=200")
-    if made.truncated[:, :-1].any():
-        raise UsageError(f"runs={path}: needs one episode a trial, episode.steps=total_steps")
     obs = np.concatenate([made.obs, made.next_obs[:, -1:]], axis=1)
     error = (obs[..., TWIST].astype(float) ** 2).sum(-1)
     std = max(recorded.config.env.get("sensor_noise", [0.0]))

@@ -59,7 +59,7 @@ def read(folder: Path, *tasks: str) -> Recorded:
         words = " or ".join(tasks)
         raise UsageError(f"runs={folder}: needs {words}, num_envs=1, checkpoint_replay=true")
     for learner in config.learners.values():
-        if "recorded" in learner:
+        if learner is not None and "recorded" in learner:
             learner.recorded = None  # its file is not needed
     run = build(config)
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
@@ -67,6 +67,21 @@ def read(folder: Path, *tasks: str) -> Recorded:
     memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
     decisions = min(int(np.asarray(memory.count).min()), memory.rows.shape[1])
     return Recorded(RunFolder(folder), config, run, memory, decisions)
+
+
+def one_episode(recorded: Recorded) -> Any:
+    """The decisions of a run whose trials are one episode each.
+
+    Raises:
+        UsageError: if an episode ended before the run.
+    """
+    made = recorded.made
+    if (made.truncated + made.terminated)[:, :-1].any():
+        raise UsageError(
+            f"runs={recorded.folder.path}: needs one episode a trial; "
+            "train with total_steps = episode.steps and, if the world has it, env.terminate=false"
+        )
+    return made
 
 
 def labels(folders: list[Path]) -> list[str]:

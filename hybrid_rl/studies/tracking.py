@@ -4,9 +4,11 @@
     correlation  Pearson's, of each coordinate that the reference moves
     lag          argmax_l of the correlation of p(t + l) with p_ref(t), over all coordinates at
                  once; a parabola refines it between decisions; + is late
+    lost         trials whose RMSE is no less than that of the point in the middle of the path
 
 The decisions of the exploration (`env.learn`) and one second of the path are left out. The variance
-of the noise of an observed position is subtracted from the mean square of its distance.
+of the noise of an observed position is subtracted from the mean square of its distance. A trial
+without a lag within 0.5 s has none.
 """
 
 from collections.abc import Callable
@@ -20,8 +22,8 @@ from jax import Array
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.studies.curves import band, iqm, plural
-from hybrid_rl.studies.recorded import Recorded, labels, matching, read
-from hybrid_rl.studies.style import COLOURS, legend_below
+from hybrid_rl.studies.recorded import Recorded, labels, matching, one_episode, read
+from hybrid_rl.studies.style import COLOURS, legend_below, plain_log
 
 LEFT_OUT = 1.0  # [s] of the path
 FURTHEST = 0.5  # [s] largest lag
@@ -77,7 +79,7 @@ def tracking(pattern: str) -> tuple[Any, dict[str, Any]]:
 def of(recorded: Recorded, label: str) -> Track:
     """The paths of a run."""
     world, dt = recorded.run.agent.episode.env, recorded.run.agent.spec.dt
-    robot, made = ROBOTS[recorded.config.task], recorded.made
+    robot, made = ROBOTS[recorded.config.task], one_episode(recorded)
     begin = world.learn + round(LEFT_OUT / dt)
     if begin + 2 * round(FURTHEST / dt) + 3 > recorded.decisions:
         raise UsageError(
@@ -144,14 +146,20 @@ def reported(track: Track) -> dict[str, Any]:
     }
     numbers: dict[str, Any] = {"trials": len(pairs)}
     for name, values in each.items():
-        numbers[name] = [iqm(values), *band(values)]
+        numbers[name] = _spread(values)
         numbers[f"{name}_of_trials"] = values
+    still = 1e3 * track.reference.std(1)
+    numbers["lost"] = int((each["rmse_mm"] >= np.linalg.norm(still, axis=-1)).sum())
     numbers["median_rmse_mm"] = np.median(each["rmse_mm"])
     pearson = correlation(track.position, track.reference)
-    numbers["correlation"] = [
-        None if np.isnan(column).any() else [iqm(column), *band(column)] for column in pearson.T
-    ]
+    numbers["correlation"] = [_spread(column) for column in pearson.T]
     return numbers
+
+
+def _spread(values: np.ndarray) -> list[float] | None:
+    """IQM and its band over the trials that have a value; None: no trial has one."""
+    known = values[np.isfinite(values)]
+    return [iqm(known), *band(known)] if len(known) else None
 
 
 def lines(numbers: dict[str, Any]) -> list[str]:
@@ -160,16 +168,19 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     for label, one in numbers["methods"].items():
         parts = []
         for name, (words, unit) in MEASURES.items():
+            if one[name] is None:
+                continue
             middle, low, high = one[name]
             parts.append(f"{words} {middle:.3g} [{low:.3g}, {high:.3g}] {unit}".strip())
         moving = [f"{each[0]:.4f}" for each in one["correlation"] if each is not None]
         parts.append(f"correlation {', '.join(moving)}")
-        result.append(f"{label}, {plural(one['trials'], 'trial')}: {', '.join(parts)}")
+        trials = f"{plural(one['trials'], 'trial')}, {one['lost']} lost"
+        result.append(f"{label}, {trials}: {', '.join(parts)}")
     return result
 
 
 def _picture(tracks: list[Track], numbers: dict[str, Any]) -> Any:
-    """Paths of the first trial over the reference, and bars of RMSE and lag."""
+    """Paths of the first trial over the reference, and RMSE and lag of all."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(12, 3.2 + 0.3 * len(tracks)), layout="constrained")
@@ -183,18 +194,21 @@ def _picture(tracks: list[Track], numbers: dict[str, Any]) -> Any:
         colour = COLOURS[k % len(COLOURS)]
         plane.plot(*track.position[0][:, [i, j]].T, color=colour, lw=0.9, label=track.label)
         for axes, name in ((errors, "rmse_mm"), (lags, "lag_ms")):
+            if numbers[track.label][name] is None:
+                continue
             middle, low, high = numbers[track.label][name]
-            axes.barh(k, middle, color=colour, alpha=0.6)
-            axes.plot([low, high], [k, k], color="k", lw=1)
+            axes.plot([low, high], [k, k], color=colour, lw=2)
+            axes.plot(middle, k, "o", color=colour)
     plane.set(xlabel=f"{names[i]} [m]", ylabel=f"{names[j]} [m]", title="First trial")
     plane.set_aspect("equal", adjustable="datalim")
     legend_below(plane)
     errors.set(title="RMSE [mm], IQM and 95% band", xscale="log")
+    plain_log(errors.xaxis)
     lags.set(title="Lag [ms], + is late")
+    lags.axvline(0, color="k", lw=0.6)
     shown = [f"{track.label}\n({plural(len(track.position), 'trial')})" for track in tracks]
     errors.set_yticks(rows, shown)
     lags.set_yticks(rows, [])
     for axes in (errors, lags):
-        axes.invert_yaxis()
-        axes.grid(axis="y", visible=False)
+        axes.set_ylim(len(tracks) - 0.5, -0.5)
     return figure

@@ -3,6 +3,7 @@
 import json
 import shutil
 from types import SimpleNamespace
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -51,7 +52,7 @@ def draw(*arguments) -> int:
     return call(lambda: command.guarded(figures.main), "study=koopman", *arguments)
 
 
-def linear_world():
+def linear_world() -> Any:
     """x' = A x + B u with the origin as its equilibrium."""
     return SimpleNamespace(equilibrium=lambda: (jnp.zeros(2), jnp.zeros(1)))
 
@@ -63,8 +64,8 @@ def test_three_regulators_are_one_on_a_linear_world() -> None:
     x, u = rng.uniform(-1, 1, (200, 2)), rng.uniform(-1, 1, (200, 1))
     after = x @ A.T + u @ B.T
     learner = LeastSquares(model, prior=1e-6)
-    data = (jnp.asarray(each, jnp.float32) for each in (x, u, after))
-    params = oscillator.fit(learner, spec, *data, jax.random.key(0))
+    x, u, after = (jnp.asarray(each, jnp.float32) for each in (x, u, after))
+    params = oscillator.fit(learner, spec, x, u, after, jax.random.key(0))
     np.testing.assert_allclose(params["K"], np.hstack([A, B]), atol=1e-5)
     solver = RegulatorLearner(model, Linear(), linear_world(), (1.0, 2.0), (0.5,), 256)
     F = oscillator.gains(solver, (A, B), spec, params)
@@ -132,7 +133,7 @@ def test_the_optimal_path_is_a_minimum_of_a_nonlinear_system() -> None:
 
 def test_ratios_are_of_means_over_starts() -> None:
     """One draw, two starts; the Koopman operator costs half and is better from one start."""
-    cost = np.ones((1, 4, 3, 2))
+    cost: Any = np.ones((1, 4, 3, 2))
     cost[:, :, 1], cost[:, :, 0] = (2, 4), (3, 0)
     outcome = oscillator.Outcome(cost, 2 * cost, 0 * cost)
     one = oscillator.reported(outcome, np.array([1.0, 1.0]))["50"]
@@ -343,7 +344,7 @@ def test_tracks_become_numbers_and_a_picture(tmp_path, monkeypatch, capsys) -> N
     assert numbers["exact"]["rmse_mm"][0] == pytest.approx(3 * np.sqrt(2), rel=1e-3)
     assert numbers["exact"]["rms_action"][0] == 0.5
     line = capsys.readouterr().out.splitlines()[1]
-    assert line.startswith("exact, 1 trial: RMSE 4.24 [4.24, 4.24] mm, lag ")
+    assert line.startswith("exact, 1 trial, 0 lost: RMSE 4.24 [4.24, 4.24] mm, lag ")
     assert line.endswith("correlation 1.0000, 1.0000")
 
 
