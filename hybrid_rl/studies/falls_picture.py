@@ -20,7 +20,7 @@ from hybrid_rl.studies.falls import (
     settled,
     trace,
 )
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below, plain_log, thousands
+from hybrid_rl.studies.style import COLOURS, STROKES, plain_log, thousands
 
 TILES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0)  # [s]
 HEIGHT, WIDTH, CROP = 480, 640, 150  # [pixels] of a tile before it is cut to a square around it
@@ -101,7 +101,7 @@ def _errors(axes: Any, fall: Fall, line: dict[str, Any]) -> None:
     low, middle, high = np.nanquantile(fall.error[:, ::EVERY], [0.1, 0.5, 0.9], axis=0)
     time = EVERY * DT * np.arange(len(middle))
     axes.plot(time, middle, **line)
-    axes.fill_between(time, low, high, color=line["color"], alpha=0.1, lw=0)
+    axes.fill_between(time, low, high, color=line["color"], alpha=0.07, lw=0)
 
 
 def _at_rest(axes: Any, fall: Fall, line: dict[str, Any]) -> None:
@@ -119,8 +119,11 @@ def _finish(*panels: Any) -> None:
     errors.set_ylim(LOWEST, None)
     plain_log(errors.yaxis)
     shares.set(xlabel="Time [s]", title="Trials at rest from then on [%]", ylim=(-2, 102))
-    for axes in panels:
-        legend_below(axes)
+    handles, labels = shares.get_legend_handles_labels()
+    columns = max(1, min(len(labels), int(30 * len(panels) / (max(map(len, labels)) + 7))))
+    shares.get_figure(root=False).legend(
+        handles, labels, loc="outside lower left", ncols=columns, frameon=False, fontsize=8
+    )
 
 
 def _strip(part: Any, fall: Fall) -> None:

@@ -137,7 +137,9 @@ def _plot(numbers: dict[str, Any]) -> Any:
         for panel, horizon, share in zip(axes[0], horizons, numbers["share"], strict=True):
             image = panel.imshow(share, vmin=0, vmax=1, cmap="viridis", aspect="auto")
             panel.set(title=f"horizon {horizon:g}", xlabel="prior")
-            panel.set_xticks(range(len(priors)), [f"{value:g}" for value in priors])
+            panel.set_xticks(
+                range(len(priors)), [f"{value:.0e}".replace("e-0", "e-") for value in priors]
+            )
             panel.set_yticks(range(len(forgetting)), [f"{value:g}" for value in forgetting])
             for (i, j), value in np.ndenumerate(np.asarray(share)):
                 colour = "black" if value > 0.6 else "white"
