@@ -120,7 +120,7 @@ def _finish(*panels: Any) -> None:
     plain_log(errors.yaxis)
     shares.set(xlabel="Time [s]", title="Trials at rest from then on [%]", ylim=(-2, 102))
     handles, labels = shares.get_legend_handles_labels()
-    columns = max(1, min(len(labels), int(30 * len(panels) / (max(map(len, labels)) + 7))))
+    columns = max(1, min(len(labels), int(52 * len(panels) / (max(map(len, labels)) + 7))))
     shares.get_figure(root=False).legend(
         handles, labels, loc="outside lower left", ncols=columns, frameon=False, fontsize=8
     )
