@@ -38,7 +38,7 @@ USAGE = [  # overrides of train, words of the line
     ("objective=foo", "objective=foo: unknown; choose one of fourier_ergodic, "),
     ("experiment=foo", "experiment=foo: unknown; choose one of thesis/"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of thesis/"),
-    ("task=pendulm", "quadcopter_se3, sawyer_push; did you mean pendulum?"),
+    ("task=pendulm", "van_der_pol; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("sed=3", "sed: unknown key; did you mean seed?"),
     ("total_step=3", "total_step: unknown key; did you mean total_steps?"),

@@ -5,12 +5,16 @@
     M = (kt l (u2 - u4), kt l (u3 - u1), km (u1 - u2 + u3 - u4))
     r = -(|p|^2 + 0.1 |v|^2 + 0.1 |w|^2), after the step
 
-o = (p, R row by row, v, w) [18], v and w in the body frame; a: rotor controls u = 6 a; start:
-p ~ U(-away, away), upright, v and w ~ U(-twist, twist); a decision is one Runge-Kutta step of
-0.005 s; terminates upside down. `drag` (D_v, D_w) is in the author's code but not in the thesis'
-equations. Metrics: power_loss = |F - m g| [N] and norm_of_u = |a|.
+o = (p, R row by row, v, w) [18], v and w in the body frame, with `sensor_noise` N(0, std^2); a:
+rotor controls u = 6 a; start: p ~ U(-away, away), R = R_z R_y R_x with Euler angles U(-turn, turn),
+v and w ~ U(-twist, twist); a decision is one Runge-Kutta step of 0.005 s; terminates upside down.
+`drag` (D_v, D_w) is in the author's code but not in the thesis' equations. From `fault_time` on,
+`wind` accelerates the quadcopter along the world's x axis and rotor 1 loses the share `rotor_loss`
+of its thrust; `dynamics` is without them.
+Metrics: power_loss = |F - m g| [N], norm_of_u = |a| and twist = |v|^2 + |w|^2.
 
-Source: thesis appendix D; parameters from the author's active-learning-koopman.
+Source: thesis appendix D; parameters from the author's active-learning-koopman; twist from thesis
+section 7.3; sensor noise, wind and rotor loss are our choice.
 """
 
 from dataclasses import dataclass
@@ -19,6 +23,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
@@ -28,6 +33,7 @@ DT, THRUST, G, MASS = 0.005, 6.0, 9.81, 0.6  # [s], u at a = 1, [m/s^2], [kg]
 INERTIA = (0.04, 0.0375, 0.0675)  # [kg m^2]
 ARM, KT, KM = 0.2, 0.6, 0.15  # [m], [N], [N m]
 DRAG_V, DRAG_W = (0.4, 0.4, 2.0), (2.0, 2.0, 0.4)  # [1/s]
+CLOCK = "clock"  # in `info`: decisions since the reset
 
 
 @dataclass(frozen=True)
@@ -37,11 +43,23 @@ class QuadcopterSE3:
     drag: bool = True
     twist: float = 0.5  # [m/s, rad/s] largest initial velocity in each direction
     away: float = 0.0  # [m] largest initial distance in each direction
+    turn: float = 0.0  # [rad] largest initial Euler angle
+    terminate: bool = True  # upside down
+    sensor_noise: tuple[float, ...] = (0.0,)  # std of the observation: one for all, or [18]
+    wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
+    rotor_loss: float = 0.0  # share of rotor 1's thrust
+    fault_time: float = 2.0  # [s] of an episode at which wind and loss begin
 
     def __post_init__(self) -> None:
-        for name in ("twist", "away"):
-            if getattr(self, name) < 0:
+        object.__setattr__(self, "sensor_noise", tuple(self.sensor_noise))
+        if len(self.sensor_noise) not in (1, 18) or not all(std >= 0 for std in self.sensor_noise):
+            given = list(self.sensor_noise)
+            raise ValueError(f"sensor_noise={given}: must be 1 or 18 numbers, each 0 or more")
+        for name in ("twist", "away", "turn", "fault_time"):
+            if not getattr(self, name) >= 0:
                 raise ValueError(f"{name}={getattr(self, name)}: must be 0 or more")
+        if not 0 <= self.rotor_loss <= 1:
+            raise ValueError(f"rotor_loss={self.rotor_loss}: must be in [0, 1]")
 
     @property
     def spec(self) -> Spec:
@@ -52,32 +70,56 @@ class QuadcopterSE3:
         """A random initial state."""
         twist = jax.random.uniform(key, (6,), jnp.float32, -self.twist, self.twist)
         p = self.away * jax.random.uniform(jax.random.fold_in(key, 1), (3,), minval=-1, maxval=1)
-        state = fully_observed(
-            self.equilibrium()[0].at[:3].set(p).at[12:].set(twist), jnp.float32(0.0)
-        )
-        return state.replace(metrics=_metrics(self.equilibrium()[1].astype(jnp.float32)))
+        x, hover = self.equilibrium()
+        x = x.at[:3].set(p).at[12:].set(twist)
+        if self.turn:
+            angles = jax.random.uniform(jax.random.fold_in(key, 2), (3,), jnp.float32, -1, 1)
+            x = x.at[3:12].set(_rotation(self.turn * angles).reshape(9))
+        state = fully_observed(x, jnp.float32(0.0))
+        if self._faulty:
+            state = state.replace(info={CLOCK: jnp.zeros((), jnp.int32)})
+        state = state.replace(metrics=_metrics(x, hover.astype(jnp.float32)))
+        return sensor_noise.begin(state, self.sensor_noise, jax.random.fold_in(key, 3))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [4] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
+        u, info = jnp.clip(action, -1.0, 1.0), {}
+        thrust, wind = u, None
+        if self._faulty:
+            begun = state.info[CLOCK] >= round(self.fault_time / DT)
+            thrust = u.at[0].multiply(jnp.where(begun, 1 - self.rotor_loss, 1.0))
+            wind, info = jnp.where(begun, self.wind, 0.0), {CLOCK: state.info[CLOCK] + 1}
+        x = self._next(state.data, thrust, wind)
         reward = -(jnp.sum(x[:3] ** 2) + 0.1 * jnp.sum(x[12:] ** 2))
-        return fully_observed(x, reward, x[11] < 0).replace(metrics=_metrics(u))
+        after = fully_observed(x, reward, self.terminate & (x[11] < 0))
+        after = after.replace(metrics=_metrics(x, u), info=info)
+        return sensor_noise.resume(after, self.sensor_noise, state)
+
+    @property
+    def _faulty(self) -> bool:
+        """Whether anything happens at `fault_time`."""
+        return self.wind != 0 or self.rotor_loss > 0
 
     def dynamics(self, x: Array, u: Array) -> Array:
-        """The next observation [18] after action u [4] at x [18]."""
+        """The next observation [18] after action u [4] at x [18], without noise and faults."""
+        return self._next(x, u)
+
+    def _next(self, x: Array, u: Array, wind: Array | None = None) -> Array:
+        """The next state [18] after action u [4] at x [18] in `wind` [] [m/s^2]."""
         p, R, v, w = x[:3], x[3:12].reshape(3, 3), x[12:15], x[15:]
-        p, R, v, w = rk4(lambda x: self._rate(x, THRUST * u), (p, R, v, w), DT)
+        p, R, v, w = rk4(lambda x: self._rate(x, THRUST * u, wind), (p, R, v, w), DT)
         R = R @ (1.5 * jnp.eye(3) - 0.5 * R.T @ R)  # re-orthogonalised to first order
         return jnp.concatenate([p, R.reshape(9), v, w])
 
-    def _rate(self, x: tuple[Array, ...], u: Array) -> tuple[Array, ...]:
-        """Time derivatives of (p, R, v, w) under rotor controls u [4]."""
+    def _rate(self, x: tuple[Array, ...], u: Array, wind: Array | None) -> tuple[Array, ...]:
+        """Time derivatives of (p, R, v, w) under rotor controls u [4] and `wind` [] [m/s^2]."""
         _, R, v, w = x
         turn = jnp.stack([u[1] - u[3], u[2] - u[0], (u[0] - u[1] + u[2] - u[3]) * KM / KT / ARM])
         inertia, up = jnp.array(INERTIA), jnp.array([0.0, 0.0, 1.0])
         vdot = KT / MASS * jnp.sum(u) * up - jnp.cross(w, v) - G * R[2]
         wdot = (KT * ARM * turn - jnp.cross(w, inertia * w)) / inertia
+        if wind is not None:
+            vdot = vdot + wind * R[0]
         if self.drag:
             vdot, wdot = vdot - jnp.array(DRAG_V) * v, wdot - jnp.array(DRAG_W) * w
         return R @ v, R @ _hat(w), vdot, wdot
@@ -114,10 +156,26 @@ class QuadcopterSE3:
         return jnp.concatenate([state.data[:3], quat / jnp.linalg.norm(quat)])
 
 
-def _metrics(u: Array) -> dict[str, Array]:
-    """Metrics of an action u [4] in [-1, 1]."""
+def _metrics(x: Array, u: Array) -> dict[str, Array]:
+    """Metrics of a state x [18] and the action u [4] in [-1, 1] before it."""
     excess = KT * THRUST * jnp.sum(u) - MASS * G
-    return {"power_loss": jnp.abs(excess), "norm_of_u": jnp.linalg.norm(u)}
+    return {
+        "power_loss": jnp.abs(excess),
+        "norm_of_u": jnp.linalg.norm(u),
+        "twist": jnp.sum(x[12:] ** 2),
+    }
+
+
+def _rotation(angles: Array) -> Array:
+    """R_z R_y R_x [3, 3] of the Euler angles [3] about x, y and z."""
+    (a, b, c), (x, y, z) = angles, jnp.eye(3)
+    return _turned(z, c) @ _turned(y, b) @ _turned(x, a)
+
+
+def _turned(axis: Array, angle: Array) -> Array:
+    """The rotation [3, 3] about a unit vector [3] (Rodrigues' formula)."""
+    k = _hat(axis)
+    return jnp.eye(3) + jnp.sin(angle) * k + (1 - jnp.cos(angle)) * k @ k
 
 
 def _hat(w: Array) -> Array:

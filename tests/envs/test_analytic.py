@@ -6,11 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from worlds import jitted
+from worlds import follow, jitted
 
 from hybrid_rl.envs.analytic import cart_double_pendulum as cart
 from hybrid_rl.envs.analytic import quadcopter_se3 as quad
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
+from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
@@ -18,6 +19,8 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import ACCELERATION, DT, PointMass
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.two_link import TwoLink
+from hybrid_rl.envs.analytic.van_der_pol import VanDerPol
 from hybrid_rl.envs.mujoco import mjcf
 
 ENVS = [
@@ -25,8 +28,12 @@ ENVS = [
     CartDoublePendulum(),
     QuadcopterSE3(),
     QuadcopterSE3(drag=False),
+    QuadcopterSE3(turn=1.0, terminate=False),
     Pendulum(),
     NoDynamics(),
+    VanDerPol(),
+    CartPendulum(),
+    TwoLink(),
 ]
 over_envs = pytest.mark.parametrize("env", ENVS, ids=repr)
 
@@ -54,16 +61,6 @@ def test_step_follows_the_dynamics(env) -> None:
     u = jnp.linspace(-0.5, 0.7, env.spec.act)
     expected = jitted(env, "dynamics")(state.obs, u)
     np.testing.assert_allclose(jitted(env, "step")(state, u).obs, expected, atol=1e-5)
-
-
-def follow(env, x, actions) -> np.ndarray:
-    """States [T+1, o]."""
-    with jax.enable_x64(True):
-        run = jax.jit(
-            lambda x, u: jax.lax.scan(lambda x, u: (env.dynamics(x, u),) * 2, x, u)[1],
-        )
-        x = jnp.asarray(x, jnp.float64)
-        return np.concatenate([x[None], run(x, jnp.asarray(actions))])
 
 
 START = np.array([0.3, 0.4, -0.3, 0.5, -1.0, 2.0])

@@ -9,10 +9,13 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
+from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.envs.analytic.two_link import TwoLink
+from hybrid_rl.envs.analytic.van_der_pol import VanDerPol
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
@@ -23,12 +26,16 @@ from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 
 DECISIONS = 20
+STATE = {"two_link": 4, "sprk_sand": 4}  # entries of the observation before a reference
 ANALYTIC = {
     "no_dynamics": NoDynamics,
     "pendulum": Pendulum,
     "point_mass": PointMass,
     "cart_double_pendulum": CartDoublePendulum,
     "quadcopter_se3": QuadcopterSE3,
+    "van_der_pol": VanDerPol,
+    "cart_pendulum": CartPendulum,
+    "two_link": TwoLink,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,
@@ -163,6 +170,16 @@ def rollout(env):
         state = step_grid(env)(state, actions(env)[:, :, t])
         path.append(state)
     return jax.tree.map(lambda *leaves: np.stack(leaves, 2), *path)
+
+
+def follow(env, x, actions) -> np.ndarray:
+    """States [T+1, o] of the dynamics from x [o] under actions [T, m], in float64."""
+    with jax.enable_x64(True):
+        run = jax.jit(
+            lambda x, u: jax.lax.scan(lambda x, u: (env.dynamics(x, u),) * 2, x, u)[1],
+        )
+        x = jnp.asarray(x, jnp.float64)
+        return np.concatenate([x[None], run(x, jnp.asarray(actions))])
 
 
 def reference(task, implementation, lane):

@@ -1,0 +1,104 @@
+"""Cart pendulum: a rod balanced on a cart that moves along a rail, without friction.
+
+    (M + m) x'' + (m l/2) (cos th th'' - sin th th'^2) = u
+    (m l/2) cos th x'' + (m l^2/3) th'' = (m g l/2) sin th
+    r = cos th - 0.1 x^2, after the step
+
+o = (th, x, th', x') [4], th = 0 is upright, th > 0 leans towards x > 0; a: force u on the cart, as
+a fraction of `force`; start: all four ~ U(-start, start); a decision is `dt`, four Runge-Kutta
+steps; terminates outside |th| < `angle_limit`, |x| < `position_limit`. Metric: success = inside.
+r is positive inside the default limits.
+
+Source: thesis section 7.4 and appendix D: 50 Hz, order of the state; masses, length and force of
+pybullet's inverted pendulum, as in assets/cartpole.xml, with a thin rod. Limits, start and reward
+are our choice.
+"""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.types import EnvState, Spec
+
+G = 9.81  # [m/s^2]
+SUBSTEPS = 4  # Runge-Kutta steps of a decision
+
+
+@dataclass(frozen=True)
+class CartPendulum:
+    """A rod on a cart, to be balanced."""
+
+    cart_mass: float = 10.472  # [kg] M
+    rod_mass: float = 5.019  # [kg] m
+    length: float = 0.6  # [m] l
+    force: float = 100.0  # [N] at a = 1
+    dt: float = 0.02  # [s] of a decision
+    start: float = 0.1  # [rad, m, rad/s, m/s] largest initial value of each entry
+    angle_limit: float = 0.5  # [rad]
+    position_limit: float = 2.0  # [m]
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=4, act=1, dt=self.dt)
+
+    def reset(self, key: Array) -> EnvState:
+        """A random initial state."""
+        x = jax.random.uniform(key, (4,), jnp.float32, -self.start, self.start)
+        return self._state(x, jnp.float32(0.0))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [1] in [-1, 1]."""
+        x = self.dynamics(state.data, jnp.clip(action, -1.0, 1.0))
+        after = self._state(x, jnp.cos(x[0]) - 0.1 * x[1] ** 2)
+        return after.replace(terminated=after.metrics["success"] == 0)
+
+    def _state(self, x: Array, reward: Array) -> EnvState:
+        inside = (jnp.abs(x[0]) < self.angle_limit) & (jnp.abs(x[1]) < self.position_limit)
+        return fully_observed(x, reward).replace(metrics={"success": inside.astype(jnp.float32)})
+
+    def dynamics(self, x: Array, u: Array) -> Array:
+        """The next observation [4] after action u [1] at x [4]."""
+        for _ in range(SUBSTEPS):
+            x = rk4(lambda x: self._rate(x, self.force * u[0]), x, self.dt / SUBSTEPS)
+        return x
+
+    def _rate(self, x: Array, u: Array) -> Array:
+        """Time derivative [4] of the state x [4] under the force u [] [N]."""
+        total, moment = self.cart_mass + self.rod_mass, 0.5 * self.rod_mass * self.length
+        inertia = self.rod_mass * self.length**2 / 3
+        sin, cos = jnp.sin(x[0]), jnp.cos(x[0])
+        push, torque = u + moment * sin * x[2] ** 2, moment * G * sin
+        det = total * inertia - (moment * cos) ** 2
+        turn = (total * torque - moment * cos * push) / det
+        return jnp.stack([x[2], x[3], turn, (inertia * push - moment * cos * torque) / det])
+
+    def equilibrium(self) -> tuple[Array, Array]:
+        """The rod upright, the cart in the middle of the rail."""
+        return jnp.zeros(4), jnp.zeros(1)
+
+    def to_local(self, x: Array) -> Array:
+        """Local coordinates e [4] of the observation x [4]."""
+        return x
+
+    def from_local(self, e: Array) -> Array:
+        """The observation [4] at local coordinates e [4]."""
+        return e
+
+    def scene(self) -> str:
+        """MJCF text of the scene for rendering."""
+        return mjcf.text("cart_pendulum.xml").replace("0 0 0 0 0 0.6", f"0 0 0 0 0 {self.length}")
+
+    def pose(self, state: EnvState) -> Array:
+        """Position of the cart and angle of the rod, qpos [2], for rendering."""
+        return jnp.stack((state.data[1], state.data[0]))

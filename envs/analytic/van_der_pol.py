@@ -1,0 +1,82 @@
+"""Van der Pol's oscillator with a control.
+
+    x1' = x2,   x2' = -x1 + (1 - x1^2) x2 + u
+    r = -(|x|^2 + 0.1 u^2), of the state after the step
+
+o = (x1, x2) [2], without units; a: u, as a fraction of 20; start: x ~ U(-start, start)^2; a
+decision is one Runge-Kutta step of 0.01 s; never terminates. Without control it moves on a limit
+cycle, on which |x1| <= 2.009.
+
+Source: thesis section 7.1, whose weights are those of r; time step from the author's
+active-learning-koopman; scale of the action and start are our choice.
+"""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.types import EnvState, Spec
+
+DT = 0.01  # [s] of a decision
+FORCE = 20.0  # u at a = 1
+
+
+@dataclass(frozen=True)
+class VanDerPol:
+    """Van der Pol's oscillator, to be stopped at the origin."""
+
+    start: float = 2.0  # largest initial |x1| and |x2|
+
+    def __post_init__(self) -> None:
+        if not self.start > 0:
+            raise ValueError(f"start={self.start}: must be above 0")
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=2, act=1, dt=DT)
+
+    def reset(self, key: Array) -> EnvState:
+        """A random initial state."""
+        x = jax.random.uniform(key, (2,), jnp.float32, -self.start, self.start)
+        return fully_observed(x, jnp.float32(0.0))
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [1] in [-1, 1]."""
+        a = jnp.clip(action, -1.0, 1.0)
+        x = self.dynamics(state.data, a)
+        return fully_observed(x, -(jnp.sum(x**2) + 0.1 * (FORCE * a[0]) ** 2))
+
+    def dynamics(self, x: Array, u: Array) -> Array:
+        """The next observation [2] after action u [1] at x [2]."""
+        return rk4(lambda x: _rate(x, FORCE * u[0]), x, DT)
+
+    def equilibrium(self) -> tuple[Array, Array]:
+        """At rest at the origin."""
+        return jnp.zeros(2), jnp.zeros(1)
+
+    def to_local(self, x: Array) -> Array:
+        """Local coordinates e [2] of the observation x [2]."""
+        return x
+
+    def from_local(self, e: Array) -> Array:
+        """The observation [2] at local coordinates e [2]."""
+        return e
+
+    def scene(self) -> str:
+        """MJCF text of the scene for rendering: the phase plane."""
+        return mjcf.text("van_der_pol.xml")
+
+    def pose(self, state: EnvState) -> Array:
+        """Position of the ball, qpos [2], for rendering."""
+        return state.data
+
+
+def _rate(x: Array, u: Array) -> Array:
+    """Time derivative [2] of x [2] under the control u []."""
+    return jnp.stack([x[1], -x[0] + (1 - x[0] ** 2) * x[1] + u])
