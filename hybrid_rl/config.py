@@ -130,7 +130,7 @@ def build(config: DictConfig) -> Run:
         replay = _instantiate(parts.replay)
         longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
         env = _instantiate(parts.env)
-        learners = {name: _instantiate(node) for name, node in parts.learners.items()}
+        learners = {name: _instantiate(node) for name, node in parts.learners.items() if node}
         for learner in learners.values():  # a part may refuse the sizes of the task
             jax.eval_shape(lambda key, init=learner.init: init(key, env.spec), jax.random.key(0))
         agent = Agent(
