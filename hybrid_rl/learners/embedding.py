@@ -65,7 +65,7 @@ class EmbeddingLearner:
     steps: int = 100  # of Adam in an iteration
     learning_rate: float = 1e-3
     batch_size: int = 128  # windows in a step
-    prior: float = 0.01  # weight of K_0 = [I 0] in the regression
+    prior: float = 10.0  # weight of K_0 = [I 0] in the regression
     capacity: int = 20_000  # decisions in the memory
 
     data: ClassVar[str] = "latest"

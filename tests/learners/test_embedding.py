@@ -165,8 +165,9 @@ def test_the_loss_ends_with_the_episode():
 
 
 def test_features_operator_and_gain_change_together_at_the_end_of_an_iteration():
-    world, koopman = CartPendulum(), Koopman(Network(size=3, hidden=(4,)))
-    regulator = RegulatorLearner(koopman, Linear(), world, horizon=8)
+    world: Any = CartPendulum()
+    koopman = Koopman(Network(size=3, hidden=(4,)))
+    regulator: Any = RegulatorLearner(koopman, Linear(), world, horizon=8)
     learner = EmbeddingLearner(koopman, regulator, interval=10, steps=3)
     assert learner.owns == ("model", "policy")
     rng = np.random.default_rng(4)
