@@ -84,7 +84,9 @@ def test_without_the_state_in_z_the_loss_falls_with_the_norm_of_z(fit):
     decisions, lengths = linear_world(400), {}
     for include_state in (True, False):
         features = Network(size=4, hidden=(8,), include_state=include_state)
-        learner = EmbeddingLearner(Koopman(features), fit=fit, steps=200, learning_rate=3e-3)
+        learner = EmbeddingLearner(
+            Koopman(features), fit=fit, steps=200, learning_rate=3e-3, prior=0.01
+        )
         first = learner.init(jax.random.key(0), SPEC).model
         last = learn(learner, decisions)[0].model
         each = [root_mean_square(learner, model, decisions) for model in (first, last)]
