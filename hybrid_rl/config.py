@@ -131,7 +131,7 @@ def build(config: DictConfig) -> Run:
         agent = Agent(
             Episode(_instantiate(parts.env), config.episode.steps, config.episode.action_repeat),
             controllers["full"],
-            {name: _instantiate(node) for name, node in parts.learners.items()},
+            {name: _instantiate(node) for name, node in parts.learners.items() if node},
             replace(
                 replay, capacity=min(replay.capacity, max(longest, replay.num_demonstrated(1)))
             ),

@@ -53,6 +53,7 @@ class AdjointController:
     warm_start: bool = False  # from the last correction, shifted
     gain: float | None = None  # W [u^2 / J]; None: the policy's variance
     gain_decay: float = 1.0  # of W, per decision of the episode
+    run_decay: float = 1.0  # of W, per decision of the run; where they are not counted, W = 0
     normalise: bool = False  # g by its root mean square over the horizon; W is then [u]
     costate_bound: float | None = None  # clip of rho; the thesis' author used 1
     apply: str = "first"  # first | horizon | search
@@ -68,8 +69,10 @@ class AdjointController:
             raise ValueError("adjoint planner: gain=null needs a policy, whose variance it takes")
         if self.gain is not None and not self.gain > 0:
             raise ValueError(f"adjoint planner: gain={self.gain}: must be above 0")
-        if not 0 < self.gain_decay <= 1:
-            raise ValueError(f"adjoint planner: gain_decay={self.gain_decay}: must lie in (0, 1]")
+        for name in ("gain_decay", "run_decay"):
+            if not 0 < getattr(self, name) <= 1:
+                value = getattr(self, name)
+                raise ValueError(f"adjoint planner: {name}={value}: must lie in (0, 1]")
         if self.apply not in APPLY:
             raise ValueError(f"adjoint planner: apply={self.apply}: choose {', '.join(APPLY)}")
 
@@ -86,7 +89,8 @@ class AdjointController:
         prepare_key = jax.random.split(key)[0]  # keeps the random numbers of version 0.1
         x = self.model.lift(params.model, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, prepare_key)
-        plan = _Plan(self, params, value, x, state.v.shape[1], self.gain_decay**state.count)
+        factor = self.gain_decay**state.count * self._share(params)
+        plan = _Plan(self, params, value, x, state.v.shape[1], factor)
         due = (self.apply == "first") | (state.count % self.horizon == 0)
         rest = sampling.shift(state.v)
         held = rest if self.warm_start else jnp.where(due, 0, rest)
@@ -96,6 +100,13 @@ class AdjointController:
             v = jax.lax.cond(due, lambda v: plan.window(plan.improve(v)), lambda v: v, held)
         u = jnp.clip(plan.mean(x) + v[0], -1, 1)
         return u, AdjointState(v, u, state.count + 1, memory), plan.metrics(v)
+
+    def _share(self, params: Params) -> Any:
+        """The factor [] on W at this decision of the run."""
+        decisions: Any = params.decisions
+        if self.run_decay == 1:
+            return 1.0
+        return 0.0 if decisions is None else self.run_decay**decisions
 
     def greedy(self) -> "AdjointController":
         """The same controller: it has no exploration noise."""

@@ -106,6 +106,16 @@ def test_corrections_decay_with_the_decisions_of_the_episode() -> None:
         assert float(u[0]) == pytest.approx(-0.2 + 0.5**decision * 0.25 * 0.1, abs=1e-6)
 
 
+def test_corrections_decay_with_the_decisions_of_the_run() -> None:
+    """W is multiplied by run_decay^decisions; where they are not counted, there is none."""
+    controller = AdjointController(Cart(), Speed(), Half(), 1, run_decay=0.5)
+    for decisions in range(3):
+        u = act(controller, decisions)[0]
+        assert float(u[0]) == pytest.approx(-0.2 + 0.5**decisions * 0.25 * 0.1, abs=1e-6)
+    u, *_ = controller.act(Params(), controller.init(SPEC), jnp.zeros(2), jax.random.key(0))
+    assert float(u[0]) == pytest.approx(-0.2, abs=1e-6)
+
+
 def test_the_objective_gets_the_previous_action() -> None:
     """It is zero at the first decision."""
 
