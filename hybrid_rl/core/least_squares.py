@@ -19,7 +19,8 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 from jax import Array
-from jax.scipy.linalg import solve_triangular
+
+from hybrid_rl.core.solving import solve_upper
 
 
 class Factor(NamedTuple):
@@ -79,14 +80,16 @@ def fold(factor: Factor, inputs: Array, outputs: Array) -> Factor:
     return Factor(jnp.triu(top[:, :size]), top[:, size:])
 
 
-def solve(factor: Factor) -> Array:
-    """K [a, r]."""
-    return solve_triangular(factor.U, factor.Y).T
+def solve(factor: Factor) -> tuple[Array, Array]:
+    """K [a, r], and W = U^-1 [r, r], with W W' the covariance of its rows in the noise's units."""
+    both = solve_upper(factor.U, jnp.concatenate([factor.Y, jnp.eye(len(factor.U))], axis=1))
+    outputs = factor.Y.shape[1]
+    return both[:, :outputs].T, both[:, outputs:]
 
 
-def leverage(U: Array, s: Array) -> Array:
-    """s' (U'U)^-1 s [] of a regressor s [r]: the variance of K s in units of the noise's."""
-    return jnp.sum(solve_triangular(U, s, trans="T") ** 2)
+def leverage(W: Array, s: Array) -> Array:
+    """s' W W' s [] of a regressor s [r]: the variance of K s in units of the noise's."""
+    return jnp.sum((s @ W) ** 2)
 
 
 def log_det(U: Array) -> Array:

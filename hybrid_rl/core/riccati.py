@@ -18,6 +18,8 @@ import numpy as np
 from jax import Array
 from scipy.linalg import solve_discrete_are
 
+from hybrid_rl.core.solving import solve
+
 
 class Regulator(NamedTuple):
     """The optimal gain and cost of a linear system."""
@@ -42,15 +44,15 @@ def finite_horizon(A: Array, B: Array, Q: Array, R: Array, steps: int) -> Array:
     It is finite also where no gain stabilises the system, unless float32 overflows.
     """
     eye = jnp.eye(len(A), dtype=A.dtype)
-    G, H, P = _symmetric(B @ jnp.linalg.solve(R, B.T)), Q, None
+    G, H, P = _symmetric(B @ solve(R, B.T)), Q, None
     while True:
         if steps % 2:  # put 2^k steps, of which A, G and H are the map, before those of P
-            back = H if P is None else H + A.T @ P @ jnp.linalg.solve(eye + G @ P, A)
+            back = H if P is None else H + A.T @ P @ solve(eye + G @ P, A)
             P = _symmetric(back)
         steps //= 2
         if not steps:
             return P
-        both = jnp.linalg.solve(eye + G @ H, jnp.concatenate([A, G], axis=1))
+        both = solve(eye + G @ H, jnp.concatenate([A, G], axis=1))
         forward, spread = jnp.split(both, 2, axis=1)
         A, G, H = (
             A @ forward,
@@ -61,7 +63,7 @@ def finite_horizon(A: Array, B: Array, Q: Array, R: Array, steps: int) -> Array:
 
 def gain(A: Array, B: Array, P: Array, R: Array) -> Array:
     """K [m, n] = (R + B' P B)^-1 B' P A."""
-    return jnp.linalg.solve(_symmetric(R + B.T @ P @ B), B.T @ P @ A)
+    return solve(_symmetric(R + B.T @ P @ B), B.T @ P @ A)
 
 
 def _symmetric(P: Array) -> Array:

@@ -202,7 +202,7 @@ class EmbeddingLearner:
         return _with(model, trained), optimiser
 
     def regress(self, model: dict[str, Any], memory: Decisions, stored: Array) -> dict[str, Any]:
-        """The model with its root, and K if it is to be fitted, from `stored` [] decisions."""
+        """The model with its spread, and K if it is to be fitted, from `stored` [] decisions."""
 
         def one(obs: Array, u: Array, next_obs: Array) -> tuple[Array, Array]:
             x = self.model.lift(model, obs)
@@ -218,9 +218,10 @@ class EmbeddingLearner:
         K = model["K"]
         none = least_squares.begin(jnp.zeros_like(K), self.prior)
         factor = jax.lax.fori_loop(0, -(-stored // CHUNK), add, none)
+        change, spread = least_squares.solve(factor)
         if self.fit == "least_squares":
-            K = jnp.eye(*K.shape) + least_squares.solve(factor)
-        return {**model, "K": K, "root": factor.U}
+            K = jnp.eye(*K.shape) + change
+        return {**model, "K": K, "spread": spread}
 
 
 def _trained(model: dict[str, Any]) -> dict[str, Any]:

@@ -100,10 +100,10 @@ class LeastSquares:
         return jax.vmap(one)(*map(jnp.asarray, (obs, action, next_obs)))
 
     def _solved(self, state: RegressionState) -> RegressionState:
-        """The state with K and its root from the factor."""
-        change = least_squares.solve(state.factor)
+        """The state with K and its spread from the factor."""
+        change, spread = least_squares.solve(state.factor)
         K = jnp.eye(change.shape[0], change.shape[1]) + change
-        return state.replace(model={**state.model, "K": K, "root": state.factor.U})
+        return state.replace(model={**state.model, "K": K, "spread": spread})
 
     def params(self, state: RegressionState) -> dict[str, Any]:
         """The model."""
@@ -114,7 +114,7 @@ class LeastSquares:
     ) -> tuple[RegressionState, dict[str, Array]]:
         """One regression step with B decisions; the loss is the squared error before it."""
         s, change = self._rows(state.model, batch.obs, batch.action, batch.next_obs)
-        error = change - s @ least_squares.solve(state.factor).T
+        error = change - s @ least_squares.solve(state.factor)[0].T
         metrics = {"model/loss": jnp.mean(error**2)}
         factor = least_squares.add(state.factor, s, change, state.mean, self.prior, self.forgetting)
         after = self._solved(state.replace(factor=factor))

@@ -20,6 +20,7 @@ from jax import Array
 from hybrid_rl.core import riccati
 from hybrid_rl.core.analytic import linearise, require_equilibrium
 from hybrid_rl.core.lifting import lifted_spec
+from hybrid_rl.core.solving import solve
 from hybrid_rl.protocols import BalancedEnv, GoalPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -132,5 +133,5 @@ class RegulatorLearner:
             return {**solved, "goal": goal}
         square = B.T @ Q @ B
         ridge = 1e-6 * jnp.trace(square) + 1e-12
-        solved["inverse"] = jnp.linalg.solve(square + ridge * jnp.eye(len(R)), B.T @ Q)
+        solved["inverse"] = solve(square + ridge * jnp.eye(len(R)), B.T @ Q)
         return self.policy.aim(solved, goal, goal, step)

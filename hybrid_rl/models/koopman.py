@@ -12,7 +12,6 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from jax import Array
-from jax.scipy.linalg import solve_triangular
 
 from hybrid_rl.core import least_squares
 from hybrid_rl.protocols import Features
@@ -40,7 +39,7 @@ class Koopman:
             raise ValueError(f"model.products={list(self.products)}: indices must be 0 or more")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Features, K [n, r] = [I 0] and its "root" [r, r]. The key is consumed.
+        """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed.
 
         Raises:
             ValueError: for a product with an entry that x lacks.
@@ -50,7 +49,7 @@ class Koopman:
         if max(self.products, default=0) >= n:
             raise ValueError(f"model.products={list(self.products)}: x has entries 0 to {n - 1}")
         r = n + spec.act * (1 + len(self.products))
-        return {"features": features, "K": jnp.eye(n, r), "root": jnp.eye(r)}
+        return {"features": features, "K": jnp.eye(n, r), "spread": jnp.eye(r)}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """z [n] of an observation [o]."""
@@ -68,13 +67,12 @@ class Koopman:
     def std(self, params: dict[str, Any], x: Array) -> Array:
         """Standard deviation [n] of K s at x [n] without action, in units of the noise's."""
         s = self.regressors(params, x, jnp.zeros(self._actions(params, x.size)))
-        return jnp.broadcast_to(jnp.sqrt(least_squares.leverage(params["root"], s)), x.shape)
+        return jnp.broadcast_to(jnp.sqrt(least_squares.leverage(params["spread"], s)), x.shape)
 
     def draw_model(self, params: dict[str, Any], noise: float, key: Array) -> dict[str, Any]:
-        """Parameters with K from its posterior, K + noise N(0, I) U^-T. The key is consumed."""
+        """Parameters with K from its posterior, K + noise N(0, I) W'. The key is consumed."""
         e = jax.random.normal(key, params["K"].shape)
-        change = solve_triangular(params["root"], e.T)  # U^-1 e', of covariance (U'U)^-1
-        return {**params, "K": params["K"] + noise * change.T}
+        return {**params, "K": params["K"] + noise * e @ params["spread"].T}
 
     def _actions(self, params: dict[str, Any], n: int) -> int:
         """m, from the sizes of K."""

@@ -1,6 +1,6 @@
 """J = sum_t of the information of x_t, u_t about a linear model's parameters K.
 
-    gain   log(1 + s' S s / sigma^2),  S = (U'U)^-1: the information of one more measurement of K s
+    gain   log(1 + s' S s / sigma^2),  S = W W': the information of one more measurement of K s
     norm   -1 / (s's + eps), as printed: the reciprocal of the trace of Fisher's information
 
 Under the norm no data count, and a state far from zero is informative. Source: thesis eq. (7.10);
@@ -57,7 +57,7 @@ class Information:
         s = regressors(params.model, path.x[:-1], path.u)
         if self.criterion == "norm":
             return -1 / (jnp.sum(s**2, -1) + self.floor)
-        spread = jax.vmap(least_squares.leverage, (None, 0))(params.model["root"], s)
+        spread = jax.vmap(least_squares.leverage, (None, 0))(params.model["spread"], s)
         return jnp.log1p(spread / self.noise**2)
 
     def reward_to_go(self, params: Params, path: Path) -> Array:

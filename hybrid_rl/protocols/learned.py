@@ -59,8 +59,8 @@ class Uncertain(Model, Protocol):
 class LinearModel(Uncertain, Protocol):
     """x' = K s(x, u), linear in its parameters.
 
-    Parameters: "K" [n, r], and "root" U [r, r], upper triangular, with U'U the information of the
-    data about K.
+    Parameters: "K" [n, r], and "spread" W [r, r], with W W' the covariance of each row of K in
+    units of the noise's variance.
     """
 
     def regressors(self, params: PyTree, x: Array, u: Array) -> Array:

@@ -67,8 +67,16 @@ def test_a_metric_of_another_stage_does_not_apply() -> None:
     assert np.isinf(broken["x"])
 
 
-@pytest.mark.parametrize("decisions", [(), (1, 2), (0,)])
+def test_a_stage_of_no_decisions_is_skipped() -> None:
+    """Its state is not made, and its metrics do not appear."""
+    skipped = StagesController(STAGES.stages, (0,))
+    actions, metrics = follow(skipped, 3)
+    np.testing.assert_array_equal(actions, [10, 11, 12])
+    assert sorted(metrics) == ["planner/b", "planner/both"]
+
+
+@pytest.mark.parametrize("decisions", [(), (1, 2), (-1,)])
 def test_bad_numbers_of_decisions_are_refused(decisions) -> None:
     """Each stage but the last needs one."""
-    with pytest.raises(ValueError, match=r"stages.decisions=.* needs 1 whole numbers above 0"):
+    with pytest.raises(ValueError, match=r"stages.decisions=.* needs 1 whole numbers, 0 or more"):
         StagesController(STAGES.stages, decisions)

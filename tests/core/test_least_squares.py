@@ -33,14 +33,14 @@ def test_solution_is_weighted_least_squares(forgetting: float, batch: int) -> No
     expected = np.linalg.solve(information, weighted.T @ Y + PRIOR * MEAN.T).T
     with jax.enable_x64(True):
         factor = recursive(forgetting, batch)
-        np.testing.assert_allclose(least_squares.solve(factor), expected, atol=1e-12)
+        np.testing.assert_allclose(least_squares.solve(factor)[0], expected, atol=1e-12)
         np.testing.assert_allclose(factor.U.T @ factor.U, information, rtol=1e-12, atol=1e-12)
         np.testing.assert_array_equal(jnp.tril(factor.U, -1), 0)
         logs = np.linalg.slogdet(information)[1]
         assert float(least_squares.log_det(factor.U)) == pytest.approx(logs, rel=1e-12)
-        s = jnp.asarray(S[0])
+        s, spread = jnp.asarray(S[0]), least_squares.solve(factor)[1]
         quadratic = S[0] @ np.linalg.solve(information, S[0])
-        assert float(least_squares.leverage(factor.U, s)) == pytest.approx(quadratic, rel=1e-12)
+        assert float(least_squares.leverage(spread, s)) == pytest.approx(quadratic, rel=1e-12)
 
 
 def test_many_rows_at_once_are_least_squares_of_numpy() -> None:
@@ -49,7 +49,7 @@ def test_many_rows_at_once_are_least_squares_of_numpy() -> None:
         factor = least_squares.begin(jnp.zeros((A, R)), 1e-14)
         factor = least_squares.fold(factor, jnp.asarray(S), jnp.asarray(Y))
         expected = np.linalg.lstsq(S, Y, rcond=None)[0].T
-        np.testing.assert_allclose(least_squares.solve(factor), expected, atol=1e-10)
+        np.testing.assert_allclose(least_squares.solve(factor)[0], expected, atol=1e-10)
 
 
 def test_directions_without_data_keep_the_prior() -> None:
@@ -63,7 +63,7 @@ def test_directions_without_data_keep_the_prior() -> None:
         add = lambda _, f: least_squares.add(f, *row, mean, 1.0, 0.95)  # noqa: E731
         return jax.lax.fori_loop(0, 2000, add, factor)
 
-    K = least_squares.solve(follow(factor))[0]
+    K = least_squares.solve(follow(factor))[0][0]
     np.testing.assert_allclose(K, [(5 * 20 + 0.3) / 21, -0.8], rtol=1e-4)
 
 
@@ -80,7 +80,7 @@ def test_float32_is_far_more_precise_than_with_sums() -> None:
 
     rows = jnp.asarray(s, jnp.float32), jnp.asarray(y, jnp.float32)
     begin = least_squares.begin(jnp.zeros((A, R)), 1e-8)
-    root = least_squares.solve(jax.lax.scan(follow, begin, rows)[0])
+    root = least_squares.solve(jax.lax.scan(follow, begin, rows)[0])[0]
     sums = (rows[0].T @ rows[0] + 1e-8 * jnp.eye(R), rows[0].T @ rows[1])
     normal = jnp.linalg.solve(*sums).T
     errors = [float(np.abs(np.asarray(K).T - exact).max()) for K in (root, normal)]

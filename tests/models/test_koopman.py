@@ -104,7 +104,7 @@ def test_products_make_the_model_bilinear() -> None:
 def linear_params(A: np.ndarray, B: np.ndarray) -> dict:
     """Parameters of a linear Koopman model."""
     r = A.shape[1] + B.shape[1]
-    return {"features": {}, "K": jnp.asarray(np.hstack([A, B])), "root": jnp.eye(r)}
+    return {"features": {}, "K": jnp.asarray(np.hstack([A, B])), "spread": jnp.eye(r)}
 
 
 def test_the_regulator_of_a_known_system_is_scipys() -> None:
@@ -177,7 +177,11 @@ def informed(criterion: str) -> tuple[Information, Params, Path]:
         model = Koopman(Monomials(terms=((0, 1),)), products=(0,))
         params = model.init(jax.random.key(0), SPEC)
         root = np.linalg.qr(RNG.normal(size=(9, 5)))[1] + 2 * np.eye(5)
-        params = {**params, "K": jnp.asarray(RNG.normal(size=(3, 5))), "root": jnp.asarray(root)}
+        params = {
+            **params,
+            "K": jnp.asarray(RNG.normal(size=(3, 5))),
+            "spread": jnp.asarray(np.linalg.inv(root)),
+        }
         path = Path(jnp.asarray(RNG.normal(size=(7, 3))), jnp.asarray(RNG.normal(size=(6, 1))))
         return Information(model, criterion), Params(model=params), path
 
@@ -185,7 +189,7 @@ def informed(criterion: str) -> tuple[Information, Params, Path]:
 def test_gain_is_the_growth_of_the_information_of_the_regression() -> None:
     """log det (U'U + s s' / sigma^2) - log det U'U."""
     objective, params, path = informed("gain")
-    U = np.asarray(params.model["root"])
+    U = np.linalg.inv(np.asarray(params.model["spread"]))
     with jax.enable_x64(True):
         got = objective.rewards(params, path)
         for t, r in enumerate(got):
@@ -284,7 +288,7 @@ def test_draws_of_the_model_have_the_covariance_of_the_regression() -> None:
     draws = jax.vmap(lambda key: model.draw_model(params.model, 0.5, key)["K"])(
         jax.random.split(jax.random.key(0), 20000)
     )
-    U = np.asarray(params.model["root"])
+    U = np.linalg.inv(np.asarray(params.model["spread"]))
     covariance = 0.25 * np.linalg.inv(U.T @ U)
     error = 5 * np.sqrt(np.diag(covariance) / len(draws))  # of the mean, five deviations
     assert (np.abs(draws.mean(0) - params.model["K"]) < error[None]).all()

@@ -1,0 +1,46 @@
+"""Solutions of small linear systems, many of them side by side under `vmap`.
+
+LAPACK's batched routines in jaxlib split a batch over the threads of XLA's pool and wait for them.
+If as many of them run at once as the pool has threads, none is left to do the work, and the program
+hangs (jaxlib 0.10, two cores). On a CPU the systems of a batch are therefore solved one after the
+other, which costs nothing: they are too small to be split.
+"""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+from jax.custom_batching import custom_vmap
+
+
+@custom_vmap
+def solve(A: Array, B: Array) -> Array:
+    """X [n, k] of A X = B, A [n, n]; it has no reverse-mode derivative."""
+    return jnp.linalg.solve(A, B)
+
+
+@solve.def_vmap
+def _(size: int, batched: Any, A: Array, B: Array) -> tuple[Array, bool]:
+    def repeat(is_batched: bool, x: Array) -> Array:
+        return x if is_batched else jnp.broadcast_to(x, (size, *x.shape))
+
+    A, B = (repeat(is_batched, x) for is_batched, x in zip(batched, (A, B), strict=True))
+    if jax.default_backend() == "cpu":
+        return jax.lax.map(lambda pair: solve(*pair), (A, B)), True
+    return jax.vmap(jnp.linalg.solve)(A, B), True
+
+
+def solve_upper(U: Array, B: Array) -> Array:
+    """X [n, k] of U X = B, U [n, n] upper triangular, by back substitution."""
+    n = len(U)
+
+    def substitute(step: Array, X: Array) -> Array:
+        i = n - 1 - step
+        row = jax.lax.dynamic_index_in_dim(U, i, 0, keepdims=False)
+        right = jax.lax.dynamic_index_in_dim(B, i, 0, keepdims=False)
+        pivot = jax.lax.dynamic_index_in_dim(row, i, 0, keepdims=False)
+        known = jnp.where(jnp.arange(n) > i, row, 0) @ X
+        return jax.lax.dynamic_update_index_in_dim(X, (right - known) / pivot, i, 0)
+
+    return jax.lax.fori_loop(0, n, substitute, jnp.zeros_like(B))
