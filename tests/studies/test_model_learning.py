@@ -16,6 +16,8 @@ from hybrid_rl import config, figures, train
 from hybrid_rl.cli import command
 from hybrid_rl.data.replay import Memory, Replay
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.models.exact import Exact
+from hybrid_rl.models.local_linear import LocalLinear
 from hybrid_rl.studies import flights, model_learning
 from hybrid_rl.types import Batch, Params
 
@@ -80,9 +82,9 @@ def test_error_of_the_exact_model_and_of_its_linearisation() -> None:
     after, no = jax.vmap(world.dynamics)(obs, u), jnp.zeros(50)
     data = Batch(obs, u, no, no, no, after, u)
     errors = {}
-    for name in ("exact", "local_linear"):
-        model = f"+model@known_model={name}", "model_learner.model=${known_model}"
-        run = config.build(config.load([*model_learning.TRACKING, *model]))
+    for name, model in {"exact": Exact(world), "local_linear": LocalLinear(world)}.items():
+        agent = SimpleNamespace(learners={"model": SimpleNamespace(model=model)})
+        run: Any = SimpleNamespace(agent=agent)
         errors[name] = float(model_learning.error(run, Params(), data))
     assert errors["exact"] == 0
     assert 0.01 < errors["local_linear"] < 0.5
