@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from pages import chapter7_embedding, chapter7_falls
 from pages.cited import Table, Text
 from pages.values import read
 
@@ -63,6 +64,8 @@ SLOW = [
 ]
 COLUMNS = "Koopman, cost | optimum, cost | Koopman, error | less error in, of 50 starts"
 CITED = [
+    *chapter7_falls.CITED,
+    *chapter7_embedding.CITED,
     Table(
         f"T [decisions] | {COLUMNS} | regression, cost | regression, error",
         lambda label, column: ratio(INSIDE[label], column),
@@ -86,6 +89,8 @@ CITED = [
     Text("it is between # and # over the draws", [min(SLOW), max(SLOW)]),
 ]
 PLAIN = [
+    *chapter7_falls.PLAIN,
+    *chapter7_embedding.PLAIN,
     "jax 0.10",
     "(Q = I, R = 0.1)",
     "5,000 uniform samples",
