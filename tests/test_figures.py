@@ -72,8 +72,8 @@ def runs(folder):
 def test_the_studies_are_listed_without_their_libraries(toy, capsys, arguments):
     assert draw(*arguments) == 0
     lines = capsys.readouterr().out.splitlines()[1:]
-    names = ["bayesian_optimisation", "ergodic_coverage", "learning_curves", "model_learning"]
-    assert [line.split()[0] for line in lines] == [*names, "toy"]
+    names = ["bayesian_optimisation", "ergodic_coverage", "koopman", "learning_curves"]
+    assert [line.split()[0] for line in lines] == [*names, "model_learning", "toy"]
     assert all(line.endswith(".") for line in lines)
 
 

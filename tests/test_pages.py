@@ -17,7 +17,16 @@ from pages.cited import ROOT
 from hybrid_rl import config, figures
 from hybrid_rl.cli.arguments import HELP
 
-PAGES = ["readme", "results", "chapter3", "chapter6", "robots", "speed"]  # modules of `pages`
+# Modules of `pages`.
+PAGES = [
+    "readme",
+    "results",
+    "chapter3",
+    "chapter6",
+    "chapter7",
+    "robots",
+    "speed",
+]
 WITH_COMMANDS = [
     "README.md",
     "CONTRIBUTING.md",

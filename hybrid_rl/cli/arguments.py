@@ -48,6 +48,16 @@ def number(least: float = -math.inf, what: str = "") -> Kind:
     return kind
 
 
+def numbers(each: Kind | None = None) -> Kind:
+    """Numbers with commas between them; each: kind of one."""
+    one = each or number(what=", or several with commas between them")
+
+    def kind(name: str, given: str) -> list[float]:
+        return [one(name, part) for part in given.split(",")]
+
+    return kind
+
+
 def one_of(*known: str) -> Kind:
     """One of the names."""
 

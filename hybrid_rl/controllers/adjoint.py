@@ -173,6 +173,7 @@ class _Plan:
         if self.of.policy is not None:
             own, correction = jnp.linalg.norm(mean), jnp.linalg.norm(action - mean)
             metrics["planner/policy_share"] = own / (own + correction + 1e-6)
+            metrics["planner/correction"] = correction
             if self.of.gain is None:
                 variance = self.of.policy.variance(self.params.policy, self.x)
                 metrics |= adjoint.per_variance(insertion, variance)

@@ -29,7 +29,7 @@ class Factor(NamedTuple):
     Y: Array  # [r, a]
 
 
-def begin(mean: Array, prior: float) -> Factor:
+def begin(mean: Array, prior: float | Array) -> Factor:
     """The regression before any data: K is `mean` [a, r], with weight `prior` above 0."""
     scale = jnp.sqrt(prior)
     return Factor(scale * jnp.eye(mean.shape[1]), scale * mean.T)
@@ -40,14 +40,14 @@ def add(
     inputs: Array,
     outputs: Array,
     mean: Array,
-    prior: float = 0.0,
-    forgetting: float = 1.0,
+    prior: float | Array = 0.0,
+    forgetting: float | Array = 1.0,
 ) -> Factor:
     """The regression after one step of forgetting and rows `inputs` [B, r], `outputs` [B, a].
 
     `mean` [a, r] and `prior` are those of `begin`; with forgetting = 1 they have no effect.
     """
-    if forgetting == 1:
+    if not isinstance(forgetting, Array) and forgetting == 1:
         return fold(factor, inputs, outputs)
     root = jnp.sqrt(forgetting)
     again = begin(mean, (1 - forgetting) * prior)

@@ -6,7 +6,8 @@
 The horizon is finite: a lift that does not close under the dynamics has modes that no action
 reaches, and with an infinite horizon their cost has no bound. The model can be any with
 derivatives; for a Koopman operator A and B are K itself. A solution that is not finite is rejected
-and the last one kept. Source: thesis eq. (7.4) and Algorithm 7, line 5.
+and the last one kept. Source: thesis eq. (7.4) and Algorithm 7, line 5; `thompson` explores by
+draws of the model (Thompson sampling; Abeille and Lazaric 2017).
 """
 
 from dataclasses import dataclass
@@ -46,6 +47,7 @@ class RegulatorLearner:
     action_weights: tuple[float, ...] = (1.0,)  # diagonal of R: one for all actions, or one each
     horizon: int = 128  # T [decisions]
     feedforward: bool = True  # false: hold = 0
+    thompson: float = 0.0  # noise of the data: solve for a draw of the model; 0: for its mean
     every: int = 1  # decisions between two solutions
 
     data: ClassVar[str] = "latest"
@@ -62,6 +64,11 @@ class RegulatorLearner:
         if not all(weight > 0 for weight in self.action_weights):
             weights = list(self.action_weights)
             raise ValueError(f"policy_learner.action_weights={weights}: must be above 0")
+        if self.thompson < 0 or (self.thompson and not hasattr(self.model, "draw_model")):
+            raise ValueError(
+                f"policy_learner.thompson={self.thompson}: must be 0 or more; above 0 only with "
+                "a linear model"
+            )
         for name in ("horizon", "every"):
             if getattr(self, name) < 1:
                 raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be 1 or more")
@@ -94,8 +101,12 @@ class RegulatorLearner:
     def update(
         self, state: SolutionState, params: Params, batch: Batch, key: Array
     ) -> tuple[SolutionState, dict[str, Array]]:
-        """The solution for the model as it is; the decisions are not used."""
-        solved = self.solve(params.model, state.policy)
+        """The solution for the model as it is; the decisions are not used. The key is consumed."""
+        model: Any = params.model
+        if self.thompson:
+            linear: Any = self.model
+            model = linear.draw_model(model, self.thompson, key)
+        solved = self.solve(model, state.policy)
         finite = jnp.all(jnp.array([jnp.all(jnp.isfinite(leaf)) for leaf in solved.values()]))
         policy = {name: jnp.where(finite, solved[name], old) for name, old in state.policy.items()}
         rejected = state.rejected + ~finite

@@ -9,8 +9,10 @@ Source: thesis eq. (2.9)-(2.11) and (7.2).
 from dataclasses import dataclass
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 from jax import Array
+from jax.scipy.linalg import solve_triangular
 
 from hybrid_rl.core import least_squares
 from hybrid_rl.protocols import Features
@@ -67,6 +69,12 @@ class Koopman:
         """Standard deviation [n] of K s at x [n] without action, in units of the noise's."""
         s = self.regressors(params, x, jnp.zeros(self._actions(params, x.size)))
         return jnp.broadcast_to(jnp.sqrt(least_squares.leverage(params["root"], s)), x.shape)
+
+    def draw_model(self, params: dict[str, Any], noise: float, key: Array) -> dict[str, Any]:
+        """Parameters with K from its posterior, K + noise N(0, I) U^-T. The key is consumed."""
+        e = jax.random.normal(key, params["K"].shape)
+        change = solve_triangular(params["root"], e.T)  # U^-1 e', of covariance (U'U)^-1
+        return {**params, "K": params["K"] + noise * change.T}
 
     def _actions(self, params: dict[str, Any], n: int) -> int:
         """m, from the sizes of K."""

@@ -13,7 +13,7 @@ view=cost       time of one plan [ms] of the quadcopter over the dimension of th
 The summary has interquartile means over seeds with 95% bands.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from time import perf_counter
 from typing import Annotated, Any
 
@@ -22,6 +22,7 @@ import numpy as np
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.studies.curves import plural, spread
+from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE, legend_below, plain_log
 from hybrid_rl.studies.time_averages import (
     GRID,
@@ -67,7 +68,7 @@ def figure(
     }
     with matplotlib.rc_context(STYLE):
         figure, numbers = views[view]()
-    return figure, {"view": view, **_rounded(numbers)}
+    return figure, {"view": view, **rounded(numbers)}
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:
@@ -245,12 +246,3 @@ def _colour_bar(figure: Any, panels: np.ndarray) -> None:
     image = panels.flat[0].images[0]
     bar = figure.colorbar(image, ax=list(panels.flat), extend="max", shrink=0.6, aspect=30)
     bar.set_label("Density (mean 1), same scale in all panels")
-
-
-def _rounded(value: Any) -> Any:
-    """All floats of a nested value in four significant digits; arrays become lists."""
-    if isinstance(value, dict):
-        return {name: _rounded(each) for name, each in value.items()}
-    if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str):
-        return [_rounded(each) for each in value]
-    return float(f"{value:.4g}") if isinstance(value, float | np.floating) else value

@@ -7,15 +7,11 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from omegaconf import OmegaConf
 
-from hybrid_rl.config import build
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.quadcopter_se3 import KT, MASS, THRUST, G, QuadcopterSE3
-from hybrid_rl.errors import UsageError
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run.results import RunFolder, differences, short
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.studies.recorded import read as read_memory
 
 
 class Flight(NamedTuple):
@@ -35,20 +31,11 @@ def read(folder: Path) -> Flight:
     Raises:
         UsageError: if the run has no complete memory of one quadcopter.
     """
-    if not RunFolder(folder).settings:  # a damaged file raises here, with its name
-        raise UsageError(f"runs={folder}: not a run folder (it has no config.yaml)")
-    config: Any = OmegaConf.load(folder / "config.yaml")
-    if config.task != "quadcopter_se3" or config.num_envs != 1 or not config.checkpoint_replay:
-        raise UsageError(f"runs={folder}: needs quadcopter_se3, num_envs=1, checkpoint_replay=true")
-    run = build(config)
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, learners=None, key=None)
-    memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
-    full = config.controllers.full
+    recorded = read_memory(folder, "quadcopter_se3")
+    memory, full = recorded.memory, recorded.config.controllers.full
     strength = full.level if "kind" in full else full.controller.gain
-    label = f"{config.algo} {strength:g}"
-    decisions = int(np.asarray(memory.count).min())
-    return first(label, memory, len(memory.rows), min(decisions, memory.rows.shape[1]))
+    label = f"{recorded.config.algo} {strength:g}"
+    return first(label, memory, len(memory.rows), recorded.decisions)
 
 
 def read_all(folders: list[Path]) -> list[Flight]:

@@ -274,3 +274,18 @@ def test_a_hovering_quadcopter_has_the_gain_and_the_thrust_of_its_linearisation(
     np.testing.assert_allclose(
         np.asarray(solved["gain"])[:, moved], F, rtol=0.01, atol=0.01 * np.abs(F).max()
     )
+
+
+def test_draws_of_the_model_have_the_covariance_of_the_regression() -> None:
+    """noise^2 (U'U)^-1 for each row of K, around its mean."""
+    _, params, _ = informed("gain")
+    model = Koopman(Monomials(terms=((0, 1),)), products=(0,))
+    draws = jax.vmap(lambda key: model.draw_model(params.model, 0.5, key)["K"])(
+        jax.random.split(jax.random.key(0), 20000)
+    )
+    U = np.asarray(params.model["root"])
+    covariance = 0.25 * np.linalg.inv(U.T @ U)
+    np.testing.assert_allclose(draws.mean(0), params.model["K"], atol=0.02)
+    for row in range(3):
+        scale = np.abs(covariance).max()
+        np.testing.assert_allclose(np.cov(draws[:, row].T), covariance, atol=0.05 * scale)

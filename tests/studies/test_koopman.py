@@ -1,0 +1,391 @@
+"""The study of Koopman operators: regulators of Van der Pol, falls, tracking and embeddings."""
+
+import json
+import shutil
+from types import SimpleNamespace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.linalg import solve_discrete_are
+from tiny import call
+
+from hybrid_rl import config, figures, train
+from hybrid_rl.cli import command
+from hybrid_rl.errors import UsageError
+from hybrid_rl.features.monomials import Monomials
+from hybrid_rl.learners.least_squares import LeastSquares
+from hybrid_rl.learners.regulator import RegulatorLearner
+from hybrid_rl.models.koopman import Koopman
+from hybrid_rl.policies.linear import Linear
+from hybrid_rl.run.results import RunFolder
+from hybrid_rl.studies import (
+    embeddings,
+    falls,
+    falls_picture,
+    koopman,
+    optimal_path,
+    oscillator,
+    recorded,
+    tracking,
+)
+from hybrid_rl.studies.falls import Fall
+from hybrid_rl.studies.tracking import Track
+from hybrid_rl.types import Spec
+
+A = np.array([[1.0, 0.1], [-0.1, 1.1]])  # an unstable spiral
+B = np.array([[0.0], [0.2]])
+SHORT = [
+    "experiment=thesis/fig_7_2",
+    "env.terminate=false",
+    *(f"{name}=200" for name in ("total_steps", "episode.steps", "eval_every", "checkpoint_every")),
+    "num_seeds=2",
+    "log_every=100",
+    "compile_cache=null",
+]
+
+
+def draw(*arguments) -> int:
+    """Exit code of the command."""
+    return call(lambda: command.guarded(figures.main), "study=koopman", *arguments)
+
+
+def linear_world() -> Any:
+    """x' = A x + B u with the origin as its equilibrium."""
+    return SimpleNamespace(equilibrium=lambda: (jnp.zeros(2), jnp.zeros(1)))
+
+
+def test_three_regulators_are_one_on_a_linear_world() -> None:
+    """Koopman, known and regression have the gain of SciPy's Riccati solution."""
+    spec, rng = Spec(2, 1, 0.1), np.random.default_rng(0)
+    model = Koopman(Monomials())
+    x, u = rng.uniform(-1, 1, (200, 2)), rng.uniform(-1, 1, (200, 1))
+    after = x @ A.T + u @ B.T
+    learner = LeastSquares(model, prior=1e-6)
+    x, u, after = (jnp.asarray(each, jnp.float32) for each in (x, u, after))
+    params = oscillator.fit(learner, spec, x, u, after, jax.random.key(0))
+    np.testing.assert_allclose(params["K"], np.hstack([A, B]), atol=1e-5)
+    solver = RegulatorLearner(model, Linear(), linear_world(), (1.0, 2.0), (0.5,), 256)
+    F = oscillator.gains(solver, (A, B), spec, params)
+    P = solve_discrete_are(A, B, np.diag([1.0, 2.0]), np.diag([0.5]))
+    right = np.linalg.solve(0.5 + B.T @ P @ B, B.T @ P @ A)[0]
+    for each in F:
+        np.testing.assert_allclose(each, right, rtol=1e-4)
+
+
+def test_a_fit_is_numpys_least_squares() -> None:
+    """On samples of Van der Pol's oscillator, in the thesis' functions."""
+    run = config.build(config.load(["experiment=thesis/fig_7_1"]))
+    K = np.asarray(oscillator.fits(run, 300, 2, 2.5)["K"])
+    assert np.abs(K[0] - K[1]).max() > 1e-5
+    world, key = run.agent.episode.env, jax.random.split(jax.random.key(1), 3)
+    x = jax.random.uniform(key[1], (300, 2), minval=-2.5, maxval=2.5)
+    u = jax.random.uniform(key[2], (300, 1), minval=-1.0) * 0.25  # |u| up to 5 of 20
+    after = np.asarray(jax.vmap(world.dynamics)(x, u), float)
+
+    def z(x: np.ndarray) -> np.ndarray:
+        return np.stack([x[:, 0], x[:, 1], x[:, 0] ** 2, x[:, 1] * x[:, 0] ** 2], 1)
+
+    s = np.hstack([z(np.asarray(x, float)), np.asarray(u, float)])
+    right = np.linalg.lstsq(s, z(after), rcond=None)[0].T
+    np.testing.assert_allclose(K[1], right, atol=1e-4)
+
+
+def test_the_optimal_path_of_a_linear_system_costs_as_riccati() -> None:
+    """From the Riccati equation, over a horizon after which nothing is left to pay."""
+    Q, R = np.diag([1.0, 2.0]), np.diag([0.5])
+    P = solve_discrete_are(A, B, Q, R)
+    x = jnp.array([1.0, -0.5])
+    f = [jnp.asarray(each, jnp.float32) for each in (A, B, Q, R)]
+    path = optimal_path.optimal(
+        lambda x, u: f[0] @ x + f[1] @ u, f[2], f[3], x, jnp.zeros((80, 1)), 2
+    )
+    paid = optimal_path.cost(path, f[2], f[3])
+    # The first state is not counted
+    np.testing.assert_allclose(paid, float(x @ (P - Q) @ x), rtol=1e-4)
+
+
+def test_the_optimal_path_is_a_minimum_of_a_nonlinear_system() -> None:
+    """A swing with x'' = sin x + u: no change of the actions costs less."""
+
+    def step(x, u):
+        rate = jnp.array([x[1], jnp.sin(x[0]) + u[0]])
+        return x + 0.1 * rate
+
+    Q, R, x = jnp.eye(2), jnp.eye(1), jnp.array([2.0, 0.0])
+    path = optimal_path.optimal(step, Q, R, x, jnp.zeros((40, 1)))
+
+    def paid(u):
+        def forward(x, u):
+            after = step(x, u)
+            return after, after @ Q @ after + u @ R @ u
+
+        return jax.lax.scan(forward, x, u)[1].sum()
+
+    np.testing.assert_allclose(paid(path.u), optimal_path.cost(path, Q, R), rtol=1e-5)
+    assert np.abs(jax.grad(paid)(path.u)).max() < 1e-3
+    for _ in range(5):
+        change = np.random.default_rng(0).normal(size=(40, 1)).astype(np.float32)
+        assert paid(path.u + 0.1 * change) > paid(path.u)
+
+
+def test_ratios_are_of_means_over_starts() -> None:
+    """One draw, two starts; the Koopman operator costs half and is better from one start."""
+    cost: Any = np.ones((1, 4, 3, 2))
+    cost[:, :, 1], cost[:, :, 0] = (2, 4), (3, 0)
+    outcome = oscillator.Outcome(cost, 2 * cost, 0 * cost)
+    one = oscillator.reported(outcome, np.array([1.0, 1.0]))["50"]
+    assert one["Koopman"]["cost"] == [0.5]
+    assert one["Koopman"]["less_cost"] == [1]
+    assert one["cost_of_known"] == 3
+    assert one["optimum"] == pytest.approx(1 / 3)
+
+
+def test_the_view_of_control_writes_its_numbers(tmp_path, capsys, monkeypatch) -> None:
+    """With few samples and short paths; u is clipped nowhere."""
+    monkeypatch.setattr(oscillator, "RANGES", (oscillator.INSIDE,))
+    monkeypatch.setattr(oscillator, "STEPS", 60)
+    monkeypatch.setattr(oscillator, "HORIZONS", (50, 100))
+    out = tmp_path / "f.png"
+    assert draw("view=control", "samples=200", "draws=2", "starts=3", f"out={out}") == 0
+    numbers = json.loads(out.with_suffix(".json").read_text())
+    each = numbers["by_data"]["2.5, starts 2"]
+    assert set(each) == {"50", "100"}
+    for one in each.values():
+        assert len(one["Koopman"]["cost"]) == 2
+        assert 0 < one["optimum"] <= min(1, *one["Koopman"]["cost"])
+    assert np.shape(numbers["rates_of_A"]["2.5, starts 2"]["real"]) == (2, 4)
+    assert "T_L 100: Koopman cost" in capsys.readouterr().out
+
+
+def test_settled_is_the_start_of_the_last_stretch_below() -> None:
+    error = np.array(
+        [
+            [1, 0, 1, 0, 0],  # again above at 2
+            [0, 0, 0, 0, 0],
+            [0, 0, 0, 0, 1],  # never
+            [1, np.nan, 0, 0, 0],
+        ]
+    )
+    np.testing.assert_array_equal(falls.settled(error, 0.5), [3, 0, np.inf, 2])
+
+
+def test_wilsons_interval_is_the_published_one() -> None:
+    """Newcombe, Statistics in Medicine 17 (1998), table I, method 3: 81 of 263, 15 of 148, ..."""
+    for successes, trials, right in (
+        (81, 263, (0.2553, 0.3662)),
+        (15, 148, (0.0624, 0.1605)),
+        (0, 20, (0.0000, 0.1611)),
+        (1, 29, (0.0061, 0.1718)),
+    ):
+        np.testing.assert_allclose(falls.wilson(successes, trials), right, atol=6e-5)
+
+
+def fall(error: np.ndarray, label: str = "a", std: float = 0.0) -> Fall:
+    """Trials [S, T+1] with these errors, one rotor of four at half of its control."""
+    trials, length = error.shape
+    obs = np.zeros((trials, length, 18))
+    obs[..., 12] = np.sqrt(error)
+    action = np.zeros((trials, length - 1, 4))
+    action[..., 0] = 0.5
+    return Fall(label, obs, action, error, std, 2e-6)
+
+
+def test_numbers_of_falls_by_hand() -> None:
+    """One trial of two is at rest from 1.2 s on; the greatest twist is 3."""
+    error = np.full((2, 801), 0.001)
+    error[0, :240] = 9.0
+    error[1] = 4.0
+    numbers = falls.reported(fall(error), np.ones((2, 800, 3)))
+    assert numbers["at_rest"]["1.5"][0] == 0.5
+    np.testing.assert_allclose(numbers["at_rest"]["4"][1:], [0.0945, 0.9055], atol=1e-4)
+    assert numbers["median_time_at_rest"] == pytest.approx(1.2)
+    np.testing.assert_allclose(numbers["error"]["4"], [2.0005, 0.4009, 3.6001], atol=1e-4)
+    assert numbers["greatest_twist_1_s"] == [2.5, 3.0]
+    assert numbers["rms_u"] == pytest.approx(3 / 2)  # of one rotor of four
+    assert numbers["trace_1_s"][0] == 600
+    assert numbers["microseconds_a_decision"] == pytest.approx(2)
+
+
+def test_log_det_of_the_information_by_hand() -> None:
+    """Two regressors along the axes: diag(4 + p, 9 + p)."""
+    s = np.array([[[2.0, 0.0], [0.0, 3.0]]])
+    np.testing.assert_allclose(falls.log_det(s, 1.0), np.log(5 * 10))
+    np.testing.assert_allclose(falls.trace(s), [[4, 13]])
+
+
+def test_other_starts_are_an_error_in_one_line(tmp_path) -> None:
+    """Other trials, other sizes; sensor noise of 0.1 explains a difference of 0.1."""
+    a, b = tmp_path / "a", tmp_path / "b"
+    error = np.zeros((2, 11))
+    moved = fall(error)
+    moved.obs[1, 0, 3] = 0.1
+    with pytest.raises(UsageError, match=r"b: trial 1 starts elsewhere than in .*a; train with"):
+        falls.check_starts([fall(error), moved], [a, b])
+    with pytest.raises(UsageError, match=r"has 2 trials of 8 decisions where .* 2 trials of 10"):
+        falls.check_starts([fall(error), fall(error[:, :9])], [a, b])
+    falls.check_starts([fall(error), moved._replace(std=0.1)], [a, b])
+
+
+def test_logged_twist_holds_between_two_rows(tmp_path) -> None:
+    """Each row is the mean of the decisions before it."""
+    rows = [
+        {"step": step, "seed": seed, "wall_s": 0, "world/twist": 10 * seed + step}
+        for step in (2, 4)
+        for seed in (0, 1)
+    ]
+    (tmp_path / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    right = [[2, 2, 4, 4], [12, 12, 14, 14]]
+    np.testing.assert_array_equal(falls.logged(RunFolder(tmp_path), (0, 1), 4), right)
+
+
+def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
+    """One run under two names; a strip of one of them."""
+    direct, babble = (tmp_path / "runs" / f"koopman_{name}" for name in ("direct", "babble"))
+    train.train(config.load([*SHORT, "algo=koopman_direct", f"run_dir={direct}"]))
+    shutil.copytree(direct, babble)
+    settings = (babble / "config.yaml").read_text()
+    (babble / "config.yaml").write_text(settings.replace("koopman_direct", "koopman_babble"))
+    drawn = []
+    monkeypatch.setattr(falls_picture, "_strip", lambda part, fall: drawn.append(fall.label))
+    out = tmp_path / "f.png"
+    runs = f"runs={tmp_path}/runs/*"
+    both = falls.falls(f"{tmp_path}/runs/*", "falls")
+    monkeypatch.setattr(falls_picture, "falls", lambda pattern, view: both)
+    assert draw("view=falls", runs, "strips=koopman_b", f"out={out}") == 0
+    assert drawn == ["koopman_babble"]
+    numbers = json.loads(out.with_suffix(".json").read_text())["methods"]
+    assert set(numbers) == {"koopman_direct", "koopman_babble"}
+    assert both[0].seconds > 0
+    means = both[0].error[:, 1:].reshape(2, 2, 100).mean(-1)
+    twist = falls.logged(RunFolder(direct), (0, 1), 200)[:, ::100]
+    np.testing.assert_allclose(means, twist, rtol=1e-4)
+    u = 6 * both[1].action
+    assert numbers["koopman_direct"]["rms_u"] == pytest.approx(np.sqrt((u**2).mean()), rel=1e-3)
+    assert "koopman_babble, 2 trials: at rest by 1 s 0.0%" in capsys.readouterr().out
+    assert draw("view=initial", runs, f"out={out}") == 0
+    assert draw("view=falls", runs, "strips=x", f"out={out}") == 2
+    assert "not among these runs; they are koopman_babble, koopman_d" in capsys.readouterr().err
+    monkeypatch.undo()
+    assert draw("view=falls", f"out={out}") == 2
+    assert "runs: not given; view=falls needs" in capsys.readouterr().err
+
+
+def test_labels_name_the_settings_that_differ(tmp_path) -> None:
+    """Or the folders, where nothing differs."""
+    for name, twist in (("a", 0), ("b", 1), ("c", 1)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "config.yaml").write_text(f"algo: k\nenv: {{twist: {twist}}}\n")
+    a, b, c = (tmp_path / name for name in "abc")
+    assert recorded.labels([a]) == ["k"]
+    assert recorded.labels([a, b]) == ["k twist=0", "k twist=1"]
+    assert recorded.labels([b, c]) == [str(b), str(c)]
+
+
+def sine(delay: float, dt: float = 1 / 30, shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """A path [1, T, 2] that is late on a reference, and the reference."""
+    t = dt * np.arange(400)
+
+    def at(t: np.ndarray) -> np.ndarray:
+        return np.stack([0.5 * np.cos(t), 0.3 * np.sin(2 * t)], 1)[None]
+
+    return at(t - delay) + shift, at(t)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.05, 0.1234, -0.08])
+def test_the_lag_of_a_late_sine_is_its_delay(delay) -> None:
+    """Between the decisions, too; negative where the path is early."""
+    path, reference = sine(delay)
+    assert tracking.lag(path[0], reference[0], 1 / 30) == pytest.approx(delay, abs=2e-4)
+
+
+def test_a_path_that_never_moves_has_no_lag_and_no_correlation() -> None:
+    path, reference = sine(0)
+    assert np.isnan(tracking.lag(0 * path[0], reference[0], 1 / 30))
+    assert np.isnan(tracking.lag(np.zeros((90, 1)), np.zeros((90, 1)), 1 / 30))
+    flat = np.concatenate([reference, 0 * reference[..., :1]], -1)
+    found = tracking.correlation(flat, flat)
+    np.testing.assert_allclose(found[0, :2], 1)
+    assert np.isnan(found[0, 2])
+
+
+def test_rmse_of_a_late_sine_in_closed_form() -> None:
+    """Over whole periods: amplitude sqrt(2) sin(w delay / 2); and of a shifted path."""
+    t = 2 * np.pi * np.arange(200) / 200
+    path, reference = np.sin(t - 0.1)[None, :, None], np.sin(t)[None, :, None]
+    right = np.sqrt(2) * np.sin(0.05)
+    np.testing.assert_allclose(tracking.rmse(path, reference), right)
+    np.testing.assert_allclose(tracking.rmse(reference + 0.003, reference), 0.003)
+    np.testing.assert_allclose(tracking.correlation(path, reference), np.cos(0.1))
+    noise = np.random.default_rng(0).normal(0, 0.02, (1, 200, 1))
+    noisy = tracking.rmse(path + noise, reference, 0.02)
+    np.testing.assert_allclose(noisy, right, rtol=0.05)
+
+
+def test_tracks_become_numbers_and_a_picture(tmp_path, monkeypatch, capsys) -> None:
+    """A late method and an exact one; numbers of each trial and their IQM."""
+    (late, reference), (exact, _) = sine(0.1), sine(0.0)
+    action, rate = np.full((1, 400, 2), 0.5), np.array([3.0])
+    tracks = {
+        "late": Track("late", late, reference, action, rate, 0.0, 1 / 30),
+        "exact": Track("exact", exact + 0.003, reference, action, rate, 0.0, 1 / 30),
+    }
+    of = SimpleNamespace(config=SimpleNamespace(task="sprk_sand"))
+    monkeypatch.setattr(tracking, "matching", lambda pattern, view: list(tracks))
+    monkeypatch.setattr(tracking, "labels", lambda folders: folders)
+    monkeypatch.setattr(tracking, "read", lambda folder, *tasks: of)
+    monkeypatch.setattr(tracking, "of", lambda run, label: tracks[label])
+    out = tmp_path / "f.png"
+    assert draw("view=tracking", "runs=any", f"out={out}") == 0
+    numbers = json.loads(out.with_suffix(".json").read_text())["methods"]
+    assert numbers["late"]["lag_ms"][0] == pytest.approx(100, abs=1)
+    assert numbers["exact"]["rmse_mm"][0] == pytest.approx(3 * np.sqrt(2), rel=1e-3)
+    assert numbers["exact"]["rms_action"][0] == 0.5
+    line = capsys.readouterr().out.splitlines()[1]
+    assert line.startswith("exact, 1 trial, 0 lost: RMSE 4.24 [4.24, 4.24] mm, lag ")
+    assert line.endswith("correlation 1.0000, 1.0000")
+
+
+def write_run(folder, task: str, success: np.ndarray) -> None:
+    """A run with evaluations of success [G, S], every 200 decisions."""
+    folder.mkdir(parents=True)
+    (folder / "config.yaml").write_text(f"task: {task}\nalgo: k\neval_every: 200\n")
+    rows = [
+        {"step": 200 * (i + 1), "seed": seed, "wall_s": 0, "eval/policy_success": value}
+        for i, each in enumerate(success.tolist())
+        for seed, value in enumerate(each)
+    ]
+    (folder / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+
+
+def test_carts_are_stabilised_when_all_episodes_are_whole(tmp_path, capsys) -> None:
+    """Trials after 1, 3 and 3 iterations, and one never."""
+    success = np.array([[1, 0, 0.8, 0], [0, 0, 0.8, 0], [1, 1, 1, 0.8]])
+    write_run(tmp_path / "noise_32", "cart_pendulum", success)
+    write_run(tmp_path / "linear_5", "cart_pendulum", np.ones((3, 4)))
+    out = tmp_path / "f.png"
+    assert draw("view=embedding", f"runs={tmp_path}/*_*", f"out={out}") == 0
+    numbers = json.loads(out.with_suffix(".json").read_text())["cart_pendulum"]
+    assert numbers["noise_32"]["iterations_of_trials"] == [1, 3, 3, None]
+    assert numbers["noise_32"]["iterations"] == [3, 1, 3]
+    assert numbers["noise_32"]["share_by_100"] == 0.75
+    line = "cart_pendulum linear_5, 4 trials: stabilised after 1 [1, 1] iterations, 100% by 100"
+    assert line in capsys.readouterr().out
+
+
+def test_distances_of_arms_by_hand(tmp_path, monkeypatch) -> None:
+    """Two attempts of two decisions; the last one ends at the target."""
+    obs = np.zeros((1, 4, 6))
+    obs[0, 1] = 1, 9, 2, 9, 4, 6  # (1, 2) to (4, 6)
+    made = SimpleNamespace(truncated=np.array([[0, 1, 0, 1]]), next_obs=obs)
+    monkeypatch.setattr(embeddings, "read", lambda *_: SimpleNamespace(made=made))
+    write_run(tmp_path / "gain_32", "two_link", np.array([[0.0], [1.0]]))
+    _, numbers = koopman.figure("embedding", f"{tmp_path}/gain_32")
+    one = numbers["two_link"]["gain_32"]
+    assert one["distance"][0] == [5, 0]
+    assert one["share_within"] == [0, 1]
+    assert koopman.summary(numbers) == [
+        "two_link gain_32, 1 trial: last distance 0 [0, 0] rad, within 0.05 rad 100% at the end"
+    ]
