@@ -248,15 +248,12 @@ def test_the_list_names_every_task_and_method(capsys):
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are read from /proc")
 @pytest.mark.parametrize(("given", "threads"), [({}, max(8, cores())), ({"NPROC": "3"}, 3)])
-@pytest.mark.parametrize("choice", [["physics=mjx"], ["task=two_link", "algo=koopman_direct"]])
-def test_factorisations_have_threads_enough_not_to_wait_for_each_other(
-    choice, given, threads
-) -> None:
+def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
     code = (
         "import jax; from pathlib import Path\n"
         "from hybrid_rl import config; from hybrid_rl.run.jax_settings import prepare\n"
-        f"given = config.load([*{choice}, 'compile_cache=null'])\n"
-        "config.check(given); prepare(given); config.build(given); jax.devices()\n"
+        "given = config.load(['physics=mjx', 'compile_cache=null'])\n"
+        "config.build(given); prepare(given); jax.devices()\n"
         "names = [path.read_text() for path in Path('/proc/self/task').glob('*/comm')]\n"
         "print(sum('XLAEigen' in name for name in names))"
     )

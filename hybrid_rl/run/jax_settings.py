@@ -9,21 +9,21 @@ from omegaconf import DictConfig
 
 CACHE = "JAX_COMPILATION_CACHE_DIR"  # JAX's own variable, which overrides compile_cache
 CACHE_BYTES = 4 * 2**30  # [bytes] at most
-THREADS = 8  # of XLA on a CPU, at least, where many matrices are factorised at once
+THREADS = 8  # of XLA with MJX on a CPU, at least
 
 
 def prepare(config: DictConfig) -> None:
     """Apply the settings in `config`. Call it before JAX initialises its devices.
 
-    With MJX or regulators on a CPU, factorisations of many worlds run in parallel, and each holds
-    one of XLA's threads while it waits for others (jaxlib 0.10). With two threads they deadlock, so
-    there are at least THREADS.
+    With MJX on a CPU, factorisations of many worlds run in parallel, and each holds one of XLA's
+    threads while it waits for others (jaxlib 0.10). With two threads they deadlock, so there are
+    at least THREADS.
     """
     import jax
 
     from hybrid_rl.envs.mujoco.native import cores
 
-    if (config.physics == "mjx" or _regulates(config)) and cores() < THREADS:
+    if config.physics == "mjx" and cores() < THREADS:
         os.environ.setdefault("NPROC", str(THREADS))
     jax.config.update("jax_default_matmul_precision", config.matmul_precision)
     if config.compile_cache is None or CACHE in os.environ:
@@ -33,12 +33,6 @@ def prepare(config: DictConfig) -> None:
         jax.config.update("jax_compilation_cache_dir", str(cache))
         jax.config.update("jax_compilation_cache_max_size", CACHE_BYTES)
         jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.1)
-
-
-def _regulates(config: DictConfig) -> bool:
-    """Whether a learner solves a regulator at every decision."""
-    targets = (str(part.get("_target_")) for part in config.learners.values() if part)
-    return any(target.endswith("RegulatorLearner") for target in targets)
 
 
 def cache_folder(compile_cache: str) -> Path | None:

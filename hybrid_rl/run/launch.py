@@ -47,9 +47,8 @@ def train(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dic
         given = {key: value for key, value in given.items() if key != "distributed"}
     if config.resume is not None:
         return _resume(config, given, handled)
-    configuration.check(config)
-    prepare(config)  # first: parts may compute when they are built
     run = configuration.build(config)
+    prepare(config)
     size = memory.replay(run)
     with folder.fresh(config) as run_dir:
         return _run(run, run_dir, size, handled)
@@ -64,9 +63,8 @@ def _resume(config: DictConfig, given: Mapping[str, str], handled: Handler) -> d
     with locked(folder.writable(run_dir, "resume"), "resume"):
         config = _settings(config, given)  # again, as another process may have continued the run
         with folder.blamed(run_dir):
-            configuration.check(config)
-            prepare(config)
             run = configuration.build(config)
+            prepare(config)
         return _run(run, run_dir, memory.replay(run), handled)
 
 
