@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hybrid_rl import config
+from hybrid_rl.errors import UsageError
 from hybrid_rl.features.monomials import Monomials
 from hybrid_rl.features.network import Network
 from hybrid_rl.types import Spec
@@ -59,3 +60,24 @@ def test_the_lift_of_the_quadcopter_has_the_printed_terms() -> None:
     model = run.agent.learners["model"].model
     params = model.init(jax.random.key(0), run.agent.spec)
     np.testing.assert_allclose(model.lift(params, jnp.asarray(obs)), expected, rtol=1e-5)
+
+
+def test_the_lift_of_sawyer_has_the_printed_functions() -> None:
+    """51: angles and rates, 1, and (q_i q_i+1)^k, (q'_i q'_i+1)^k, k = 1, 2, 3; rates times 0.2."""
+    composed = config.load(["task=sawyer_torque", "algo=koopman_track", "features=sawyer"])
+    run = config.build(composed)
+    obs = np.random.default_rng(0).uniform(-2, 2, 42)
+    q, rate = obs[:7], 0.2 * obs[7:14]
+    pairs = [y[:-1] * y[1:] for y in (q, rate)]
+    expected = np.concatenate([q, rate, [1.0], *(pair**k for pair in pairs for k in (1, 2, 3))])
+    model = run.agent.learners["model"].model
+    lifted = model.lift(model.init(jax.random.key(0), run.agent.spec), jnp.asarray(obs))
+    assert lifted.shape == (51,)
+    np.testing.assert_allclose(lifted, expected, rtol=1e-5)
+
+
+def test_features_of_another_robot_are_refused() -> None:
+    """Sawyer has more coordinates than the ball."""
+    composed = config.load(["task=sprk_sand", "algo=koopman_track", "features=sawyer"])
+    with pytest.raises(UsageError, match=r"features\.coordinates=.*: .* has entries 0 to 11"):
+        config.build(composed)
