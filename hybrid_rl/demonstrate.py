@@ -37,6 +37,7 @@ from hybrid_rl.types import Params, Transition
 
 ARGUMENTS = (
     Argument("task", "", "a task with a scripted expert"),
+    Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
     Argument("run", "", "instead: folder of a trained run"),
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
     Argument("episodes", 10, "how many", whole()),
@@ -93,6 +94,8 @@ def _expert(
     given: dict[str, Any], changes: dict[str, str]
 ) -> tuple[str, Episode, Controller, Params]:
     """(task, episode, controller, parameters) that the arguments name."""
+    if given["expert"]:
+        changes = {"expert": given["expert"], **changes}
     if bool(given["task"]) == bool(given["run"]):
         raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
     if given["task"]:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from pages import chapter7_embedding, chapter7_falls
+from pages import chapter7_embedding, chapter7_falls, chapter7_tracking
 from pages.cited import Table, Text
 from pages.values import read
 
@@ -66,6 +66,7 @@ COLUMNS = "Koopman, cost | optimum, cost | Koopman, error | less error in, of 50
 CITED = [
     *chapter7_falls.CITED,
     *chapter7_embedding.CITED,
+    *chapter7_tracking.CITED,
     Table(
         f"T [decisions] | {COLUMNS} | regression, cost | regression, error",
         lambda label, column: ratio(INSIDE[label], column),
@@ -91,6 +92,7 @@ CITED = [
 PLAIN = [
     *chapter7_falls.PLAIN,
     *chapter7_embedding.PLAIN,
+    *chapter7_tracking.PLAIN,
     "jax 0.10",
     "(Q = I, R = 0.1)",
     "5,000 uniform samples",

@@ -1,6 +1,6 @@
 """The numbers of README.md."""
 
-from pages import chapter3, chapter6_values, hopper, results
+from pages import chapter3, chapter6_values, chapter7_falls, hopper, results
 from pages.cited import Table, Text
 from pages.values import curve, number
 
@@ -20,6 +20,7 @@ def sac(label: str, x: float) -> list[float]:
     return results.curve(results.FILE, label, task="halfcheetah").at(x)
 
 
+FALLS = chapter7_falls.methods("2")["koopman_active"]
 KLE3 = chapter6_values.SEARCHES["kle3_bayesopt"]
 CITED = [
     Text("to a return of # (", [curve("light_halfcheetah", "settings=light").at(60_000)[0]]),
@@ -36,6 +37,14 @@ CITED = [
     Text(
         "it needs # measurements where LQR-Bayesian optimisation needs #;",
         [chapter6_values.KLE3, chapter6_values.LQR],
+    ),
+    Text(
+        "stops in # of # falls, after # s",
+        [
+            FALLS["at_rest"]["4"][0] * FALLS["trials"],
+            FALLS["trials"],
+            FALLS["median_time_at_rest"],
+        ],
     ),
     Text("(position weight 500) # against #", chapter6_values.QUICK[::-1]),
 ]
