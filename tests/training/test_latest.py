@@ -8,7 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
+from omegaconf import OmegaConf
 
+from hybrid_rl import config
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -115,3 +117,17 @@ def test_two_learners_of_one_field_are_refused() -> None:
     """When the agent is built."""
     with pytest.raises(ValueError, match=r"one and two both learn params\.belief; keep one"):
         replace(agent(), learners={"one": Recorder(), "two": Recorder()})
+
+
+def test_a_seed_starts_in_the_same_state_whatever_the_method() -> None:
+    """With no, one and two learners, whose keys are split from the same key."""
+    first = []
+    for learners in ("{}", "{policy: null}", None):
+        line = ["task=quadcopter_se3", "algo=koopman_direct", "env.twist=2.0"]
+        composed = config.load(line)
+        if learners is not None:
+            composed.learners = OmegaConf.create(learners)
+        agent = config.build(composed).agent
+        first.append(jax.jit(agent.init)(jax.random.key(3)).env.obs)
+    np.testing.assert_array_equal(first[0], first[2])
+    np.testing.assert_array_equal(first[1], first[2])
