@@ -95,6 +95,35 @@ USAGE = [  # overrides of train, words of the line
     ("algo=bc num_demonstrations=0", "num_demonstrations=0: must be 1 or more"),
     ("pretrain=3", "pretrain=3: the memory has no demonstrations to learn from"),
     ("pretrain=-1", "pretrain=-1: must be a whole number, 0 or more"),
+    (
+        "task=halfcheetah algo=koopman_active",
+        "task=halfcheetah: koopman_active needs an environment with an equilibrium; choose",
+    ),
+    (
+        "task=pendulum algo=koopman_track",
+        "koopman_track needs an environment with a reference; choose one of s",
+    ),
+    (
+        "task=pendulum algo=koopman_active features=quadcopter",
+        "features.coordinates=[9, 10, 11, 15, 16, 17, 12, 13, 14]: the observation of this task",
+    ),
+    (
+        "algo=koopman_active features.terms=[[0,9]]",
+        "features.terms=[0, 9]: has an index above 2, the last coordinate",
+    ),
+    ("algo=koopman_active policy_learner.horizon=0", "policy_learner.horizon=0: must be 1 or more"),
+    (
+        "algo=koopman_active model_learner.forgetting=0",
+        "model_learner.forgetting=0: must lie in (0, 1]",
+    ),
+    (
+        "algo=koopman_known demonstrations=demonstrations/quadcopter_se3.npz",
+        "is of task quadcopter_se3, not of pendulum",
+    ),
+    (
+        "task=quadcopter_se3 algo=koopman_known num_demonstrations=1",
+        "demonstrations: 20 decisions are too few for 22 regressors",
+    ),
     ("resume=nowhere", "resume=nowhere: no run folder there"),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
