@@ -26,10 +26,10 @@ class Quadratic:
     """
 
     world: Any  # an AnalyticEnv; with a model, a BalancedEnv
-    model: Model | None = None  # None: local coordinates
     state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or the first of e
     action_weights: tuple[float, ...] = (0.0,)  # diagonal of R: one for all, or [m]
     discount: float = 1.0  # per decision
+    model: Model | None = None  # e in its planning states; None: in local coordinates
 
     def __post_init__(self) -> None:
         """Check the fields."""

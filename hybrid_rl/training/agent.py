@@ -77,9 +77,9 @@ class Agent:
         return self.episode.spec
 
     def check(self) -> None:
-        """Raise ValueError if a part refuses the sizes of the environment."""
+        """Raise ValueError if a part refuses the sizes of the environment; no device is used."""
         for part in self.learners.values():
-            jax.eval_shape(lambda key, init=part.init: init(key, self.spec), jax.random.key(0))
+            jax.eval_shape(lambda init=part.init: init(jax.random.key(0), self.spec))
         jax.eval_shape(lambda: self.controller.init(self.spec))
 
     def starts(self) -> dict[str, int]:
