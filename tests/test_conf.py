@@ -80,7 +80,7 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
     small = ["total_steps=200"] if linear else SMALL
     composed = config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *small])
     if linear:
-        put(composed.controllers, horizon=2)
+        put(composed.controllers, horizon=2, size=4)
         put(composed.learners, horizon=2, size=4)
     put(composed.controllers, hidden=[8])
     put(composed.learners, hidden=[8])
