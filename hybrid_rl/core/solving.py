@@ -3,7 +3,7 @@
 LAPACK's batched routines in jaxlib split a batch over the threads of XLA's pool and wait for them.
 If as many of them run at once as the pool has threads, none is left to do the work, and the program
 hangs (jaxlib 0.10, two cores). On a CPU the systems of a batch are therefore solved one after the
-other, which costs nothing: they are too small to be split.
+other.
 """
 
 from typing import Any

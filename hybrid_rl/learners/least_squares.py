@@ -114,8 +114,8 @@ class LeastSquares:
     ) -> tuple[RegressionState, dict[str, Array]]:
         """One regression step with B decisions; the loss is the squared error before it."""
         s, change = self._rows(state.model, batch.obs, batch.action, batch.next_obs)
-        error = change - s @ least_squares.solve(state.factor)[0].T
-        metrics = {"model/loss": jnp.mean(error**2)}
+        x, predicted = s[:, : change.shape[1]], s @ state.model["K"].T
+        metrics = {"model/loss": jnp.mean((x + change - predicted) ** 2)}
         factor = least_squares.add(state.factor, s, change, state.mean, self.prior, self.forgetting)
         after = self._solved(state.replace(factor=factor))
         if self.until is not None:

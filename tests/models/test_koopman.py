@@ -192,6 +192,9 @@ def test_gain_is_the_growth_of_the_information_of_the_regression() -> None:
     U = np.linalg.inv(np.asarray(params.model["spread"]))
     with jax.enable_x64(True):
         got = objective.rewards(params, path)
+        np.testing.assert_allclose(
+            objective.reward_to_go(params, path), [*np.cumsum(got[::-1])[::-1], 0], rtol=1e-12
+        )
         for t, r in enumerate(got):
             x, u = path.x[t], path.u[t]
             s = np.concatenate([x, u, x[0] * u])
