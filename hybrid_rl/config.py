@@ -43,7 +43,6 @@ COUNTS = (
 )
 
 SEEDS = 2**32  # distinct seeds of JAX's generator
-
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
@@ -54,6 +53,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
 NEEDS = {  # words of a part's message -> a method of the environments that it accepts
     "needs an analytic environment": "dynamics",
     "needs an environment with an equilibrium": "equilibrium",
+    "needs an environment with a known reward": "reward_of",
     "needs an environment with a reference": "reference",
 }
 MODES = ("full", "policy", "planner")

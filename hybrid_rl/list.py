@@ -32,6 +32,7 @@ NEEDS = {  # type of a part's environment, the most demanding first -> mark of i
     "TrackingEnv": "tasks with a reference",
     "AnalyticEnv": "analytic tasks",
     "BalancedEnv": "tasks with an equilibrium",
+    "RewardedEnv": "tasks with a known reward",
 }
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
 ARGUMENTS = (Argument("config_dir", "", "folder with configuration groups of yours"),)

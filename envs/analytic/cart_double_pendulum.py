@@ -53,11 +53,16 @@ class CartDoublePendulum:
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [1] in [-1, 1]."""
-        x = self.dynamics(state.data, jnp.clip(action, -1.0, 1.0))
-        reward = phi(x[0])
-        if self.reward == "upright":
-            reward = jnp.cos(x[1]) + jnp.cos(x[2]) - 0.1 * x[0] ** 2
-        return fully_observed(x, reward, jnp.any(jnp.abs(x[1:3]) > jnp.pi / 2))
+        u = jnp.clip(action, -1.0, 1.0)
+        x = self.dynamics(state.data, u)
+        fallen = jnp.any(jnp.abs(x[1:3]) > jnp.pi / 2)
+        return fully_observed(x, self.reward_of(state.data, u, x), fallen)
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [1] at x [6], which led to `after` [6]."""
+        if self.reward == "hills":
+            return phi(after[0])
+        return jnp.cos(after[1]) + jnp.cos(after[2]) - 0.1 * after[0] ** 2
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [6] after action u [1] at x [6]."""

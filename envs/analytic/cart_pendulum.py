@@ -59,13 +59,18 @@ class CartPendulum:
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [1] in [-1, 1]."""
-        x = self.dynamics(state.data, jnp.clip(action, -1.0, 1.0))
-        after = self._state(x, jnp.cos(x[0]) - 0.1 * x[1] ** 2)
+        u = jnp.clip(action, -1.0, 1.0)
+        x = self.dynamics(state.data, u)
+        after = self._state(x, self.reward_of(state.data, u, x))
         return after.replace(terminated=after.metrics["success"] == 0)
 
     def _state(self, x: Array, reward: Array) -> EnvState:
         inside = (jnp.abs(x[0]) < self.angle_limit) & (jnp.abs(x[1]) < self.position_limit)
         return fully_observed(x, reward).replace(metrics={"success": inside.astype(jnp.float32)})
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [1] at x [4], which led to `after` [4]."""
+        return jnp.cos(after[0]) - 0.1 * after[1] ** 2
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [4] after action u [1] at x [4]."""

@@ -38,8 +38,13 @@ class NoDynamics:
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [1] in [-1, 1]."""
-        x = self.dynamics(state.data, jnp.clip(action, -1.0, 1.0))
-        return fully_observed(x, phi(x[0]))
+        u = jnp.clip(action, -1.0, 1.0)
+        x = self.dynamics(state.data, u)
+        return fully_observed(x, self.reward_of(state.data, u, x))
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [1] at x [1], which led to `after` [1]."""
+        return phi(after[0])
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [1] after action u [1] at x [1]."""

@@ -44,9 +44,11 @@ class Pendulum:
         """The state after one decision. action: [1] in [-1, 1]."""
         theta, w = state.data
         u = TORQUE * jnp.clip(action[0], -1.0, 1.0)
-        error = (theta + jnp.pi) % (2 * jnp.pi) - jnp.pi
-        reward = -(error**2 + 0.1 * w**2 + 0.001 * u**2)
-        return _state(_next(theta, w, u), reward)
+        return _state(_next(theta, w, u), _reward(theta, w, u))
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [1] at x [3], which led to `after` [3]."""
+        return _reward(jnp.arctan2(x[1], x[0]), x[2], TORQUE * u[0])
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [3] after action u [1] at x [3]."""
@@ -77,6 +79,12 @@ def _next(theta: Array, w: Array, u: Array) -> Array:
     """Angle and angular velocity [2] after one decision with torque u [] [N m]."""
     w = jnp.clip(w + (15.0 * jnp.sin(theta) + 3.0 * u) * DT, -MAX_SPEED, MAX_SPEED)
     return jnp.stack((theta + w * DT, w))
+
+
+def _reward(theta: Array, w: Array, u: Array) -> Array:
+    """The reward [] of torque u [] [N m] at an angle and angular velocity []."""
+    error = (theta + jnp.pi) % (2 * jnp.pi) - jnp.pi
+    return -(error**2 + 0.1 * w**2 + 0.001 * u**2)
 
 
 def _obs(x: Array) -> Array:

@@ -42,8 +42,12 @@ class PointMass:
         """The state after one decision. action: [2] in [-1, 1]."""
         u = jnp.clip(action, -1.0, 1.0)
         x = self.dynamics(state.data, u)
-        error = x[:2] - jnp.array(MIDDLE)
-        return fully_observed(x, -(jnp.sum(error**2) + 0.01 * jnp.sum(u**2)))
+        return fully_observed(x, self.reward_of(state.data, u, x))
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [2] at x [4], which led to `after` [4]."""
+        error = after[:2] - jnp.array(MIDDLE)
+        return -(jnp.sum(error**2) + 0.01 * jnp.sum(u**2))
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [4] after action u [2] at x [4]."""

@@ -90,7 +90,7 @@ class QuadcopterSE3:
             thrust = u.at[0].multiply(jnp.where(begun, 1 - self.rotor_loss, 1.0))
             wind, info = jnp.where(begun, self.wind, 0.0), {CLOCK: state.info[CLOCK] + 1}
         x = self._next(state.data, thrust, wind)
-        reward = -(jnp.sum(x[:3] ** 2) + 0.1 * jnp.sum(x[12:] ** 2))
+        reward = self.reward_of(state.data, u, x)
         after = fully_observed(x, reward, self.terminate & (x[11] < 0))
         after = after.replace(metrics=_metrics(x, u), info=info)
         return sensor_noise.resume(after, self.sensor_noise, state)
@@ -99,6 +99,10 @@ class QuadcopterSE3:
     def _faulty(self) -> bool:
         """Whether anything happens at `fault_time`."""
         return self.wind != 0 or self.rotor_loss > 0
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [4] at x [18], which led to `after` [18]."""
+        return -(jnp.sum(after[:3] ** 2) + 0.1 * jnp.sum(after[12:] ** 2))
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [18] after action u [4] at x [18], without noise and faults."""

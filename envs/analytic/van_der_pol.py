@@ -48,9 +48,13 @@ class VanDerPol:
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [1] in [-1, 1]."""
-        a = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, a)
-        return fully_observed(x, -(jnp.sum(x**2) + 0.1 * (FORCE * a[0]) ** 2))
+        u = jnp.clip(action, -1.0, 1.0)
+        x = self.dynamics(state.data, u)
+        return fully_observed(x, self.reward_of(state.data, u, x))
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [1] at x [2], which led to `after` [2]."""
+        return -(jnp.sum(after**2) + 0.1 * (FORCE * u[0]) ** 2)
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [2] after action u [1] at x [2]."""

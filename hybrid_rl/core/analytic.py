@@ -7,7 +7,7 @@ import jax
 import numpy as np
 from jax import Array
 
-from hybrid_rl.protocols import AnalyticEnv, BalancedEnv
+from hybrid_rl.protocols import AnalyticEnv, BalancedEnv, RewardedEnv
 
 
 def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tuple[Array, Array]:
@@ -44,3 +44,10 @@ def require_equilibrium(name: str, world: BalancedEnv) -> None:
     if not hasattr(world, "equilibrium"):
         kind = type(world).__name__
         raise ValueError(f"{name}.world={kind}: needs an environment with an equilibrium")
+
+
+def require_reward(name: str, world: RewardedEnv) -> None:
+    """Raise ValueError unless the reward of `world`, a field of the part `name`, is known."""
+    if not hasattr(world, "reward_of"):
+        kind = type(world).__name__
+        raise ValueError(f"{name}.world={kind}: needs an environment with a known reward")

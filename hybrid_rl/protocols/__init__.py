@@ -4,7 +4,13 @@ Parts do not inherit from them: a class that has these methods and fields is a p
 """
 
 from hybrid_rl.protocols.control import Controller, Objective, Proposal, Staged, Target
-from hybrid_rl.protocols.environments import AnalyticEnv, BalancedEnv, Env, TrackingEnv
+from hybrid_rl.protocols.environments import (
+    AnalyticEnv,
+    BalancedEnv,
+    Env,
+    RewardedEnv,
+    TrackingEnv,
+)
 from hybrid_rl.protocols.learned import (
     Belief,
     Critic,
@@ -40,6 +46,7 @@ __all__ = [
     "Policy",
     "Proposal",
     "Reward",
+    "RewardedEnv",
     "StabilizingPolicy",
     "Staged",
     "Target",

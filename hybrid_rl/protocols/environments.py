@@ -32,6 +32,13 @@ class BalancedEnv(Env, Protocol):
         """The observation [o] and the action [m] at rest."""
 
 
+class RewardedEnv(Env, Protocol):
+    """An environment whose reward is a known function of observations and action."""
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [m] at the observation x [o], which led to `after` [o]."""
+
+
 class TrackingEnv(BalancedEnv, Protocol):
     """An environment whose observation contains a reference that the robot is to follow."""
 

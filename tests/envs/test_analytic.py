@@ -63,6 +63,16 @@ def test_step_follows_the_dynamics(env) -> None:
     np.testing.assert_allclose(jitted(env, "step")(state, u).obs, expected, atol=1e-5)
 
 
+@pytest.mark.parametrize("env", [e for e in ENVS if hasattr(e, "reward_of")], ids=repr)
+def test_reward_of_is_the_reward_of_a_step(env) -> None:
+    state = jitted(env, "reset")(jax.random.key(5))
+    u = jnp.linspace(-0.5, 0.7, env.spec.act)
+    after = jitted(env, "step")(state, u)
+    expected = jitted(env, "reward_of")(state.obs, u, after.obs)
+    np.testing.assert_allclose(after.reward, expected, rtol=1e-5)
+    assert float(after.reward) != 0
+
+
 START = np.array([0.3, 0.4, -0.3, 0.5, -1.0, 2.0])
 
 
