@@ -3,7 +3,14 @@
 Parts do not inherit from them: a class that has these methods and fields is a part.
 """
 
-from hybrid_rl.protocols.control import Controller, Objective, Proposal, Staged, Target
+from hybrid_rl.protocols.control import (
+    Controller,
+    LabelledTarget,
+    Objective,
+    Proposal,
+    Staged,
+    Target,
+)
 from hybrid_rl.protocols.environments import (
     AnalyticEnv,
     BalancedEnv,
@@ -24,6 +31,7 @@ from hybrid_rl.protocols.learned import (
     StabilizingPolicy,
     Trainable,
     Uncertain,
+    UnsquashedPolicy,
 )
 from hybrid_rl.protocols.learning import Demonstrations, LatestLearner, Learner, UniformLearner
 
@@ -37,6 +45,7 @@ __all__ = [
     "Env",
     "Features",
     "GoalPolicy",
+    "LabelledTarget",
     "LatestLearner",
     "LearnedPolicy",
     "Learner",
@@ -54,4 +63,5 @@ __all__ = [
     "Trainable",
     "Uncertain",
     "UniformLearner",
+    "UnsquashedPolicy",
 ]

@@ -96,6 +96,13 @@ class LearnedPolicy(Policy, Protocol):
         """Log-density [...] of actions u [..., m] at x [..., n]."""
 
 
+class UnsquashedPolicy(LearnedPolicy, Protocol):
+    """A policy that squashes the outputs of a network; "weights" is an entry of its parameters."""
+
+    def unsquashed(self, params: PyTree, x: Array) -> Array:
+        """The mean [..., m] before squashing, at x [..., n]."""
+
+
 class GoalPolicy(Policy, Protocol):
     """A policy that leads to a goal, which can be changed."""
 
