@@ -54,7 +54,8 @@ def test_the_mean_is_linear_in_the_features(hidden: tuple[int, ...]) -> None:
         z = np.maximum(z @ np.asarray(layer["kernel"]) + np.asarray(layer["bias"]), 0)
     np.testing.assert_allclose(features, z, atol=1e-5)
     last = params["weights"][f"Dense_{len(hidden)}"]
-    np.testing.assert_allclose(mu, z @ last["kernel"] + last["bias"], atol=1e-5)
+    wanted = z @ np.asarray(last["kernel"]) + np.asarray(last["bias"])
+    np.testing.assert_allclose(mu, wanted, atol=1e-5)
 
 
 @dataclass(frozen=True)
