@@ -71,7 +71,7 @@ def test_the_wheel_holds_the_package_and_its_entry_for_hydra(wheel):
     sources = [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml"), RECORDED]
     for source in sources:
         assert "__pycache__" in source.parts or f"hybrid_rl/{source.relative_to(ROOT)}" in names
-    assert wheel.stat().st_size < 2e6  # [bytes], of which the ant's demonstrations are half
+    assert wheel.stat().st_size < 3e6  # [bytes], of which recordings and teachers are more than half
 
 
 def dist_of(wheel):
@@ -82,7 +82,8 @@ def dist_of(wheel):
 def test_the_demonstrations_are_found_from_any_folder(python, tmp_path):
     """The ant's, which an experiment reads; a file of the user's comes first."""
     code = (
-        "from hybrid_rl.data.demonstrations import find, load\n"
+        "from hybrid_rl.core.archive import find\n"
+        "from hybrid_rl.data.demonstrations import load\n"
         "print(len(load('demonstrations/ant.npz')['reward']), find('demonstrations/ant.npz'))"
     )
     count, path = run(python, "-c", code, cwd=tmp_path).split(maxsplit=1)

@@ -21,6 +21,7 @@ from hybrid_rl.protocols.environments import (
 from hybrid_rl.protocols.learned import (
     Belief,
     Critic,
+    EnsembleModel,
     Features,
     GoalPolicy,
     LearnedPolicy,
@@ -42,6 +43,7 @@ __all__ = [
     "Controller",
     "Critic",
     "Demonstrations",
+    "EnsembleModel",
     "Env",
     "Features",
     "GoalPolicy",
