@@ -3,7 +3,14 @@
 Parts do not inherit from them: a class that has these methods and fields is a part.
 """
 
-from hybrid_rl.protocols.control import Controller, Objective, Proposal, Staged, Target
+from hybrid_rl.protocols.control import (
+    Controller,
+    LabelledTarget,
+    Objective,
+    Proposal,
+    Staged,
+    Target,
+)
 from hybrid_rl.protocols.environments import (
     AnalyticEnv,
     BalancedEnv,
@@ -14,6 +21,7 @@ from hybrid_rl.protocols.environments import (
 from hybrid_rl.protocols.learned import (
     Belief,
     Critic,
+    EnsembleModel,
     Features,
     GoalPolicy,
     LearnedPolicy,
@@ -24,6 +32,7 @@ from hybrid_rl.protocols.learned import (
     StabilizingPolicy,
     Trainable,
     Uncertain,
+    UnsquashedPolicy,
 )
 from hybrid_rl.protocols.learning import Demonstrations, LatestLearner, Learner, UniformLearner
 
@@ -34,9 +43,11 @@ __all__ = [
     "Controller",
     "Critic",
     "Demonstrations",
+    "EnsembleModel",
     "Env",
     "Features",
     "GoalPolicy",
+    "LabelledTarget",
     "LatestLearner",
     "LearnedPolicy",
     "Learner",
@@ -54,4 +65,5 @@ __all__ = [
     "Trainable",
     "Uncertain",
     "UniformLearner",
+    "UnsquashedPolicy",
 ]

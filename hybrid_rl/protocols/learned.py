@@ -56,6 +56,13 @@ class Uncertain(Model, Protocol):
         """Standard deviation [n] of the change at x [n], in running standard deviations."""
 
 
+class EnsembleModel(Model, Protocol):
+    """A model of several members, which agree where there are enough data."""
+
+    def disagreement(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Standard deviation [n] of the members' predictions, in running std of the change."""
+
+
 class LinearModel(Uncertain, Protocol):
     """x' = K s(x, u), linear in its parameters.
 
@@ -94,6 +101,13 @@ class LearnedPolicy(Policy, Protocol):
 
     def log_prob(self, params: PyTree, x: Array, u: Array) -> Array:
         """Log-density [...] of actions u [..., m] at x [..., n]."""
+
+
+class UnsquashedPolicy(LearnedPolicy, Protocol):
+    """A policy that squashes the outputs of a network; "weights" is an entry of its parameters."""
+
+    def unsquashed(self, params: PyTree, x: Array) -> Array:
+        """The mean [..., m] before squashing, at x [..., n]."""
 
 
 class GoalPolicy(Policy, Protocol):
