@@ -51,6 +51,7 @@ OF_TASK = {  # methods that need another task
     "disagreement_dagger": "lander",
     "joint_pd": "sawyer_torque",
     "koopman_track": "two_link",
+    "residual_dagger": "lander",
     "rq_dagger": "lander",
 }
 EACH = [  # every method on one task, the default method on the default task, one on every task

@@ -158,7 +158,7 @@ class DAgger:
         evidence = jax.tree.map(lambda mean: state.labels.count * mean, state.evidence)
         return {
             "policy": state.policy,
-            "belief": labels.Belief(state.labels, state.visited, evidence),
+            "belief": labels.Belief(state.labels, state.visited, state.seen.scale, evidence),
         }
 
     def update(
