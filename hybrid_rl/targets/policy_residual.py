@@ -27,7 +27,7 @@ class PolicyResidual:
     """
 
     policy: Policy
-    bandwidth: float = 0.2  # h, in standard deviations of the first demonstration
+    bandwidth: float = 0.5  # h, in standard deviations of the first demonstration
     floor: float = 1e-6
 
     def __post_init__(self) -> None:
