@@ -7,7 +7,7 @@ Each decision, at the robot's state x:
     Adam steps on    -mean log pi(u* | x*)    over the labels
 
     DAgger     one candidate, spread 0      RQ-DAgger  one candidate, spread above 0
-    DAIL       target: information          oracle     the error of the clone, which nobody has
+    DAIL       target: information          oracle     the clone's error, to show the room
 
 Source: thesis Algorithm 5 (DAIL) and, with `better` and `length`, Algorithm 12; Ross, Gordon and
 Bagnell 2011 (DAgger). The teacher drives for the `first` decisions (conf/controller/taught.yaml);
@@ -23,15 +23,16 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import labels, statistics
+from hybrid_rl.core import labels, statistics, teaching
 from hybrid_rl.core.branching import when_any
+from hybrid_rl.core.teaching import Answer
 from hybrid_rl.protocols import Controller, LearnedPolicy, Model, Target
 from hybrid_rl.types import Batch, Params, Spec
 
 
 @struct.dataclass
 class DAggerState:
-    """The clone, the labels, and a record of the Q queries that are possible."""
+    """The clone, the labels, and a record of queries: query i is in row i mod Q."""
 
     policy: Any
     optimiser: Any
@@ -40,8 +41,8 @@ class DAggerState:
     evidence: Any  # mean over the labels of what the target sums; None: nothing
     seen: statistics.Running  # of the observations of the first demonstration
     rest: Any  # the teacher's state before an answer
-    information: Array  # [Q] log density of the target at each query; 0 without one
-    decision: Array  # [Q] int32 decisions before each query
+    information: Array  # [Q] log density of the target at the last queries; 0 without one
+    decision: Array  # [Q] int32 decisions before each of them
     queries: Array  # [] int32
     decisions: Array  # [] int32
     loss: Array  # []
@@ -85,8 +86,7 @@ class DAgger:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        if self.teacher is None:
-            raise ValueError("expert=null: nobody teaches; choose a task with an expert, or expert")
+        teaching.require(self.teacher)
         counts = ("candidates", "length", "spacing", "batch_size", "capacity")
         for name, least in [*((name, 1) for name in counts), ("first", 0), ("recent", 0)]:
             if getattr(self, name) < least:
@@ -127,7 +127,7 @@ class DAgger:
         Raises:
             ValueError: for a teacher of other sizes.
         """
-        rest = self._check_teacher(spec)
+        rest = teaching.begin(teaching.require(self.teacher), spec)
         policy = self.policy.init(key, spec)
         count, zero = self.most or self.capacity // self.length, jnp.zeros((), jnp.int32)
         return DAggerState(
@@ -144,23 +144,6 @@ class DAgger:
             zero,
             jnp.zeros(()),
         )
-
-    def _check_teacher(self, spec: Spec) -> Any:
-        """The teacher's initial state, if it decides about observations of this world."""
-        assert self.teacher is not None
-        kind, sizes = type(self.teacher).__name__, f"{spec.obs} numbers to {spec.act}"
-
-        def answer() -> Array:
-            teacher: Any = self.teacher
-            return teacher.act(Params(), teacher.init(spec), jnp.zeros(spec.obs), jax.random.key(0))
-
-        try:
-            shape = jax.eval_shape(answer)[0].shape
-        except (TypeError, IndexError, ValueError) as error:
-            raise ValueError(f"expert={kind}: does not map {sizes}: {error}") from error
-        if shape != (spec.act,):
-            raise ValueError(f"expert={kind}: answers {shape}; this task maps {sizes}")
-        return self.teacher.init(spec)
 
     def _no_evidence(self, policy: Any, spec: Spec) -> Any:
         """Zeros in the shape of what the target sums over the labels."""
@@ -181,7 +164,7 @@ class DAgger:
     def update(
         self, state: DAggerState, params: Params, batch: Batch, key: Array
     ) -> tuple[DAggerState, dict[str, Array]]:
-        """A query at each of the latest states if it is due, then Adam steps. The key is consumed."""
+        """Queries at the latest states where they are due, then Adam steps. The key is consumed."""
         asking, learning, summing = jax.random.split(key, 3)
         keys, before = jax.random.split(asking, len(batch.obs)), state.decisions
 
@@ -220,17 +203,15 @@ class DAgger:
         leading = state.decisions < self.first
         due = self._due(state, value) & ~leading
         x = jnp.where(leading, obs, x)
-        none = (
-            jnp.zeros((self.length, x.size)),
-            jnp.zeros((self.length, state.labels.action.shape[1])),
-        )
-        answer = when_any(lambda asked: asked[0], self._answered)
-        _, path, actions = answer((due | leading, *none), (params, state.rest, x, answering))
-        last = jnp.where(due, state.queries, len(state.decision))  # beyond the end: dropped
+        rings = state.labels.obs, state.labels.action
+        none = Answer(*(jnp.zeros((self.length, ring.shape[1])) for ring in rings))
+        needed = when_any(lambda asked: asked[0], self._answer)
+        asked, made = needed((due | leading, none), (params, state.rest, x, answering))
+        slot = jnp.where(due, state.queries % len(state.decision), len(state.decision))
         return state.replace(
-            labels=labels.add(state.labels, path, actions, due | leading),
-            information=state.information.at[last].set(value, mode="drop"),
-            decision=state.decision.at[last].set(state.decisions, mode="drop"),
+            labels=labels.add(state.labels, made.obs, made.action, asked),
+            information=state.information.at[slot].set(value, mode="drop"),
+            decision=state.decision.at[slot].set(state.decisions, mode="drop"),
             queries=state.queries + due,
             decisions=state.decisions + 1,
         )
@@ -239,53 +220,41 @@ class DAgger:
         self, state: DAggerState, params: Params, obs: Array, key: Array
     ) -> tuple[Array, Array]:
         """The state x* [o] to ask at, near obs [o], and log density [] of the target there."""
+        drawing, labelling = jax.random.split(key)
         scale = state.seen.scale if self.normalise else jnp.ones(obs.size)
         near = obs[None]
         if self.spread > 0:
-            noise = jax.random.normal(key, (self.candidates, obs.size))
+            noise = jax.random.normal(drawing, (self.candidates, obs.size))
             near = near + self.spread * scale[None] * noise
-        if self.oracle:
-            errors = jax.vmap(lambda x, k: self._error(state, params, x, k))
-            return near[jnp.argmax(errors(near, jax.random.split(key, len(near))))], jnp.zeros(())
-        if self.target is None:
+        if self.target is None and not self.oracle:
             return near[0], jnp.zeros(())
-        target = self.target
-        values = jax.vmap(lambda x: target.log_density(params, x))(near)
+        values = jax.vmap(lambda x: self._value(state, params, x, labelling))(near)
         best = jnp.argmax(values)
         return near[best], values[best]
 
-    def _error(self, state: DAggerState, params: Params, x: Array, key: Array) -> Array:
-        """The squared distance [] of the clone's and the teacher's action at x [o]."""
-        assert self.teacher is not None
-        u, _, _ = self.teacher.act(params, state.rest, x, key)
+    def _value(self, state: DAggerState, params: Params, x: Array, key: Array) -> Array:
+        """What is to be large [] at x [o]: the target, or for an oracle the clone's error."""
+        if self.target is not None:
+            return self.target.log_density(params, x)
+        teacher = teaching.require(self.teacher)
+        u = teaching.answer(teacher, None, params, state.rest, x, 1, key).action[0]
         return jnp.sum((self.policy.mean(state.policy, x) - u) ** 2)
 
     def _due(self, state: DAggerState, value: Array) -> Array:
         """[] bool: a query may be asked now, where the target is `value` []."""
-        last = jnp.maximum(state.queries - 1, 0)
+        last = (state.queries - 1) % len(state.decision)
         none = state.queries == 0
         due = none | (state.decisions - state.decision[last] >= self.spacing)
         if self.better:
             due &= none | (value > state.information[last])
         return due & (state.queries < len(state.decision)) if self.most else due
 
-    def _answered(self, asked: tuple, argument: tuple) -> tuple:
-        """`asked` with the path [T, o] and the actions [T, m] that the teacher answers."""
-        params, rest, x, key = argument
-
-        def decide(carry: tuple[Array, Any], key: Array) -> tuple:
-            x, held = carry
-            assert self.teacher is not None
-            u, held, _ = self.teacher.act(params, held, x, key)
-            after = x
-            if self.model is not None and self.length > 1:
-                lifted = self.model.lift(params.model, x)
-                after = self.model.step(params.model, lifted, u)[: x.size]
-            return (after, held), (x, u)
-
-        answer = jax.lax.scan(decide, (x, rest), jax.random.split(key, self.length))[1]
-        new = asked[0], *answer
-        return jax.tree.map(lambda new, old: jnp.where(asked[0], new, old), new, asked)
+    def _answer(self, asked: tuple[Array, Answer], argument: tuple) -> tuple[Array, Answer]:
+        """`asked` with the teacher's answer if it is due."""
+        due, none = asked
+        teacher, (params, rest, x, key) = teaching.require(self.teacher), argument
+        new = teaching.answer(teacher, self.model, params, rest, x, self.length, key)
+        return due, jax.tree.map(lambda new, none: jnp.where(due, new, none), new, none)
 
     def fit(self, state: DAggerState, steps: Array | int, key: Array) -> DAggerState:
         """The state after `steps` [] Adam steps on the labels, none if there are no labels."""

@@ -5,6 +5,8 @@
 Behaviour cloning then is least squares: with `clip` of mu(x) - u, with `tanh` of mu(x) - atanh(u).
 `unsquashed` is mu(x), whose derivatives in the weights give the Fisher information of a
 demonstration. Source: thesis section 4.2, with sigma "assumed known"; the squashing is ours.
+
+`Clones` are several such networks with different initial weights, of which the first one acts.
 """
 
 from dataclasses import dataclass
@@ -103,3 +105,51 @@ class Deterministic:
     def _log_normal(self, noise: Array) -> Array:
         constant = jnp.log(self.sigma) + 0.5 * jnp.log(2 * jnp.pi)
         return -jnp.sum(0.5 * noise**2 + constant, axis=-1)
+
+
+@dataclass(frozen=True)
+class Clones(Deterministic):
+    """`members` networks that learn from the same data; the first one acts.
+
+    Its "weights" have a first axis [members].
+
+    Raises:
+        ValueError: for fewer than two members.
+    """
+
+    members: int = 5
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        super().__post_init__()
+        if self.members < 2:
+            raise ValueError(f"policy.members={self.members}: must be 2 or more")
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """Initial parameters, different for each member. The key is consumed."""
+        keys = jax.random.split(key, self.members)
+        each = jax.vmap(lambda key: super(Clones, self).init(key, spec)["weights"])(keys)
+        return {**super().init(key, spec), "weights": each}
+
+    def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
+        """Features and mu of the first member."""
+        first = jax.tree.map(lambda each: each[0], params["weights"])
+        return super().layers({**params, "weights": first}, x)
+
+    def each(self, params: dict[str, Any], x: Array) -> Array:
+        """The action of every member [members, ..., m] at x [..., n]."""
+
+        def one(weights: Any) -> Array:
+            mu = super(Clones, self).layers({**params, "weights": weights}, x)[1]
+            return self._squashed(mu)
+
+        return jax.vmap(one)(params["weights"])
+
+    def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """The sum [...] over the members of the log-density of z."""
+
+        def one(weights: Any) -> Array:
+            alone = {**params, "weights": jax.tree.map(lambda w: w[None], weights)}
+            return super(Clones, self).log_prob(alone, x, u)
+
+        return jax.vmap(one)(params["weights"]).sum(0)

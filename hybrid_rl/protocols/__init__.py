@@ -20,6 +20,7 @@ from hybrid_rl.protocols.environments import (
 )
 from hybrid_rl.protocols.learned import (
     Belief,
+    Committee,
     Critic,
     EnsembleModel,
     Features,
@@ -40,6 +41,7 @@ __all__ = [
     "AnalyticEnv",
     "BalancedEnv",
     "Belief",
+    "Committee",
     "Controller",
     "Critic",
     "Demonstrations",

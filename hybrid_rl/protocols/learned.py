@@ -110,6 +110,13 @@ class UnsquashedPolicy(LearnedPolicy, Protocol):
         """The mean [..., m] before squashing, at x [..., n]."""
 
 
+class Committee(LearnedPolicy, Protocol):
+    """Several policies that learn from the same data."""
+
+    def each(self, params: PyTree, x: Array) -> Array:
+        """The action of every member [members, ..., m] at x [..., n]."""
+
+
 class GoalPolicy(Policy, Protocol):
     """A policy that leads to a goal, which can be changed."""
 

@@ -1,6 +1,7 @@
 """The deterministic policy: its density, its features, and least squares by cloning."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -9,15 +10,15 @@ import pytest
 from scipy.stats import norm
 
 from hybrid_rl.learners.bc import BehaviourCloning
-from hybrid_rl.policies.deterministic import Deterministic
+from hybrid_rl.policies.deterministic import Clones, Deterministic
 from hybrid_rl.types import Batch, Params, Spec, Transition
 
 SPEC = Spec(obs=3, act=2, dt=0.1)
-X = np.random.default_rng(0).normal(size=(200, 3)).astype(np.float32)
+X: Any = np.random.default_rng(0).normal(size=(200, 3)).astype(np.float32)
 
 
 @pytest.mark.parametrize(("squash", "inverse"), [("tanh", np.arctanh), ("clip", np.asarray)])
-def test_the_density_is_a_gaussian_before_squashing(squash: str, inverse: object) -> None:
+def test_the_density_is_a_gaussian_before_squashing(squash: str, inverse: Any) -> None:
     """Of actions, and of samples."""
     policy = Deterministic(hidden=(5,), sigma=0.3, squash=squash)
     params = policy.init(jax.random.key(0), SPEC)
@@ -74,7 +75,7 @@ def test_cloning_is_least_squares() -> None:
         Deterministic(hidden=(), squash="clip"), Shown(), learning_rate=0.01, batch_size=200
     )
 
-    def one(state: object, key: jax.Array) -> tuple:
+    def one(state: Any, key: jax.Array) -> tuple:
         return learner.update(state, Params(), Batch(*[X] * 7), key)[0], None
 
     keys = jax.random.split(jax.random.key(1), 3000)
@@ -84,6 +85,25 @@ def test_cloning_is_least_squares() -> None:
     got = state.policy["weights"]["Dense_0"]
     np.testing.assert_allclose(got["kernel"], wanted[:3], atol=0.03)
     np.testing.assert_allclose(got["bias"], wanted[3], atol=0.03)
+
+
+def test_clones_are_independent_policies() -> None:
+    """The first one acts, and their likelihoods add up."""
+    clones, alone = Clones(hidden=(5,), members=3), Deterministic(hidden=(5,))
+    params, u = clones.init(jax.random.key(0), SPEC), jnp.array([0.3, -0.6])
+    each = [jax.tree.map(lambda w, i=i: w[i], params) for i in range(3)]
+    actions = np.stack([alone.mean(one, X) for one in each])
+    np.testing.assert_allclose(clones.each(params, X), actions, atol=1e-6)
+    np.testing.assert_allclose(clones.mean(params, X), actions[0], atol=1e-6)
+    assert np.abs(actions[0] - actions[1]).max() > 0.01
+    wanted = sum(float(alone.log_prob(one, X[0], u)) for one in each)
+    assert float(clones.log_prob(params, X[0], u)) == pytest.approx(wanted, rel=1e-5)
+
+
+def test_a_single_clone_is_refused() -> None:
+    """Its disagreement would be 0."""
+    with pytest.raises(ValueError, match=r"policy\.members=1"):
+        Clones(members=1)
 
 
 @pytest.mark.parametrize("fields", [{"sigma": 0.0}, {"squash": "sin"}])

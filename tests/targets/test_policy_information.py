@@ -1,4 +1,4 @@
-"""The information of demonstrations against closed forms, in NumPy."""
+"""The information of demonstrations, and clones that disagree, against closed forms in NumPy."""
 
 from typing import Any
 
@@ -10,13 +10,14 @@ import pytest
 from hybrid_rl.core.domain import Box
 from hybrid_rl.core.labels import Belief, empty
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.policies.deterministic import Deterministic
+from hybrid_rl.policies.deterministic import Clones, Deterministic
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.targets.policy_disagreement import PolicyDisagreement
 from hybrid_rl.targets.policy_information import PolicyInformation
 from hybrid_rl.types import Params, Spec
 
 SPEC = Spec(obs=4, act=2, dt=0.1)
-X = np.random.default_rng(3).normal(size=(30, 4))
+X: Any = np.random.default_rng(3).normal(size=(30, 4))
 
 
 def made(hidden: tuple[int, ...], criterion: str, sigma: float = 0.5) -> tuple:
@@ -117,3 +118,21 @@ def test_a_policy_without_a_mean_before_squashing_is_refused() -> None:
     gaussian: Any = TanhGaussian()
     with pytest.raises(ValueError, match="TanhGaussian: needs policy=deterministic"):
         PolicyInformation(gaussian)
+
+
+def test_the_disagreement_is_the_variance_of_the_clones() -> None:
+    """In NumPy, of linear clones that are clipped."""
+    policy = Clones(hidden=(), squash="clip", members=4)
+    params = policy.init(jax.random.key(0), SPEC)
+    W = np.asarray(params["weights"]["Dense_0"]["kernel"], float)
+    wanted = np.clip(X @ W, -1, 1).var(0).sum(1)
+    target = PolicyDisagreement(policy)
+    log_p = jax.vmap(lambda x: target.log_density(Params(policy=params), x))(jnp.asarray(X))
+    np.testing.assert_allclose(np.exp(log_p), wanted, rtol=1e-3, atol=1e-7)
+
+
+def test_a_single_policy_has_no_disagreement() -> None:
+    """The error names one that has it."""
+    single: Any = Deterministic()
+    with pytest.raises(ValueError, match="Deterministic: needs policy=clones"):
+        PolicyDisagreement(single)
