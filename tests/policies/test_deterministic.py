@@ -15,6 +15,7 @@ from hybrid_rl.types import Batch, Params, Spec, Transition
 
 SPEC = Spec(obs=3, act=2, dt=0.1)
 X: Any = np.random.default_rng(0).normal(size=(200, 3)).astype(np.float32)
+NO: Any = np.zeros(200, np.float32)
 
 
 @pytest.mark.parametrize(("squash", "inverse"), [("tanh", np.arctanh), ("clip", np.asarray)])
@@ -65,8 +66,8 @@ class Shown:
 
     def load(self) -> Transition:
         """Decisions whose other columns are not used."""
-        u = np.clip(np.stack([X[:, 0] - X[:, 1] ** 2, np.sin(X[:, 2])], 1), -0.9, 0.9)
-        return Transition(X, u.astype(np.float32), *[np.zeros(200, np.float32)] * 3, X)
+        u: Any = np.clip(np.stack([X[:, 0] - X[:, 1] ** 2, np.sin(X[:, 2])], 1), -0.9, 0.9)
+        return Transition(X, u, NO, NO, NO, X)
 
 
 def test_cloning_is_least_squares() -> None:
