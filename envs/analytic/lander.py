@@ -1,11 +1,11 @@
 """Lander: a planar vehicle with two thrusters that hovers, or turns a backflip.
 
     x'' = -S sin th,  z'' = S cos th - 1,  th'' = 2 (a1 - a2),  S = a1 + a2
-    flip   r = -(10 (th - goal)^2 + 5 z^2 + 10 relu(-z) + x'^2 + z'^2 + th'^2 + 0.1 |a|^2)
+    flip   r = -(10 (th - goal)^2 + 5 z^2 + 10 relu(-z) + x'^2 + z'^2 + th'^2 + 0.1 |u|^2)
     hover  r = -(|o|^2 + 0.001 |a - 1/2|^2),   both after the step
 
 o = (x, z, th, x', z', th') [6]; mass, gravity and distances have no units. a [2]: thrusts, of both
-signs, the right one first; a = 1/2 hovers. Start: N(0, 0.1 I) for the flip, at rest at 0 for the
+signs, the right one first; a = 1/2 hovers; u = atanh(a), of at most 0.9999. Start: N(0, 0.1 I) for the flip, at rest at 0 for the
 hover. A decision is 0.1 s, one Euler step; never terminates.
 
 goal = -2 pi turns: half a turn ends upside down, held by negative thrust; it is 0 for the hover.
@@ -14,8 +14,8 @@ first time on at which |th - goal| < 0.35.
 
 Source: thesis section 6.3.4 and appendix C, 10 Hz, with a = tanh u for its input u: it prints tan
 where the text, and its author's code, have the bounded function, and it omits it in th''. The
-reward is its cost, of a instead of u. Euler and the hover's weights are its author's; the
-criterion of success is our choice, the thesis has none.
+rewards are its costs. Euler is its author's; the criterion of success is our choice, the thesis
+has none.
 """
 
 import math
@@ -33,6 +33,7 @@ DT = 0.1  # [s] of a decision
 VARIANCE = 0.1  # of each entry of the state at the start of a flip
 ANGLE, HEIGHT = 0.35, 1.0  # [rad], [length]: bounds of success
 HOLD = 10  # decisions within these bounds at a success
+LARGEST = 0.9999  # |a| in the cost of u, which is infinite at 1
 TASKS = ("hover", "flip")
 
 
@@ -95,7 +96,8 @@ class Lander:
             return -(jnp.sum(after**2) + 0.001 * jnp.sum((u - 0.5) ** 2))
         z, th = after[1], after[2]
         height = 5 * z**2 + 10 * jax.nn.relu(-z)
-        still = jnp.sum(after[3:] ** 2) + 0.1 * jnp.sum(u**2)
+        inputs = jnp.arctanh(jnp.clip(u, -LARGEST, LARGEST))
+        still = jnp.sum(after[3:] ** 2) + 0.1 * jnp.sum(inputs**2)
         return -(10 * (th - self.goal) ** 2 + height + still)
 
     def dynamics(self, x: Array, u: Array) -> Array:

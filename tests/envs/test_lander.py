@@ -67,14 +67,14 @@ def test_its_regulator_has_the_gain_of_the_riccati_equation() -> None:
 
 def test_the_rewards_are_the_costs_of_the_thesis() -> None:
     """At a state below the ground, with the goal of half a turn and of a whole one."""
-    x, u = np.array([3.0, -0.5, -1.0, 0.3, 0.2, -0.4]), np.array([0.6, -0.2])
-    rest = 5 * 0.25 + 10 * 0.5 + (0.09 + 0.04 + 0.16) + 0.1 * (0.36 + 0.04)
+    x, u = np.array([3.0, -0.5, -1.0, 0.3, 0.2, -0.4]), np.tanh([0.7, -0.2])
+    rest = 5 * 0.25 + 10 * 0.5 + (0.09 + 0.04 + 0.16) + 0.1 * (0.49 + 0.04)
     for turns in (0.5, 1.0):
         want = 10 * (-1 + 2 * np.pi * turns) ** 2 + rest
         got = Lander(turns=turns).reward_of(jnp.zeros(6), jnp.asarray(u), jnp.asarray(x))
         assert float(got) == pytest.approx(-want, rel=1e-6)
     hover = Lander("hover").reward_of(jnp.zeros(6), jnp.asarray(u), jnp.asarray(x))
-    assert float(hover) == pytest.approx(-(x @ x + 0.001 * (0.01 + 0.49)), rel=1e-6)
+    assert float(hover) == pytest.approx(-(x @ x + 0.001 * np.sum((u - 0.5) ** 2)), rel=1e-6)
 
 
 def test_a_success_holds_the_goal_for_a_second() -> None:
