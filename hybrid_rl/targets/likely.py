@@ -7,7 +7,7 @@ kernel estimate (Parzen 1962); the product is ours.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -28,6 +28,8 @@ class Likely:
     target: Target
     bandwidth: float = 0.5  # h, in standard deviations of the first demonstration
     power: float = 1.0
+
+    needs_recent: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Check the fields."""
