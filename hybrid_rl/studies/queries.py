@@ -235,10 +235,12 @@ def compared(methods: dict[str, Any]) -> dict[str, Any]:
     for label, one in methods.items():
         if label == "RQ-DAgger":
             continue
-        result[label] = {}
+        chances = {}
         if len(one["N"]) == len(base["N"]):
-            result[label]["area"] = improvement(one["area_each"], base["area_each"])
+            chances["area"] = improvement(one["area_each"], base["area_each"])
         if "refit" in one and "refit" in base:
             last = [each["refit"]["each"][:, -1] for each in (one, base)]
-            result[label]["refit"] = improvement(*last)
+            chances["refit"] = improvement(*last)
+        if chances:
+            result[label] = chances
     return result
