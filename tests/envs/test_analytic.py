@@ -14,6 +14,7 @@ from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import ACCELERATION, DT, PointMass
@@ -34,6 +35,8 @@ ENVS = [
     VanDerPol(),
     CartPendulum(),
     TwoLink(),
+    Lander("hover"),
+    Lander("flip"),
 ]
 over_envs = pytest.mark.parametrize("env", ENVS, ids=repr)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
+from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
@@ -33,6 +34,7 @@ STATE = {
     "sprk_sand": 4,
     "sawyer_torque": 14,
 }  # entries of the observation before a reference
+EULER = ("lander",)  # an action moves velocities now, and positions one decision later
 ANALYTIC = {
     "no_dynamics": NoDynamics,
     "pendulum": Pendulum,
@@ -43,6 +45,7 @@ ANALYTIC = {
     "cart_pendulum": CartPendulum,
     "two_link": TwoLink,
     "sprk_sand": SprkSand,
+    "lander": Lander,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,
