@@ -115,7 +115,7 @@ def _row(
         heights,
         0.92 * width,
         color=COLOURS[i % len(COLOURS)],
-        alpha=0.75,
+        alpha=0.5,
         hatch=("", "//", "..")[i // len(COLOURS)],
         edgecolor="white",
         linewidth=0,

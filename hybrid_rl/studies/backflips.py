@@ -90,6 +90,8 @@ def label_of(config: Any) -> str:
             words.append(f"p by {inner.objective.target.criterion}")
         if full.level is not None:
             words.append(f"V below {full.level:g}")
+    elif full.level != 1:
+        words.append(f"noise {full.level:g}")
     if learner.spacing != 20:
         words.append("no spacing" if learner.spacing == 1 else f"spacing {learner.spacing}")
     return ", ".join(words)

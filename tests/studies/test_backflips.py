@@ -76,6 +76,7 @@ def test_the_density_of_a_linear_clone_is_the_squared_distance_plus_one() -> Non
         ("dagger_learner.spacing=1 guarded.level=10.0", "kle3_imitation, V below 10, no spacing"),
         ("explorer.gain=50.0 explorer.normalise=false", "kle3_imitation, gain 50, variance 0.1"),
         ("algo=nie dagger_learner.spacing=5", "nie, spacing 5"),
+        ("algo=minie noisy.level=0.5", "minie, noise 0.5"),
         ("algo=nie env.task=flip", "starts of the flip"),
     ],
 )
