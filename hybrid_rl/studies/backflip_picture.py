@@ -8,7 +8,15 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.studies import backflips
-from hybrid_rl.studies.backflips import Explored, by_reference, explored, safety, teacher, trained
+from hybrid_rl.studies.backflips import (
+    Explored,
+    by_reference,
+    explored,
+    lost,
+    safety,
+    teacher,
+    trained,
+)
 from hybrid_rl.studies.curves import band, improvement, iqm
 from hybrid_rl.studies.style import COLOURS, STROKES, plain_log
 
@@ -37,6 +45,7 @@ def flips(pattern: str) -> tuple[Any, dict[str, Any]]:
     numbers = {
         "flights_a_clone": backflips.STARTS,
         "teacher": teacher(),
+        "lost_from_V": lost(),
         "rows": rows,
         "comparisons": _compared({key: result[0][-1] for key, result in results.items()}),
     }

@@ -9,6 +9,7 @@ their labels. Each then flies 100 starts of the flip, from N(0, 0.1 I), for 10 s
                  and under one reference, a clone of 20 flips from starts of the flip
     safety       of the exploration: greatest V of the hover's regulator, shares of decisions
                  beyond 90 degrees and with |z| > 1
+    lost         share of the states of one V from which the regulator does not return to the hover
 
 Source: thesis section 6.3.4.
 """
@@ -47,6 +48,8 @@ FLIP = 100  # decisions of a flight
 STARTS = 100  # flights of a clone
 REFERENCE = (20, 10_000)  # demonstrations of the reference clone, its seed
 TRAINING, ANGLE, HEIGHT = 0xF11B, np.pi / 2, 1.0
+LEVELS = (1, 2, 3, 5, 10, 20, 50)  # of V
+STATES, RETURN = 4000, 200  # of each level; decisions to return in
 
 
 class Explored(NamedTuple):
@@ -231,3 +234,26 @@ def safety(obs: np.ndarray) -> tuple[np.ndarray, ...]:
     V = np.asarray(jax.jit(jax.vmap(jax.vmap(guarded.policy.lyapunov)))(jnp.asarray(obs)))
     beyond, high = np.abs(obs[..., 2]) > ANGLE, np.abs(obs[..., 1]) > HEIGHT
     return V.max(1), beyond.mean(1), high.mean(1), obs.std((0, 1))
+
+
+def lost(levels: Sequence[float] = LEVELS) -> dict[float, float]:
+    """Share of random states at each level of V from which V does not fall below 1 in 20 s.
+
+    The directions are uniform in coordinates in which V is the squared distance.
+    """
+    guarded: Any = _experiment().agent.controller
+    regulator = guarded.policy
+    z = np.random.default_rng(0).normal(size=(STATES, 6))
+    z = z / np.linalg.norm(z, axis=1, keepdims=True)
+    directions = np.linalg.solve(np.linalg.cholesky(regulator.solve()[1]).T, z.T).T
+
+    def hover(x: Any, _: None) -> tuple[Any, None]:
+        return regulator.world.dynamics(x, regulator.mean((), x)), None
+
+    @jax.jit
+    @jax.vmap
+    def end(x: Any) -> Any:
+        return regulator.lyapunov(jax.lax.scan(hover, x, None, length=RETURN)[0])
+
+    ends = {level: end(jnp.asarray(level**0.5 * directions, jnp.float32)) for level in levels}
+    return {level: float((~(np.asarray(V) < 1)).mean()) for level, V in ends.items()}

@@ -44,6 +44,14 @@ def test_safety_is_that_of_the_states() -> None:
     np.testing.assert_allclose(std, obs.std((0, 1)), rtol=1e-6)
 
 
+def test_the_regulator_is_lost_far_from_the_hover() -> None:
+    """Its actions are bounded; near the hover, where they are not, it returns from all states."""
+    shares = backflips.lost((0.01, 10.0, 1e4))
+    assert shares[0.01] == 0
+    assert 0 < shares[10.0] < shares[1e4]
+    assert shares[1e4] > 0.9
+
+
 def test_a_clone_without_weights_turns_as_its_start_turns() -> None:
     """No thrust: the angle is th + th' t, and no flight succeeds, as all fall."""
     policy = Deterministic((64,), "sin").init(jax.random.key(0), Lander().spec)
