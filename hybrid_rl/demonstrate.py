@@ -1,14 +1,17 @@
-"""An expert's decisions, as a file to learn from.
+"""An expert's decisions, or a trained policy, as a file to learn from.
 
     python -m hybrid_rl.demonstrate task=panda_stack episodes=20
     python -m hybrid_rl.demonstrate task=quadcopter_se3 expert=babble env.twist=2
     python -m hybrid_rl.demonstrate run=DIR mode=policy out=demonstrations/ant.npz
+    python -m hybrid_rl.demonstrate run=DIR policy=demonstrations/ant_policy.npz
 
 The file is demonstrations/T.npz by default. The expert is the task's scripted one, or another of
 conf/expert, such as babble (random actions); in the task with its defaults or with env.KEY=VALUE,
 episode.KEY=VALUE, expert.KEY=VALUE. With run=DIR it is the trained controller (mode: full, policy
-or planner; the first seed), without exploration.
-Episode i starts from key i of `seed`.
+or planner; the first seed), without exploration. Episode i starts from key i of `seed`.
+
+With policy=FILE it writes no episodes but the parameters of the run's policy (the first seed),
+which expert=trained and policy=trained read.
 """
 
 if __name__ == "__main__":
@@ -27,6 +30,7 @@ import numpy as np
 from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
+from hybrid_rl.data import trained
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
@@ -40,6 +44,7 @@ ARGUMENTS = (
     Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
     Argument("run", "", "instead: folder of a trained run"),
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
+    Argument("policy", "", "with run=DIR: the file for its policy's parameters"),
     Argument("episodes", 10, "how many", whole()),
     Argument("seed", 0, "of the first states", whole(least=0)),
     Argument("out", "", "the file; empty: demonstrations/TASK.npz"),
@@ -104,16 +109,34 @@ def _expert(
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     from hybrid_rl.evaluate import load
 
-    trained, mode = load(Path(given["run"])), given["mode"]
-    if mode not in trained.controllers:
-        raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
-    params: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
-    return trained.task, trained.episode, trained.controllers[mode], params
+    run, mode = load(Path(given["run"])), given["mode"]
+    if mode not in run.controllers:
+        raise UsageError(f"mode={mode}: the run has {', '.join(run.controllers)}")
+    params: Any = jax.tree.map(lambda leaf: leaf[0], run.params)
+    return run.task, run.episode, run.controllers[mode], params
+
+
+def _write_policy(given: dict[str, Any], changes: dict[str, str]) -> None:
+    """Write the parameters of the policy of run=DIR to policy=FILE."""
+    if not given["run"]:
+        raise UsageError(f"policy={given['policy']}: writes a trained policy; give run=DIR")
+    file = output("policy", given["policy"], (".npz",))
+    task, episode, _, params = _expert(given, changes)
+    if not jax.tree.leaves(params.policy):
+        raise UsageError(f"run={given['run']}: has no policy with parameters")
+    try:
+        trained.save(file, task, episode.spec, params.policy)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    count = sum(leaf.size for leaf in jax.tree.leaves(params.policy))
+    print(f"{file}: the policy of {given['run']}, {count:,} parameters, task {task}")
 
 
 def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    if given["policy"]:
+        return _write_policy(given, changes)
     episodes, seed = given["episodes"], given["seed"]
     if given["out"]:
         output("out", given["out"], (".npz",))

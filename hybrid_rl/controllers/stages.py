@@ -1,4 +1,4 @@
-"""One controller after the other within an episode: warm up, explore, then track."""
+"""One controller after the other within an episode or a run: warm up, explore, then track."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -32,6 +32,7 @@ class StagesController:
 
     stages: Mapping[str, Controller]  # in order
     decisions: tuple[int, ...] = ()  # of every stage but the last
+    of_run: bool = False  # counts decisions of the run; without a run, the last stage acts
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -82,9 +83,15 @@ class StagesController:
             return act
 
         ends = jnp.cumsum(jnp.array(decisions, jnp.int32))
-        stage = jnp.sum(state.count >= ends)
+        stage = jnp.sum(self._count(params, state) >= ends)
         u, each, metrics = jax.lax.switch(stage, [filled(b) for b in branches], state.each)
         return u, StagesState(each, state.count + 1), metrics
+
+    def _count(self, params: Params, state: StagesState) -> Array | float:
+        """Decisions [] of the episode or of the run so far."""
+        if not self.of_run:
+            return state.count
+        return jnp.inf if params.decisions is None else params.decisions
 
     def greedy(self) -> "StagesController":
         """The same stages without exploration."""

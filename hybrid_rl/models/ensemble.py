@@ -60,6 +60,18 @@ class Ensemble:
         """Mean over the members [n]."""
         return self.each(params, x, u).mean(0)
 
+    def disagreement(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """Standard deviation [n] of the members' predictions, in running std of the change.
+
+        It needs members with a `change`, as Gaussian has.
+        """
+        member: Any = self.model
+
+        def one(weights: Any) -> Array:
+            return member.change({**params, "weights": weights}, x, u)
+
+        return jax.vmap(one)(params["weights"]).std(0)
+
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Next states [B, n] for noise [B, n] ~ N(0, I), each of one member.
 

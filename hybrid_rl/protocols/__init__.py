@@ -14,6 +14,7 @@ from hybrid_rl.protocols.environments import (
 from hybrid_rl.protocols.learned import (
     Belief,
     Critic,
+    EnsembleModel,
     Features,
     GoalPolicy,
     LearnedPolicy,
@@ -34,6 +35,7 @@ __all__ = [
     "Controller",
     "Critic",
     "Demonstrations",
+    "EnsembleModel",
     "Env",
     "Features",
     "GoalPolicy",

@@ -56,6 +56,13 @@ class Uncertain(Model, Protocol):
         """Standard deviation [n] of the change at x [n], in running standard deviations."""
 
 
+class EnsembleModel(Model, Protocol):
+    """A model of several members, which agree where there are enough data."""
+
+    def disagreement(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Standard deviation [n] of the members' predictions, in running std of the change."""
+
+
 class LinearModel(Uncertain, Protocol):
     """x' = K s(x, u), linear in its parameters.
 

@@ -75,6 +75,20 @@ def test_a_stage_of_no_decisions_is_skipped() -> None:
     assert sorted(metrics) == ["planner/b", "planner/both"]
 
 
+def test_stages_of_a_run_count_its_decisions_and_end_with_it() -> None:
+    """Whatever the episode; without a run, as in an evaluation, the last stage acts."""
+    stages = StagesController(STAGES.stages, (3,), of_run=True)
+
+    def action(decisions: int | None) -> float:
+        now = None if decisions is None else jnp.int32(decisions)
+        state = stages.init(SPEC)
+        return float(
+            stages.act(Params(decisions=now), state, jnp.zeros(1), jax.random.key(0))[0][0]
+        )
+
+    assert [action(n) for n in (0, 2, 3, 100, None)] == [0, 0, 10, 10, 10]
+
+
 @pytest.mark.parametrize("decisions", [(), (1, 2), (-1,)])
 def test_bad_numbers_of_decisions_are_refused(decisions) -> None:
     """Each stage but the last needs one."""

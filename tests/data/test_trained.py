@@ -1,0 +1,132 @@
+"""The file of a trained policy: parameters come back bit for bit, and bad files are refused."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tiny import call, only_line, run
+
+from hybrid_rl import config, demonstrate, evaluate
+from hybrid_rl.cli import command
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.data.trained import TrainedPolicy, save
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.analytic.point_mass import PointMass
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+
+POLICY = TanhGaussian((8, 4), "sin", normalise=True)
+PARAMS = POLICY.init(jax.random.key(3), Pendulum().spec)
+BIAS = "policy/trunk/params/Dense_0/bias"
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """A valid file."""
+    save(tmp_path / "deep" / "policy.npz", "pendulum", Pendulum().spec, PARAMS)
+    return tmp_path / "deep" / "policy.npz"
+
+
+def opened(file: Path, /, **fields: Any) -> TrainedPolicy:
+    """The policy that the pendulum reads from the file."""
+    given = {"policy": POLICY, "file": str(file), "task": "pendulum", "world": Pendulum()}
+    return TrainedPolicy(**(given | fields))
+
+
+def test_parameters_come_back_bit_for_bit(file: Path) -> None:
+    """Structure, values and types; and the policy acts by them, whatever parameters it gets."""
+    trained = opened(file)
+    got = trained.load()
+    assert jax.tree.structure(got) == jax.tree.structure(PARAMS)
+    for a, b in zip(jax.tree.leaves(got), jax.tree.leaves(PARAMS), strict=True):
+        np.testing.assert_array_equal(a, b)
+        assert a.dtype == b.dtype
+    x, noise = jnp.array([0.3, -0.2, 1.5]), jnp.array([0.7])
+    np.testing.assert_array_equal(trained.mean("ignored", x), POLICY.mean(PARAMS, x))
+    for a, b in zip(trained.sample((), x, noise), POLICY.sample(PARAMS, x, noise), strict=True):
+        np.testing.assert_array_equal(a, b)
+    np.testing.assert_array_equal(trained.variance((), x), POLICY.variance(PARAMS, x))
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"task": "cartpole"}, "is of task pendulum, not of cartpole"),
+        ({"world": PointMass()}, "obs has 3 numbers, this pendulum has 4"),
+        ({"episode": {"action_repeat": 4}}, "decides every 0.05 s, this pendulum 0.2 s"),
+        ({"file": "nowhere.npz"}, "no such file; `python -m hybrid_rl.demonstrate run=DIR policy"),
+        ({"policy": TanhGaussian((4, 4), "sin", normalise=True)}, r"bias is \(8,\), this .* \(4,"),
+        ({"policy": TanhGaussian((8, 4), "sin")}, r"has policy/state.*, which this policy lacks"),
+        ({"policy": TanhGaussian((8, 4, 2), "sin", normalise=True)}, "lacks policy/trunk/params/"),
+    ],
+)
+def test_a_file_for_another_use_is_refused(file: Path, fields: dict, words: str) -> None:
+    """Another task, rate or policy."""
+    with pytest.raises(ValueError, match=words):
+        opened(file, **fields)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda a: a | {BIAS: np.full_like(a[BIAS], np.nan)}, f"{BIAS} is not finite"),
+        (lambda a: {k: v for k, v in a.items() if k != "dt"}, "lacks dt"),
+        (lambda a: a | {BIAS: np.full(8, "a")}, f"{BIAS} must hold numbers"),
+        (lambda a: a | {"sizes": np.zeros(3)}, "sizes must be two numbers"),
+    ],
+    ids=lambda given: given[-9:] if isinstance(given, str) else "",
+)
+def test_an_inconsistent_file_is_refused(file: Path, change: Callable, words: str) -> None:
+    """The error names the fault."""
+    with np.load(file) as arrays:
+        whole = dict(arrays)
+    np.savez(file, **change(whole))
+    with pytest.raises(ValueError, match=words):
+        opened(file)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9])
+def test_a_file_cut_short_is_refused(file: Path, share: float) -> None:
+    """At any length."""
+    data = file.read_bytes()
+    file.write_bytes(data[: int(share * len(data))])
+    with pytest.raises(ValueError, match=r"is damaged, cut short, or no \.npz"):
+        opened(file)
+
+
+def test_parameters_that_are_not_finite_are_not_written(tmp_path: Path) -> None:
+    """The message names the array."""
+    bad = jax.tree.map(lambda leaf: leaf * jnp.nan, PARAMS)
+    with pytest.raises(ValueError, match="is not finite"):
+        save(tmp_path / "policy.npz", "pendulum", Pendulum().spec, bad)
+
+
+def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """The first seed's, whose actions are those of the run; other requests are refused."""
+    monkeypatch.chdir(tmp_path)
+    run(tmp_path / "run", "algo=sac", "num_seeds=2")
+    write = [f"run={tmp_path / 'run'}", "policy=policy.npz"]
+    assert call(lambda: command.guarded(demonstrate.main), *write) == 0
+    given = evaluate.load(tmp_path / "run")
+    hidden = f"hidden={list(given.controllers['policy'].policy.hidden)}".replace(" ", "")
+    line = ["task=pendulum", "algo=sac", "expert=trained", f"expert.policy.policy.{hidden}"]
+    expert = config.expert(config.load([*line, "expert.policy.file=policy.npz"]))
+    assert isinstance(expert, PolicyController)
+    x = jnp.array([1.0, 0.0, 0.4])
+    got = expert.act(evaluate.Params(), (), x, jax.random.key(0))[0]
+    first = jax.tree.map(lambda leaf: leaf[0], given.params)
+    want = given.controllers["policy"].act(first, (), x, jax.random.key(0))[0]
+    np.testing.assert_array_equal(got, want)
+    capfd.readouterr()
+    for words, wrong in (
+        ("give run=DIR", ["task=pendulum", "policy=policy.npz"]),
+        ("must end in .npz", [write[0], "policy=policy.txt"]),
+        ("a run has its own", [*write, "env.x=1"]),
+    ):
+        assert call(lambda wrong=wrong: command.guarded(demonstrate.main), *wrong) == 2
+        assert words in only_line(capfd)
