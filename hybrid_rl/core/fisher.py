@@ -81,16 +81,21 @@ def products(step: ParametricStep, theta: Any, path: Path, kind: str, v: Any) ->
 
 def diagonal(F: Array, sigma: Array) -> Array:
     """The diagonals of F' Sigma^-1 F [..., P] for F [..., n, P] and sigma [n]."""
-    return jnp.sum((F / sigma[:, None]) ** 2, -2)
+    return jnp.sum(_in_deviations(F, sigma) ** 2, -2)
+
+
+def _in_deviations(F: Array, sigma: Array) -> Array:
+    """F / sigma [..., n, P]."""
+    return F / jnp.broadcast_to(sigma[:, None], F.shape)
 
 
 def log_det(F: Array, sigma: Array, prior: Array) -> Array:
-    """log det(I + diag(prior)) - log det(diag(prior)) [] for F [T, n, P] and prior [P] above 0.
+    """log det(I + diag(prior)) - log det(diag(prior)) [] for F [T, n, P] and prior [P] > 0.
 
     It equals log det(1 + G), G = Sigma^-1/2 F diag(prior)^-1 F' Sigma^-1/2 [T n, T n] (Sylvester's
     identity): twice the mutual information of the data and theta ~ N(., diag(prior)^-1).
     """
-    rows = (F / sigma[:, None]).reshape(-1, F.shape[-1]) / jnp.sqrt(prior)
+    rows = _in_deviations(F, sigma).reshape(-1, F.shape[-1]) / jnp.sqrt(prior)[None]
     return log_det_one_plus(rows @ rows.T)
 
 

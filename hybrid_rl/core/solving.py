@@ -62,21 +62,23 @@ def _(primals: tuple[Array], tangents: tuple[Array]) -> tuple[Array, Array]:
 def _swept(G: Array) -> tuple[Array, Array]:
     """log det(1 + G) [] and (1 + G)^-1 [n, n], by sweeping the rows one after the other.
 
-    Each pivot is 1 or more; a smaller one is a rounding error. Source: Goodnight, A tutorial on the
-    SWEEP operator, The American Statistician 33, 1979.
+    What rounding does to the largest entry is added to 1, and no pivot is below that: G may be
+    singular and of any size. Source: Goodnight, A tutorial on the SWEEP operator, The American
+    Statistician 33, 1979.
     """
     n = len(G)
+    least = 1 + 4 * jnp.finfo(G.dtype).eps * jnp.max(jnp.diagonal(G))
 
     def sweep(k: Array, held: tuple[Array, Array]) -> tuple[Array, Array]:
         A, total = held
         row = jax.lax.dynamic_index_in_dim(A, k, 0, keepdims=False)
         column = jax.lax.dynamic_index_in_dim(A, k, 1, keepdims=False)
-        pivot = jnp.maximum(jax.lax.dynamic_index_in_dim(row, k, 0, keepdims=False), 1)
+        pivot = jnp.maximum(jax.lax.dynamic_index_in_dim(row, k, 0, keepdims=False), least)
         A = A - column[:, None] * (row / pivot)[None]
         A = jax.lax.dynamic_update_index_in_dim(A, row / pivot, k, 0)
         A = jax.lax.dynamic_update_index_in_dim(A, -column / pivot, k, 1)
         return A.at[k, k].set(1 / pivot), total + jnp.log(pivot)
 
-    start = jnp.eye(n, dtype=G.dtype) + G, jnp.zeros((), G.dtype)
+    start = least * jnp.eye(n, dtype=G.dtype) + G, jnp.zeros((), G.dtype)
     A, total = jax.lax.fori_loop(0, n, sweep, start)
     return total, A

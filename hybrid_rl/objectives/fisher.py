@@ -36,7 +36,7 @@ class FisherInformation:
     sensitivity: str = "step"  # step | path
     sigma: float | None = 0.1  # of the change, in running deviations; None: the model's
     floor: float = 0.01  # of the diagonal [1/theta^2]
-    past: bool = True  # count the data so far
+    past: bool = True  # count the data so far, if a learner does
     probes: int = 0  # directions that estimate T; 0: exact
 
     def __post_init__(self) -> None:
@@ -63,18 +63,12 @@ class FisherInformation:
     def prepare(
         self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
     ) -> tuple[Return, tuple[()]]:
-        """J of a path. The key is consumed.
-
-        Raises:
-            ValueError: if the data so far count and no learner keeps them.
-        """
+        """J of a path. The key is consumed."""
         theta = fisher.weights_of(params.model)
         flat, unravel = ravel_pytree(theta)
         sigma = fisher.noise_of(self.model, params.model, x, self.sigma)
         prior = jnp.full_like(flat, self.floor)
-        if self.past:
-            if params.belief is None:
-                raise ValueError("information.past=true: needs the learner `information`")
+        if self.past and params.belief is not None:
             prior += params.belief.total
 
         def step(theta: object, x: Array, u: Array) -> Array:

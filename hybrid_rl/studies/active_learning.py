@@ -17,7 +17,6 @@ costs up to 1e9 under every method; of the logarithm of a loss. A method differs
 the bands of their areas do not overlap.
 """
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import jax
@@ -29,10 +28,12 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.studies import held_out
 from hybrid_rl.studies.curves import band, iqm
+from hybrid_rl.studies.held_out import HeldOut
 from hybrid_rl.studies.recorded import Recorded, matching, read
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import COLOURS, STROKES, STYLE, legend_below
 from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import Batch
 
 TASK, EXPERIMENT = "cart_swing_up", "thesis/fig_4_1"
 UPRIGHT, SECOND = 0.9, 25  # cos th, decisions of a second
@@ -65,8 +66,8 @@ def figure(
     first = read(folders[0], TASK).run
     small = next((r for f in folders if _single(r := read(f, TASK).run)), first)
     fitted = held_out.reference(small, data.box, SEED)
-    model = small.agent.learners["model"].model
-    reference = model, fitted
+    learner: Any = small.agent.learners["model"]
+    reference = learner.model, fitted
     each = {folder.name: measured(read(folder, TASK), data, reference) for folder in folders}
     _check_size(each)
     numbers = {
@@ -75,8 +76,8 @@ def figure(
             "upright": float((data.upright[:, -SECOND:] > UPRIGHT).all(1).mean()),
         },
         "reference_loss": {
-            "box": float(held_out.loss(model, fitted, data.box)),
-            "swing_up": float(held_out.loss(model, fitted, data.swing_up)),
+            "box": float(held_out.loss(learner.model, fitted, data.box)),
+            "swing_up": float(held_out.loss(learner.model, fitted, data.swing_up)),
         },
         "methods": {label: reported(one) for label, one in each.items()},
         "against": against,
@@ -90,25 +91,31 @@ def _single(run: Any) -> bool:
     return getattr(run.agent.learners["model"].model, "members", 1) == 1
 
 
-def measured(recorded: Recorded, data: Any, reference: Any) -> dict[str, np.ndarray]:
+def measured(
+    recorded: Recorded, data: HeldOut, reference: tuple[Any, Any]
+) -> dict[str, np.ndarray]:
     """The quantities [S, E] of a run after each of E episodes of S learners."""
     made, length = recorded.made, recorded.config.episode.steps
     count = made.reward.shape[1] // length
     by_episode = made.reward[:, : count * length].reshape(-1, count, length)
     theta = made.next_obs[:, : count * length, 0].reshape(by_episode.shape)
-    model, (box, swing_up) = recorded.run.agent.learners["model"].model, (data.box, data.swing_up)
+    learner: Any = recorded.run.agent.learners["model"]
     models = history(recorded, count)
-    each = jax.jit(jax.vmap(jax.vmap(lambda p: held_out.loss(model, p, box))))
-    other = jax.jit(jax.vmap(jax.vmap(lambda p: held_out.loss(model, p, swing_up))))
+
+    def loss(data: Batch) -> np.ndarray:
+        one = jax.vmap(jax.vmap(lambda params: held_out.loss(learner.model, params, data)))
+        return np.asarray(jax.jit(one)(models))
+
     ends = length * np.arange(1, count + 1)
     rows = []
     for obs, action in zip(made.obs, made.action, strict=True):
-        F = held_out.derivatives(*reference, SIGMA, jnp.asarray(obs), jnp.asarray(action))
+        model, params = reference
+        F = held_out.derivatives(model, params, SIGMA, jnp.asarray(obs), jnp.asarray(action))
         rows.append(held_out.information(F, ends, FLOOR))
     return {
         "cost": -by_episode.astype(float).mean(-1),
-        "loss_box": np.asarray(each(models)),
-        "loss_swing_up": np.asarray(other(models)),
+        "loss_box": loss(data.box),
+        "loss_swing_up": loss(data.swing_up),
         **{name: np.stack([row[name] for row in rows]) for name in rows[0]},
         "upright": (np.cos(theta[..., -SECOND:]) > UPRIGHT).all(-1).astype(float),
     }
@@ -183,7 +190,9 @@ def summary(numbers: dict[str, Any]) -> list[str]:
     lines = [f"exact model: cost {_banded(exact['cost'])}, upright {exact['upright']:.0%}"]
     for label, one in numbers["methods"].items():
         areas = one["area"]
-        apart = [f"{k} {v}" for k, v in numbers["differences"].get(label, {}).items() if v[0] != "n"]
+        apart = [
+            f"{k} {v}" for k, v in numbers["differences"].get(label, {}).items() if v[0] != "n"
+        ]
         words = f"; against {numbers['against']}: {', '.join(apart)}" if apart else ""
         lines.append(
             f"{label}, {one['seeds']} seeds: cost {_banded(areas['cost'])}, last three episodes "

@@ -1,8 +1,8 @@
 """Data of a known world that no run has seen, a model fitted to them, and information under it.
 
-    box       uniform observations and actions of BOX
-    swing-up  episodes of the same planner with the exact model
-    loss      mean over the entries of (predicted - true change)^2 / variance of the change
+box       uniform observations and actions of BOX
+swing-up  episodes of the same planner with the exact model
+loss      mean over the entries of (predicted - true change)^2 / variance of the change
 """
 
 from functools import partial
