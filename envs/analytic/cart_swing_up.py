@@ -5,12 +5,14 @@
 
 o = (th, x, th', x') [4], th = 0 is upright, th > 0 leans towards x < 0, th is not wrapped; a:
 acceleration u, as a fraction of `acceleration`; start: N((pi, 0, 0, 0), start^2 1); a decision is
-two Euler steps of 0.02 s; never terminates. Metric: success = cos th > 0.9.
+two Euler steps of 0.02 s; terminates where |x| > `rail`, if there is one. Metric: success =
+cos th > 0.9.
 
 Source: state and reward from thesis section 4.1, which refers to another text for the dynamics.
 These, with their length, friction, limit of the action and start, are those of the author's own
-code for hybrid learning (custom_cartpoleswingup), where th > 0 leans to the left. That a decision
-is two steps, and that no position ends an episode, is our choice.
+code for hybrid learning (custom_cartpoleswingup), where th > 0 leans to the left and the rail is
+2.4 m long in each direction. That a decision is two steps, and that the rail has no end unless one
+is given, is our choice.
 """
 
 from dataclasses import dataclass
@@ -42,13 +44,15 @@ class CartSwingUp:
     damping: float = 0.2  # [1/s] d
     friction: float = 0.1  # [1/s] c
     start: float = 0.2  # [rad, m, rad/s, m/s] standard deviation of each entry at the start
+    rail: float | None = None  # [m] |x| that ends an episode; None: none does
 
     spec = Spec(obs=4, act=1, dt=SUBSTEPS * DT)
 
     def __post_init__(self) -> None:
-        for name in ("length", "acceleration"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
+        for name in ("length", "acceleration", "rail"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ValueError(f"{name}={value}: must be above 0")
         for name in ("damping", "friction", "start"):
             if getattr(self, name) < 0:
                 raise ValueError(f"{name}={getattr(self, name)}: must be 0 or more")
@@ -66,7 +70,8 @@ class CartSwingUp:
 
     def _state(self, x: Array, reward: Array) -> EnvState:
         upright = (jnp.cos(x[0]) > UPRIGHT).astype(jnp.float32)
-        return fully_observed(x, reward).replace(metrics={"success": upright})
+        ended = False if self.rail is None else jnp.abs(x[1]) > self.rail
+        return fully_observed(x, reward, ended).replace(metrics={"success": upright})
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [4], which led to `after` [4]."""

@@ -26,12 +26,12 @@ import numpy as np
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
-from hybrid_rl.studies import held_out
+from hybrid_rl.studies import unseen
 from hybrid_rl.studies.curves import band, iqm
-from hybrid_rl.studies.held_out import HeldOut
 from hybrid_rl.studies.recorded import Recorded, matching, read
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import COLOURS, STROKES, STYLE, legend_below
+from hybrid_rl.studies.unseen import Unseen
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch
 
@@ -62,10 +62,10 @@ def figure(
     if against not in [folder.name for folder in folders]:
         names = ", ".join(folder.name for folder in folders)
         raise UsageError(f"against={against}: no such run; choose one of {names}")
-    data = held_out.held_out(EXPERIMENT, size, episodes, SEED)
+    data = unseen.collect(EXPERIMENT, size, episodes, SEED)
     first = read(folders[0], TASK).run
     small = next((r for f in folders if _single(r := read(f, TASK).run)), first)
-    fitted = held_out.reference(small, data.box, SEED)
+    fitted = unseen.reference(small, data.box, SEED)
     learner: Any = small.agent.learners["model"]
     reference = learner.model, fitted
     each = {folder.name: measured(read(folder, TASK), data, reference) for folder in folders}
@@ -76,8 +76,8 @@ def figure(
             "upright": float((data.upright[:, -SECOND:] > UPRIGHT).all(1).mean()),
         },
         "reference_loss": {
-            "box": float(held_out.loss(learner.model, fitted, data.box)),
-            "swing_up": float(held_out.loss(learner.model, fitted, data.swing_up)),
+            "box": float(unseen.loss(learner.model, fitted, data.box)),
+            "swing_up": float(unseen.loss(learner.model, fitted, data.swing_up)),
         },
         "methods": {label: reported(one) for label, one in each.items()},
         "against": against,
@@ -91,9 +91,7 @@ def _single(run: Any) -> bool:
     return getattr(run.agent.learners["model"].model, "members", 1) == 1
 
 
-def measured(
-    recorded: Recorded, data: HeldOut, reference: tuple[Any, Any]
-) -> dict[str, np.ndarray]:
+def measured(recorded: Recorded, data: Unseen, reference: tuple[Any, Any]) -> dict[str, np.ndarray]:
     """The quantities [S, E] of a run after each of E episodes of S learners."""
     made, length = recorded.made, recorded.config.episode.steps
     count = made.reward.shape[1] // length
@@ -103,15 +101,15 @@ def measured(
     models = history(recorded, count)
 
     def loss(data: Batch) -> np.ndarray:
-        one = jax.vmap(jax.vmap(lambda params: held_out.loss(learner.model, params, data)))
+        one = jax.vmap(jax.vmap(lambda params: unseen.loss(learner.model, params, data)))
         return np.asarray(jax.jit(one)(models))
 
     ends = length * np.arange(1, count + 1)
     rows = []
     for obs, action in zip(made.obs, made.action, strict=True):
         model, params = reference
-        F = held_out.derivatives(model, params, SIGMA, jnp.asarray(obs), jnp.asarray(action))
-        rows.append(held_out.information(F, ends, FLOOR))
+        F = unseen.derivatives(model, params, SIGMA, jnp.asarray(obs), jnp.asarray(action))
+        rows.append(unseen.information(F, ends, FLOOR))
     return {
         "cost": -by_episode.astype(float).mean(-1),
         "loss_box": loss(data.box),

@@ -63,6 +63,15 @@ def test_the_rod_hangs_at_the_start_and_success_is_upright() -> None:
         assert not after.terminated
 
 
+@pytest.mark.parametrize("rail", [None, 1.0])
+def test_the_end_of_the_rail_ends_an_episode(rail) -> None:
+    env = CartSwingUp(rail=rail)
+    for x, beyond in ((0.9, False), (-1.1, True)):
+        state = fully_observed(jnp.array([0.0, x, 0.0, 0.0]), jnp.zeros(()))
+        after = jitted(env, "step")(state, jnp.zeros(1))
+        assert bool(after.terminated) == (beyond and rail is not None)
+
+
 def test_the_scene_shows_the_rod_on_the_side_of_its_mass() -> None:
     env, x = CartSwingUp(length=1.2), jnp.array([0.3, 0.5, 0.0, 0.0])
     model = mujoco.MjModel.from_xml_string(env.scene())
@@ -77,6 +86,7 @@ def test_the_scene_shows_the_rod_on_the_side_of_its_mass() -> None:
     ("fields", "line"),
     [
         ({"length": 0.0}, "length=0.0: must be above 0"),
+        ({"rail": 0.0}, "rail=0.0: must be above 0"),
         ({"friction": -0.1}, "friction=-0.1: must be 0 or more"),
     ],
 )

@@ -13,7 +13,7 @@ from hybrid_rl import config, evaluate, figures, train
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.models.exact import Exact
-from hybrid_rl.studies import active_learning, held_out
+from hybrid_rl.studies import active_learning, unseen
 
 SHORT = [
     "experiment=thesis/fig_4_1",
@@ -36,18 +36,18 @@ def draw(*arguments: str) -> int:
     return call(lambda: command.guarded(figures.main), "study=active_learning", *arguments)
 
 
-def data(*_: Any) -> held_out.HeldOut:
+def data(*_: Any) -> unseen.Unseen:
     """Transitions of the world itself, drawn by NumPy."""
     rng = np.random.default_rng(0)
     x, u = jnp.asarray(rng.normal(size=(50, 4))), jnp.asarray(rng.uniform(-1, 1, (50, 1)))
-    batch = held_out.transitions(x, u, jax.vmap(CartSwingUp().dynamics)(x, u))
-    return held_out.HeldOut(batch, batch, np.array([0.5, 0.7]), np.full((2, 30), 0.95))
+    batch = unseen.transitions(x, u, jax.vmap(CartSwingUp().dynamics)(x, u))
+    return unseen.Unseen(batch, batch, np.array([0.5, 0.7]), np.full((2, 30), 0.95))
 
 
 def test_figure_of_tiny_runs(tmp_path, monkeypatch, capsys) -> None:
     """Costs are those of the log; the last loss is that of the last model."""
-    monkeypatch.setattr(held_out, "held_out", data)
-    monkeypatch.setattr(held_out, "UPDATES", 200)
+    monkeypatch.setattr(unseen, "collect", data)
+    monkeypatch.setattr(unseen, "UPDATES", 200)
     for level in (0.0, 0.5):
         folder = tmp_path / ("noise" if level else "none")
         train.train(config.load([*SHORT, f"noisy.level={level}", f"run_dir={folder}"]))
@@ -60,7 +60,7 @@ def test_figure_of_tiny_runs(tmp_path, monkeypatch, capsys) -> None:
     np.testing.assert_allclose(first, np.array(returns) / -30, rtol=1e-3)
     trained = evaluate.load(tmp_path / "none")
     model = trained.controllers["full"].model
-    losses = jax.vmap(lambda params: held_out.loss(model, params, data().box))
+    losses = jax.vmap(lambda params: unseen.loss(model, params, data().box))
     last = numbers["methods"]["none"]["loss_box"][0][-1]
     assert last == pytest.approx(losses(trained.params.model).mean(), rel=1e-3)
     assert set(numbers["differences"]) == {"noise"}
@@ -73,20 +73,20 @@ def test_the_exact_model_has_no_loss_and_standing_still_has_one() -> None:
     """One for a model that predicts the mean change, zero for the world itself."""
     world: Any = CartSwingUp()
     batch = data().box
-    np.testing.assert_allclose(held_out.loss(Exact(world), (), batch), 0, atol=1e-10)
+    np.testing.assert_allclose(unseen.loss(Exact(world), (), batch), 0, atol=1e-10)
     mean = (batch.next_obs - batch.obs).mean(0)
 
     class Mean:
         def step(self, params, x, u):
             return x + mean
 
-    np.testing.assert_allclose(held_out.loss(Mean(), (), batch), 1, rtol=1e-5)
+    np.testing.assert_allclose(unseen.loss(Mean(), (), batch), 1, rtol=1e-5)
 
 
 def test_information_adds_up() -> None:
     """Against NumPy at the first and at the last end; the diagonal bounds the determinant."""
     F = np.random.default_rng(0).normal(size=(6, 2, 5))
-    result = held_out.information(F, np.array([2, 6]), 0.1)
+    result = unseen.information(F, np.array([2, 6]), 0.1)
     for i, end in enumerate((2, 6)):
         rows = F[:end].reshape(-1, 5)
         total = rows.T @ rows + 0.1 * np.eye(5)

@@ -25,7 +25,7 @@ UPDATES = 20_000  # Adam steps of the reference model
 CHUNK = 256  # transitions whose derivatives are computed together
 
 
-class HeldOut(NamedTuple):
+class Unseen(NamedTuple):
     """Transitions, and the costs of the exact model."""
 
     box: Batch  # [B]
@@ -40,7 +40,7 @@ def transitions(obs: Array, action: Array, after: Array) -> Batch:
     return Batch(obs, action, no, no, no, after)
 
 
-def held_out(experiment: str, size: int, episodes: int, seed: int) -> HeldOut:
+def collect(experiment: str, size: int, episodes: int, seed: int) -> Unseen:
     """`size` transitions of the box, and `episodes` of the exact model with known_mpc's planner."""
     run = build(load([f"experiment={experiment}", "algo=known_mpc", *EXACT]))
     world: Any = run.agent.episode.env
@@ -56,7 +56,7 @@ def held_out(experiment: str, size: int, episodes: int, seed: int) -> HeldOut:
     x, o = states.obs, states.obs.shape[-1]
     flat = (x[:, :-1].reshape(-1, o), actions.reshape(-1, u.shape[-1]), x[:, 1:].reshape(-1, o))
     cost = -np.asarray(states.reward[:, 1:]).mean(1)
-    return HeldOut(box, transitions(*flat), cost, np.cos(x[:, 1:, 0]))
+    return Unseen(box, transitions(*flat), cost, np.cos(x[:, 1:, 0]))
 
 
 def loss(model: Any, params: Any, data: Batch) -> Array:
