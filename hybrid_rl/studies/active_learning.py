@@ -5,16 +5,17 @@
 Runs of experiment=thesis/fig_4_1; the label of each is the name of its folder. Curves are IQM and
 95% band over seeds, after each episode.
 
-    cost          mean of -r over an episode; black: of the same planner with the exact model
+    cost          mean of -r over an episode; dotted: of the same planner with the exact model
     held-out loss of the model after the episode, on uniform transitions and along swing-ups of the
                   exact model: mean squared error over the variance of the change
     information   log det and trace of I of the decisions so far under one reference model, which is
-                  fitted to uniform transitions; I of each method's own model is not comparable
+                  fitted to uniform transitions: the I of methods' own models is not comparable
     upright       share of seeds with cos th > 0.9 through the last second
 
-The area under a curve is its mean over episodes: of min(cost, 2) after the first episode, which
-costs up to 1e9 under every method; of the logarithm of a loss. A method differs from another where
-the bands of their areas do not overlap.
+Where the rail has an end, an episode stands for `episode.steps` decisions. The area under a curve
+is its mean over episodes: of min(cost, 2) after the first episode, which costs up to 1e9 under
+every method; of the logarithm of a loss; `early` of the first three alone. A method differs from
+another where the bands of their areas do not overlap.
 """
 
 from typing import Annotated, Any
@@ -38,6 +39,7 @@ from hybrid_rl.types import Batch
 TASK, EXPERIMENT = "cart_swing_up", "thesis/fig_4_1"
 UPRIGHT, SECOND = 0.9, 25  # cos th, decisions of a second
 MOST_COST = 2.0  # of an episode in the area under the curve
+EARLY = 3  # first episodes, with an area of their own
 SIGMA, FLOOR = 0.1, 0.01  # of the reference information
 SEED = 123_456  # of held-out data and the reference model
 PANELS = {  # quantity -> title
@@ -62,6 +64,7 @@ def figure(
     if against not in [folder.name for folder in folders]:
         names = ", ".join(folder.name for folder in folders)
         raise UsageError(f"against={against}: no such run; choose one of {names}")
+    folders = sorted(folders, key=lambda folder: folder.name != against)  # it is drawn in black
     data = unseen.collect(EXPERIMENT, size, episodes, SEED)
     first = read(folders[0], TASK).run
     small = next((r for f in folders if _single(r := read(f, TASK).run)), first)
@@ -160,11 +163,12 @@ def reported(one: dict[str, np.ndarray]) -> dict[str, Any]:
 def area(one: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The area under each curve, and the cost of the last three episodes: name -> [S]."""
     cost = np.minimum(one["cost"], MOST_COST)
-    logs = {name: np.log10(one[name]).mean(1) for name in LOG}
-    rest = {name: one[name].mean(1) for name in ("log_det", "log_det_diagonal", "upright")}
-    early = {f"{name}_early": one[name][:, :3].mean(1) for name in ("log_det", "log_det_diagonal")}
-    last = cost[:, -3:].mean(1)
-    return {"cost": cost[:, 1:].mean(1), "last_cost": last, **logs, **rest, **early}
+    logs = {name: np.log10(one[name]) for name in LOG}
+    rest = {name: one[name] for name in ("log_det", "log_det_diagonal", "upright")}
+    each = {"cost": cost[:, 1:], "last_cost": cost[:, -3:], **logs, **rest}
+    names = ("loss_box", "loss_swing_up", "log_det")
+    early = {f"{name}_early": each[name][:, :EARLY] for name in names}
+    return {name: values.mean(1) for name, values in {**each, **early}.items()}
 
 
 def differences(methods: dict[str, Any], against: str) -> dict[str, Any]:
@@ -216,13 +220,14 @@ def picture(each: dict[str, dict[str, np.ndarray]], exact: dict[str, Any]) -> An
         panels = np.ravel(figure.subplots(2, 3))
         for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
             for i, (label, one) in enumerate(each.items()):
-                style = COLOURS[i % len(COLOURS)], STROKES[i // len(COLOURS)]
+                style = COLOURS[i % len(COLOURS) - 1], STROKES[i // len(COLOURS)]
                 _curve(axes, label, one[name], style)
             axes.set(title=title, xlabel="Episodes")
             if name in LOG:
                 axes.set_yscale("log")
         panels[0].axhline(exact["cost"][0], color="k", lw=0.8, ls=":", label="exact model")
-        panels[0].set_ylim(-0.9, MOST_COST)
+        panels[0].set_ylim(-0.5, MOST_COST)
+        panels[-1].set_ylim(-0.02, 1.02)
         panels[-1].axhline(exact["upright"], color="k", lw=0.8, ls=":", label="exact model")
         for axes in panels[3:]:
             legend_below(axes)
