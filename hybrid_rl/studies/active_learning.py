@@ -150,11 +150,12 @@ def _check_size(each: dict[str, dict[str, np.ndarray]]) -> None:
 
 
 def reported(one: dict[str, np.ndarray]) -> dict[str, Any]:
-    """IQM and band [3, E] of each quantity, and of its area under the curve [3]."""
+    """IQM and band [3, E] of each quantity, the share upright [E]; IQM and band [3] of areas."""
     areas = area(one)
     return {
         "seeds": len(one["cost"]),
-        **{name: [iqm(values), *band(values)] for name, values in one.items()},
+        **{name: [iqm(each), *band(each)] for name, each in one.items() if name != "upright"},
+        "upright": one["upright"].mean(0),
         "first_cost": one["cost"][:, 0],
         "area": {name: [iqm(values), *band(values)] for name, values in areas.items()},
     }

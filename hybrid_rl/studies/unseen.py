@@ -21,7 +21,7 @@ from hybrid_rl.types import Batch, Params
 
 BOX = np.array([[-1.0, 7.3], [-2.0, 2.0], [-10.0, 10.0], [-5.0, 5.0]])  # th, x, th', x'
 EXACT = ("+model@known_model=exact", "shooting_planner.model=${known_model}")
-UPDATES = 20_000  # Adam steps of the reference model
+UPDATES, ROWS = 20_000, 256  # Adam steps of the reference model, transitions of each
 CHUNK = 256  # transitions whose derivatives are computed together
 
 
@@ -72,7 +72,7 @@ def reference(run: Run, data: Batch, seed: int) -> Any:
     first, drawing = jax.random.split(jax.random.key(seed))
 
     def one(state: Any, key: Array) -> tuple[Any, None]:
-        rows = jax.random.randint(key, (learner.batch_size,), 0, len(data.obs))
+        rows = jax.random.randint(key, (ROWS,), 0, len(data.obs))
         batch = jax.tree.map(lambda x: x[rows], data)
         return learner.update(state, Params(), batch, key)[0], None
 
