@@ -5,8 +5,8 @@
 
 o = (th, x, th', x') [4], th = 0 is upright, th > 0 leans towards x < 0, th is not wrapped; a:
 acceleration u, as a fraction of `acceleration`; start: N((pi, 0, 0, 0), start^2 1); a decision is
-two Euler steps of 0.02 s; terminates where |x| > `rail`, if there is one. Metric: success =
-cos th > 0.9.
+two Euler steps of 0.02 s; terminates where |x| > `rail` or |th - pi| > 2 pi `turns`, if given.
+Metric: success = cos th > 0.9.
 
 Source: state and reward from thesis section 4.1, which refers to another text for the dynamics.
 These, with their length, friction, limit of the action and start, are those of the author's own
@@ -45,11 +45,12 @@ class CartSwingUp:
     friction: float = 0.1  # [1/s] c
     start: float = 0.2  # [rad, m, rad/s, m/s] standard deviation of each entry at the start
     rail: float | None = None  # [m] |x| that ends an episode; None: none does
+    turns: float | None = None  # of the rod, in either direction, that end one; None: none do
 
     spec = Spec(obs=4, act=1, dt=SUBSTEPS * DT)
 
     def __post_init__(self) -> None:
-        for name in ("length", "acceleration", "rail"):
+        for name in ("length", "acceleration", "rail", "turns"):
             value = getattr(self, name)
             if value is not None and not value > 0:
                 raise ValueError(f"{name}={value}: must be above 0")
@@ -70,7 +71,11 @@ class CartSwingUp:
 
     def _state(self, x: Array, reward: Array) -> EnvState:
         upright = (jnp.cos(x[0]) > UPRIGHT).astype(jnp.float32)
-        ended = False if self.rail is None else jnp.abs(x[1]) > self.rail
+        ended = jnp.zeros((), bool)
+        if self.rail is not None:
+            ended |= jnp.abs(x[1]) > self.rail
+        if self.turns is not None:
+            ended |= jnp.abs(x[0] - jnp.pi) > 2 * jnp.pi * self.turns
         return fully_observed(x, reward, ended).replace(metrics={"success": upright})
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:

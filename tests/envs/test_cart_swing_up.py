@@ -63,13 +63,17 @@ def test_the_rod_hangs_at_the_start_and_success_is_upright() -> None:
         assert not after.terminated
 
 
-@pytest.mark.parametrize("rail", [None, 1.0])
-def test_the_end_of_the_rail_ends_an_episode(rail) -> None:
-    env = CartSwingUp(rail=rail)
-    for x, beyond in ((0.9, False), (-1.1, True)):
-        state = fully_observed(jnp.array([0.0, x, 0.0, 0.0]), jnp.zeros(()))
-        after = jitted(env, "step")(state, jnp.zeros(1))
-        assert bool(after.terminated) == (beyond and rail is not None)
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [({}, "000"), ({"rail": 1.0}, "010"), ({"turns": 0.75}, "001")],
+)
+def test_the_end_of_the_rail_or_of_a_turn_ends_an_episode(fields, expected) -> None:
+    """At the start, beyond 1 m, and 0.8 turns away from hanging."""
+    env, ended = CartSwingUp(**fields), ""
+    for th, x in ((np.pi, 0.9), (np.pi, -1.1), (-0.6 * np.pi, 0.0)):
+        state = fully_observed(jnp.array([th, x, 0.0, 0.0]), jnp.zeros(()))
+        ended += str(int(jitted(env, "step")(state, jnp.zeros(1)).terminated))
+    assert ended == expected
 
 
 def test_the_scene_shows_the_rod_on_the_side_of_its_mass() -> None:
