@@ -58,7 +58,7 @@ CITED = [
         " | random, after 50,000",
         model,
     ),
-    Text("5,000 random decisions in #% of the pairs", [pairs_below("disagreement", "5,000 random")]),
+    Text("random decisions in #% of the pairs", [pairs_below("disagreement", "5,000 random")]),
     Text(
         "at 50,000 is # with equal weights and # with a",
         [curve(MIXED, WITH_REWARD.format(w)).at(END)[0] for w in ("", "0.1 ")],
@@ -75,7 +75,7 @@ PLAIN = [
     "noise from 1,000 to 5,000 while",
     "Seeds 0 to 9, no setting",
     "jax 0.11",
-    "after\n  5,000 decisions and after 50,000, and its return at 50,000 is below that of 5,000 random",
+    "after\n  5,000 decisions and after 50,000, and its return at 50,000 is below that of 5,000",
     "seeds 1000 to 1009",
     "the return at 50,000 is",
     "With 1,000 random decisions",
