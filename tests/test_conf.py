@@ -50,7 +50,10 @@ OF_TASK = {  # methods that need another task
     "dail": "lander",
     "disagreement_dagger": "lander",
     "joint_pd": "sawyer_torque",
+    "kle3_imitation": "lander",
     "koopman_track": "two_link",
+    "minie": "lander",
+    "nie": "lander",
     "residual_dagger": "lander",
     "rq_dagger": "lander",
 }

@@ -5,8 +5,8 @@
     hover  r = -(|o|^2 + 0.001 |a - 1/2|^2),   both after the step
 
 o = (x, z, th, x', z', th') [6]; mass, gravity and distances have no units. a [2]: thrusts, of both
-signs, the right one first; a = 1/2 hovers; u = atanh(a), of at most 0.9999. Start: N(0, 0.1 I) for the flip, at rest at 0 for the
-hover. A decision is 0.1 s, one Euler step; never terminates.
+signs, the right one first; a = 1/2 hovers; u = atanh(a), of |a| up to 0.9999. Start: N(0, 0.1 I)
+for the flip, at rest at 0 for the hover. A decision is 0.1 s, one Euler step; never terminates.
 
 goal = -2 pi turns: half a turn ends upside down, held by negative thrust; it is 0 for the hover.
 Metrics: success = |th - goal| < 0.35 and |z| < 1 throughout the last second; turned = 1 from the

@@ -6,17 +6,26 @@ view=queries    figure 4-2: runs of experiment=thesis/fig_4_2, one per method. S
                 over its teacher's against demonstrations, IQM and 95% band over seeds, as trained
                 (one Adam step a decision) and after `refit` steps on the labels of the first N
                 demonstrations, N of `at`; the first N with 90%. runs=A.json,B.json joins files
+view=backflips  figure 6-9: runs of experiment=thesis/fig_6_9. Flights of the clones that succeed,
+                and that turn at some time, after 3,000 and 15,000 more steps on their labels;
+                safety of the exploration
+view=information  figure 6-10: information of the queries of these runs, under the clone that asked
+                and under one reference clone
 """
 
 from typing import Annotated, Any
 
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.errors import UsageError
-from hybrid_rl.studies import queries_picture
+from hybrid_rl.studies import backflip_picture, queries_picture
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE
 
-LINES = {"queries": queries_picture.lines}
+LINES = {
+    "queries": queries_picture.lines,
+    "backflips": backflip_picture.lines,
+    "information": backflip_picture.query_lines,
+}
 
 
 def figure(
@@ -28,8 +37,13 @@ def figure(
     """The picture and the numbers of one view."""
     import matplotlib
 
+    views = {
+        "queries": lambda: queries_picture.drawn(runs, refit, _counts(at)),
+        "backflips": lambda: backflip_picture.flips(runs),
+        "information": lambda: backflip_picture.queries(runs),
+    }
     with matplotlib.rc_context(STYLE):
-        figure, numbers = queries_picture.drawn(runs, refit, _counts(at))
+        figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
 
 
