@@ -54,6 +54,7 @@ OF_TASK = {  # methods that need another task
     "koopman_track": "two_link",
     "minie": "lander",
     "nie": "lander",
+    "residual_dagger": "lander",
     "rq_dagger": "lander",
 }
 EACH = [  # every method on one task, the default method on the default task, one on every task

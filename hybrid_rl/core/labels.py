@@ -29,6 +29,7 @@ class Belief:
 
     labels: Labels
     visited: Array  # [R, o] the states of the last R decisions, the first one repeated
+    scale: Array  # [o] standard deviations of the first demonstration; 1 without one
     evidence: Any  # sum over the labels of what the target asked for; None: nothing
 
 

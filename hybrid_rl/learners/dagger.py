@@ -7,7 +7,7 @@ Each decision, at the robot's state x:
     Adam steps on    -mean log pi(u* | x*)    over the labels
 
     DAgger     one candidate, spread 0      RQ-DAgger  one candidate, spread above 0
-    DAIL       target: information          oracle     the clone's error, to show the room
+    DAIL       target: information          oracle     the clone's true error
 
 Source: thesis Algorithm 5 (DAIL) and, with `better` and `length`, Algorithm 12; Ross, Gordon and
 Bagnell 2011 (DAgger). The teacher drives for the `first` decisions (conf/controller/taught.yaml);
@@ -87,14 +87,13 @@ class DAgger:
     def __post_init__(self) -> None:
         """Check the fields."""
         teaching.require(self.teacher)
-        counts = ("candidates", "length", "spacing", "batch_size", "capacity")
-        for name, least in [*((name, 1) for name in counts), ("first", 0), ("recent", 0)]:
+        positive = ("candidates", "length", "spacing", "batch_size", "capacity")
+        for name in (*positive, "spread", "first", "steps", "first_steps", "recent"):
+            least = 1 if name in positive else 0
             if getattr(self, name) < least:
                 self._refuse(name, f"must be {least} or more")
         if self.most is not None and self.most < 1:
             self._refuse("most", "must be 1 or more, or null")
-        if min(self.steps, self.first_steps, self.spread) < 0:
-            self._refuse("steps", "steps, first_steps and spread must be 0 or more")
         if not self.learning_rate > 0:
             self._refuse("learning_rate", "must be above 0")
         if not 0 < self.edge <= 1:
@@ -115,6 +114,8 @@ class DAgger:
             self._refuse("length", "needs a model of the world, and first=0")
         if self.spread > 0 and self.normalise and not self.first:
             self._refuse("normalise", "needs first above 0, the decisions whose deviations it uses")
+        if getattr(self.target, "needs_recent", False) and not self.recent:
+            self._refuse("recent", "this target needs recent states, such as 200")
         if self.capacity % self.length:
             self._refuse("capacity", f"must be a multiple of length={self.length}")
 
@@ -158,7 +159,7 @@ class DAgger:
         evidence = jax.tree.map(lambda mean: state.labels.count * mean, state.evidence)
         return {
             "policy": state.policy,
-            "belief": labels.Belief(state.labels, state.visited, evidence),
+            "belief": labels.Belief(state.labels, state.visited, state.seen.scale, evidence),
         }
 
     def update(

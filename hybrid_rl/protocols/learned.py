@@ -109,6 +109,9 @@ class UnsquashedPolicy(LearnedPolicy, Protocol):
     def unsquashed(self, params: PyTree, x: Array) -> Array:
         """The mean [..., m] before squashing, at x [..., n]."""
 
+    def layers(self, params: PyTree, x: Array) -> tuple[Array, Array]:
+        """The features [..., h] of which that mean is an affine function, and the mean."""
+
 
 class Committee(LearnedPolicy, Protocol):
     """Several policies that learn from the same data."""

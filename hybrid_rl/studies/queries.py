@@ -35,7 +35,8 @@ REACHED = 0.9  # of the teacher's score
 TARGETS = {  # class of the target -> name
     "PolicyDisagreement": "disagreement",
     "FeatureInformation": "features",
-    "Recall": "recall",
+    "PolicyResidual": "residual",
+    "Likely": "product",
 }
 METRICS = ("eval/policy_success", "eval/policy_return")
 
@@ -63,6 +64,10 @@ def queries(pattern: str, refit: int, at: Sequence[int]) -> tuple[Any, dict[str,
     rows.sort(key=lambda row: row.label)
     name = metric.rpartition("_")[2]
     teacher = taught(rows[0].config, name)
+    if not teacher > 0:
+        raise UsageError(
+            f"runs={pattern}: shares need a positive score; the teacher's is {teacher}"
+        )
     numbers = {row.label: _printed(row, teacher) for row in rows}
     for row in rows if refit else ():
         shares = refitted(row, refit, at, name) / teacher

@@ -12,6 +12,7 @@ from hybrid_rl.envs.analytic import cart_double_pendulum as cart
 from hybrid_rl.envs.analytic import quadcopter_se3 as quad
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
+from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.lander import Lander
@@ -34,6 +35,7 @@ ENVS = [
     NoDynamics(),
     VanDerPol(),
     CartPendulum(),
+    CartSwingUp(),
     TwoLink(),
     Lander("hover"),
     Lander("flip"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
+from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -43,6 +44,7 @@ ANALYTIC = {
     "quadcopter_se3": QuadcopterSE3,
     "van_der_pol": VanDerPol,
     "cart_pendulum": CartPendulum,
+    "cart_swing_up": CartSwingUp,
     "two_link": TwoLink,
     "sprk_sand": SprkSand,
     "lander": Lander,

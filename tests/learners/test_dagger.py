@@ -15,6 +15,7 @@ from hybrid_rl.core.labels import Belief
 from hybrid_rl.learners.dagger import DAgger, DAggerState
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.policies.deterministic import Deterministic
+from hybrid_rl.targets.likely import Likely
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -239,6 +240,7 @@ BAD = [
     ({"oracle": True, "target": Far()}, "oracle=True: needs target=null"),
     ({"spacing": 0}, "spacing=0: must be 1 or more"),
     ({"edge": 1.5}, "edge=1.5: must lie in"),
+    ({"target": Likely(Far())}, "recent=0: this target needs recent states"),
 ]
 
 

@@ -39,7 +39,9 @@ def at(target: PolicyInformation, params: Params, x: np.ndarray) -> np.ndarray:
 
 def known(evidence: np.ndarray) -> Belief:
     """A belief with this information of the labels so far."""
-    return Belief(empty(1, 4, 2), jnp.zeros((1, 4)), jnp.asarray(evidence, jnp.float32))
+    return Belief(
+        empty(1, 4, 2), jnp.zeros((1, 4)), jnp.ones(4), jnp.asarray(evidence, jnp.float32)
+    )
 
 
 def test_the_trace_of_a_linear_policy_is_that_of_its_regressors() -> None:
