@@ -3,7 +3,14 @@
 Parts do not inherit from them: a class that has these methods and fields is a part.
 """
 
-from hybrid_rl.protocols.control import Controller, Objective, Proposal, Staged, Target
+from hybrid_rl.protocols.control import (
+    Controller,
+    LabelledTarget,
+    Objective,
+    Proposal,
+    Staged,
+    Target,
+)
 from hybrid_rl.protocols.environments import (
     AnalyticEnv,
     BalancedEnv,
@@ -13,6 +20,7 @@ from hybrid_rl.protocols.environments import (
 )
 from hybrid_rl.protocols.learned import (
     Belief,
+    Committee,
     Critic,
     EnsembleModel,
     Features,
@@ -25,6 +33,7 @@ from hybrid_rl.protocols.learned import (
     StabilizingPolicy,
     Trainable,
     Uncertain,
+    UnsquashedPolicy,
 )
 from hybrid_rl.protocols.learning import Demonstrations, LatestLearner, Learner, UniformLearner
 
@@ -32,6 +41,7 @@ __all__ = [
     "AnalyticEnv",
     "BalancedEnv",
     "Belief",
+    "Committee",
     "Controller",
     "Critic",
     "Demonstrations",
@@ -39,6 +49,7 @@ __all__ = [
     "Env",
     "Features",
     "GoalPolicy",
+    "LabelledTarget",
     "LatestLearner",
     "LearnedPolicy",
     "Learner",
@@ -56,4 +67,5 @@ __all__ = [
     "Trainable",
     "Uncertain",
     "UniformLearner",
+    "UnsquashedPolicy",
 ]

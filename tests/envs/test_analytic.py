@@ -15,6 +15,7 @@ from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import ACCELERATION, DT, PointMass
@@ -36,6 +37,8 @@ ENVS = [
     CartPendulum(),
     CartSwingUp(),
     TwoLink(),
+    Lander("hover"),
+    Lander("flip"),
 ]
 over_envs = pytest.mark.parametrize("env", ENVS, ids=repr)
 

@@ -11,6 +11,7 @@ import numpy as np
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
+from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
@@ -34,6 +35,7 @@ STATE = {
     "sprk_sand": 4,
     "sawyer_torque": 14,
 }  # entries of the observation before a reference
+EULER = ("lander",)  # an action moves velocities now, and positions one decision later
 ANALYTIC = {
     "no_dynamics": NoDynamics,
     "pendulum": Pendulum,
@@ -45,6 +47,7 @@ ANALYTIC = {
     "cart_swing_up": CartSwingUp,
     "two_link": TwoLink,
     "sprk_sand": SprkSand,
+    "lander": Lander,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,
