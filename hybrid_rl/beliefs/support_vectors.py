@@ -91,6 +91,10 @@ class SupportVectors:
         p = jax.nn.sigmoid(logit)
         return p * jax.nn.softplus(-logit) + (1 - p) * jax.nn.softplus(logit)
 
+    def informed(self, state: Machine) -> Array:
+        """[] bool: whether any measurement was 1."""
+        return jnp.any(state.label > 0)
+
     def report(self, state: Machine) -> dict[str, Array]:
         """The number of points, whether the memory is full, the gap of optimality."""
         return {

@@ -168,3 +168,16 @@ class Belief(Protocol):
 
     def report(self, state: PyTree) -> dict[str, Array]:
         """Metrics, name -> []."""
+
+
+class InformedBelief(Belief, Protocol):
+    """A belief that measures what a measurement would tell it."""
+
+    def information(self, state: PyTree, s: Array) -> Array:
+        """The information [] of a measurement at s [v], up to a factor."""
+
+    def gain(self, state: PyTree, s: Array) -> Array:
+        """The entropy [nat] that a measurement at s [v] is expected to remove."""
+
+    def informed(self, state: PyTree) -> Array:
+        """[] bool: whether any measurement distinguished one region from another."""
