@@ -7,12 +7,14 @@ from hybrid_rl.protocols.control import Controller, Objective, Proposal, Staged,
 from hybrid_rl.protocols.environments import (
     AnalyticEnv,
     BalancedEnv,
+    ContactEnv,
     Env,
     RewardedEnv,
     TrackingEnv,
 )
 from hybrid_rl.protocols.learned import (
     Belief,
+    ContactMap,
     Critic,
     EnsembleModel,
     Features,
@@ -33,6 +35,8 @@ __all__ = [
     "AnalyticEnv",
     "BalancedEnv",
     "Belief",
+    "ContactEnv",
+    "ContactMap",
     "Controller",
     "Critic",
     "Demonstrations",

@@ -2,6 +2,7 @@
 
 from typing import Protocol
 
+import numpy as np
 from jax import Array
 
 from hybrid_rl.protocols.environments import AnalyticEnv
@@ -181,3 +182,13 @@ class InformedBelief(Belief, Protocol):
 
     def informed(self, state: PyTree) -> Array:
         """[] bool: whether any measurement distinguished one region from another."""
+
+
+class ContactMap(Protocol):
+    """p(y = 1 | s): where a robot on a plane touches an object."""
+
+    middle: tuple[float, float]  # [m] of the map
+    outline: np.ndarray  # [M, 2] [m] positions of contact
+
+    def chance(self, s: Array) -> Array:
+        """p [] in (0, 1) at s [2]."""
