@@ -28,7 +28,8 @@ def save(file: Path | str, f: Any, low: Any, high: Any, slope: float) -> None:
     Path(file).parent.mkdir(parents=True, exist_ok=True)
     columns = {"f": f, "low": low, "high": high, "slope": slope}
     with Path(file).open("wb") as out:
-        np.savez_compressed(out, **{k: np.asarray(v, np.float32) for k, v in columns.items()})
+        arrays: dict[str, Any] = {k: np.asarray(v, np.float32) for k, v in columns.items()}
+        np.savez_compressed(out, **arrays)
 
 
 @dataclass(frozen=True)
