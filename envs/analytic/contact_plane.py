@@ -133,6 +133,7 @@ class ContactPlane:
         wrong = jax.random.uniform(drawing) < jnp.where(touched, self.missed, false)
         touch = touched.astype(jnp.float32)
         measured = jnp.where(wrong, 1 - touch, touch)
+        measured = jnp.where(jnp.isfinite(x).all(), measured, jnp.nan)  # no contact hides a NaN
         return self._state(Body(x, u, pose, jax.random.key_data(noise)), touch, measured)
 
     def _pushed_out(self, x: Array, pose: Array) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
@@ -43,6 +44,7 @@ ANALYTIC = {
     "cart_pendulum": CartPendulum,
     "two_link": TwoLink,
     "sprk_sand": SprkSand,
+    "contact_plane": ContactPlane,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,
