@@ -16,6 +16,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import get_args
 
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
@@ -79,7 +80,8 @@ def _needs(algo: str, more: Sequence[str]) -> str:
         for key, value in read.items():
             if value == "${env}":
                 part = part_class(read[f"{key.rpartition('.')[0]}._target_"])
-                kinds.add(part.__annotations__["world"].__name__)
+                kind = part.__annotations__["world"]
+                kinds |= {each.__name__ for each in get_args(kind) or (kind,)}
     return next((mark for kind, mark in NEEDS.items() if kind in kinds), "")
 
 

@@ -52,8 +52,16 @@ OF_TASK = {  # methods that need another task
         (f"{name}_localisation" for name in ("ergodic", "kle3", "entropy")), "contact_plane"
     ),
     "computed_torque": "sawyer_torque",
+    "dagger": "lander",
+    "dail": "lander",
+    "disagreement_dagger": "lander",
     "joint_pd": "sawyer_torque",
+    "kle3_imitation": "lander",
     "koopman_track": "two_link",
+    "minie": "lander",
+    "nie": "lander",
+    "residual_dagger": "lander",
+    "rq_dagger": "lander",
 }
 EACH = [  # every method on one task, the default method on the default task, one on every task
     *((OF_TASK.get(algo, "pendulum"), algo) for algo in options("algo")),
@@ -63,11 +71,14 @@ EACH = [  # every method on one task, the default method on the default task, on
 
 
 def put(node: Any, **values: Any) -> None:
-    """Set every key of these names in a composed configuration, here and below."""
+    """Set every key of these names in a composed configuration, here and below.
+
+    A teacher keeps its values.
+    """
     for key, value in node.items():
         if key in values:
             node[key] = values[key]
-        elif isinstance(value, DictConfig):
+        elif isinstance(value, DictConfig) and key != "teacher":
             put(value, **values)
 
 

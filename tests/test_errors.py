@@ -124,6 +124,16 @@ USAGE = [  # overrides of train, words of the line
         "task=quadcopter_se3 algo=koopman_known num_demonstrations=1",
         "demonstrations: 20 decisions are too few for 22 regressors",
     ),
+    (
+        "algo=fisher model=exact",
+        "model_learner.model=Exact: has no weights to learn; choose",
+    ),
+    (
+        "task=halfcheetah algo=fisher",
+        "task=halfcheetah: fisher needs an environment with a known reward; choose one of cart_",
+    ),
+    ("algo=fisher information.floor=0", "information.floor=0: must be above 0"),
+    ("algo=disagreement model=gaussian", "objective.model=Gaussian: needs an ensemble"),
     ("resume=nowhere", "resume=nowhere: no run folder there"),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]

@@ -7,9 +7,15 @@ Along a path of x_{t+1} = f(x_t, u_t, theta), F is one of two derivatives:
     step  F_t = f_theta at (x_t, u_t): the states are measured (one-step likelihood)
     path  psi_{t+1} = f_x psi_t + f_theta, psi_0 = 0: only x_0 is known, and F_t = psi_{t+1}
 
-`diagonal` keeps the diagonal of I. `log_det` is exact, with a matrix of size T n instead of P
-(Sylvester's identity). Source: thesis eq. (4.2)-(4.3), which has the second kind only, though its
-model maximises the one-step likelihood.
+Criteria to maximise, I_t the diagonal of F_t' Sigma^-1 F_t and c > 0 that of what is known before:
+
+    A_step  -sum_t tr (I_t + c)^-1          A  -tr (sum_t I_t + c)^-1
+    D       log det (sum_t I_t + c) - log det c
+    T       log tr (sum_t I_t + c)
+    full    as D, without the approximation by the diagonal: a matrix of size T n instead of P
+
+Source: thesis eq. (4.2)-(4.4), which has A_step by path, though its model maximises the one-step
+likelihood. The names of the criteria are those of optimal design (Chaloner and Verdinelli 1995).
 """
 
 from collections.abc import Callable
@@ -20,8 +26,13 @@ import jax.numpy as jnp
 from jax import Array
 from jax.flatten_util import ravel_pytree
 
-from hybrid_rl.types import Path
+from hybrid_rl.core.solving import log_det_one_plus
+from hybrid_rl.protocols import Model
+from hybrid_rl.types import Path, Spec
 
+CRITERIA = ("A_step", "A", "D", "T", "full")
+KINDS = ("step", "path")
+LARGEST = 1e12  # of psi, whose square must fit into float32: it grows as a product of f_x
 ParametricStep = Callable[[Any, Array, Array], Array]  # theta, x [n], u [m] -> x' [n]
 
 
@@ -48,23 +59,82 @@ def along(step: ParametricStep, theta: Any, path: Path, kind: str) -> Array:
 
     def forward(psi: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:
         f_x, f_theta = jacobians(step, theta, *at)
-        psi = f_x @ psi + f_theta
+        psi = jnp.clip(f_x @ psi + f_theta, -LARGEST, LARGEST)
         return psi, psi
 
     n, P = path.x.shape[1], ravel_pytree(theta)[0].size
     return jax.lax.scan(forward, jnp.zeros((n, P), path.x.dtype), (path.x[:-1], path.u))[1]
 
 
+def products(step: ParametricStep, theta: Any, path: Path, kind: str, v: Any) -> Array:
+    """F_t v [T, n] for a direction v like theta, at the cost of two paths and without F."""
+
+    def forward(d: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:
+        x, u = at
+        d = jax.jvp(lambda theta, x: step(theta, x, u), (theta, x), (v, d))[1]
+        d = jnp.clip(d, -LARGEST, LARGEST)
+        return d if kind == "path" else jnp.zeros_like(d), d
+
+    none = jnp.zeros(path.x.shape[1], path.x.dtype)
+    return jax.lax.scan(forward, none, (path.x[:-1], path.u))[1]
+
+
 def diagonal(F: Array, sigma: Array) -> Array:
     """The diagonals of F' Sigma^-1 F [..., P] for F [..., n, P] and sigma [n]."""
-    return jnp.sum((F / sigma[:, None]) ** 2, -2)
+    return jnp.sum(_in_deviations(F, sigma) ** 2, -2)
+
+
+def _in_deviations(F: Array, sigma: Array) -> Array:
+    """F / sigma [..., n, P]."""
+    return F / jnp.broadcast_to(sigma[:, None], F.shape)
 
 
 def log_det(F: Array, sigma: Array, prior: Array) -> Array:
-    """log det(I + diag(prior)) - log det(diag(prior)) [] for F [T, n, P] and prior [P] above 0.
+    """log det(I + diag(prior)) - log det(diag(prior)) [] for F [T, n, P] and prior [P] > 0.
 
-    It equals log det(1 + G), G = Sigma^-1/2 F diag(prior)^-1 F' Sigma^-1/2 [T n, T n].
+    It equals log det(1 + G), G = Sigma^-1/2 F diag(prior)^-1 F' Sigma^-1/2 [T n, T n] (Sylvester's
+    identity): twice the mutual information of the data and theta ~ N(., diag(prior)^-1).
     """
-    rows = (F / sigma[:, None]).reshape(-1, F.shape[-1]) / jnp.sqrt(prior)
-    factor = jnp.linalg.cholesky(jnp.eye(len(rows), dtype=rows.dtype) + rows @ rows.T)
-    return 2 * jnp.sum(jnp.log(jnp.diag(factor)))
+    rows = _in_deviations(F, sigma).reshape(-1, F.shape[-1]) / jnp.sqrt(prior)[None]
+    return log_det_one_plus(rows @ rows.T)
+
+
+def criterion(name: str, F: Array, sigma: Array, prior: Array) -> Array:
+    """One of CRITERIA [] for F [T, n, P], sigma [n] and prior c [P] above 0; larger is better."""
+    if name == "full":
+        return log_det(F, sigma, prior)
+    each = diagonal(F, sigma)  # [T, P]
+    if name == "A_step":
+        return -jnp.sum(1 / (each + prior[None]))
+    total = each.sum(0)
+    if name == "A":
+        return -jnp.sum(1 / (total + prior))
+    if name == "D":
+        return jnp.sum(jnp.log1p(total / prior))
+    return jnp.log(jnp.sum(total + prior))
+
+
+def require_parameters(name: str, model: Model, spec: Spec) -> None:
+    """Raise ValueError unless `model`, a field of the part `name`, learns by gradients."""
+    shapes: Any = jax.eval_shape(lambda: model.init(jax.random.key(0), spec))
+    if not (isinstance(shapes, dict) and "net" in shapes.get("weights", ())):
+        raise ValueError(
+            f"{name}.model={type(model).__name__}: has no weights whose information could be "
+            "measured; choose model=gaussian"
+        )
+
+
+def weights_of(params: Any) -> Any:
+    """theta of a model with `params`: the weights of its mean."""
+    return params["weights"]["net"]
+
+
+def with_weights(params: Any, theta: Any) -> Any:
+    """The model's parameters with theta for the weights of its mean."""
+    return {**params, "weights": {**params["weights"], "net": theta}}
+
+
+def noise_of(model: Any, params: Any, x: Array, sigma: float | None) -> Array:
+    """sigma [n] in units of x [n]; given in running deviations of the change, None: the model's."""
+    of_change = model.std(params, x) if sigma is None else sigma
+    return of_change * params["change"].scale

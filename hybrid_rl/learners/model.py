@@ -36,7 +36,7 @@ class ModelLearner:
     """Gradient steps on a model and, unless it is None, a reward.
 
     Raises:
-        ValueError: for a rate or a discount out of range.
+        ValueError: for a model without weights, or a rate or a discount out of range.
     """
 
     model: Trainable
@@ -52,6 +52,11 @@ class ModelLearner:
 
     def __post_init__(self) -> None:
         """Check the fields."""
+        if not hasattr(self.model, "loss"):
+            raise ValueError(
+                f"model_learner.model={type(self.model).__name__}: has no weights to learn; "
+                "choose model=gaussian or model=ensemble"
+            )
         if not 0 <= self.reward_discount < 1:
             raise ValueError(
                 f"model_learner.reward_discount={self.reward_discount}: must lie in [0, 1)"

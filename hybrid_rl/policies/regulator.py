@@ -33,6 +33,7 @@ class Regulator:
     state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
     action_weights: tuple[float, ...] = (1.0,)  # diagonal of R, of actions in [-1, 1]
     free: tuple[int, ...] = ()  # f, indices of e [d] that V ignores
+    clip: bool = True  # actions to [-1, 1]; false where noise is added to them
 
     def __post_init__(self) -> None:
         """Check the environment and the weights."""
@@ -66,7 +67,8 @@ class Regulator:
     def towards(self, x: Array, goal: Array) -> Array:
         """The action [m] at x [n] that leads to `goal` [o] instead of the equilibrium."""
         e, hold = self._local(x) - self.world.to_local(goal), self.world.equilibrium()[1]
-        return jnp.clip(hold - jnp.asarray(self.solve()[0], e.dtype) @ e, -1, 1)
+        u = hold - jnp.asarray(self.solve()[0], e.dtype) @ e
+        return jnp.clip(u, -1, 1) if self.clip else u
 
     def mean(self, params: Any, x: Array) -> Array:
         """The action [m] at x [n]."""

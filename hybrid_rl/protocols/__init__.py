@@ -3,7 +3,14 @@
 Parts do not inherit from them: a class that has these methods and fields is a part.
 """
 
-from hybrid_rl.protocols.control import Controller, Objective, Proposal, Staged, Target
+from hybrid_rl.protocols.control import (
+    Controller,
+    LabelledTarget,
+    Objective,
+    Proposal,
+    Staged,
+    Target,
+)
 from hybrid_rl.protocols.environments import (
     AnalyticEnv,
     BalancedEnv,
@@ -14,6 +21,7 @@ from hybrid_rl.protocols.environments import (
 )
 from hybrid_rl.protocols.learned import (
     Belief,
+    Committee,
     ContactMap,
     Critic,
     EnsembleModel,
@@ -28,6 +36,7 @@ from hybrid_rl.protocols.learned import (
     StabilizingPolicy,
     Trainable,
     Uncertain,
+    UnsquashedPolicy,
 )
 from hybrid_rl.protocols.learning import Demonstrations, LatestLearner, Learner, UniformLearner
 
@@ -35,6 +44,7 @@ __all__ = [
     "AnalyticEnv",
     "BalancedEnv",
     "Belief",
+    "Committee",
     "ContactEnv",
     "ContactMap",
     "Controller",
@@ -45,6 +55,7 @@ __all__ = [
     "Features",
     "GoalPolicy",
     "InformedBelief",
+    "LabelledTarget",
     "LatestLearner",
     "LearnedPolicy",
     "Learner",
@@ -62,4 +73,5 @@ __all__ = [
     "Trainable",
     "Uncertain",
     "UniformLearner",
+    "UnsquashedPolicy",
 ]

@@ -40,6 +40,13 @@ class Target(Protocol):
         """log p(s) [] at s [v], up to a constant."""
 
 
+class LabelledTarget(Target, Protocol):
+    """A target that depends on a teacher's labels so far, in `params.belief.evidence`."""
+
+    def evidence(self, params: Params, x: Array) -> PyTree:
+        """What is summed over the labelled states x [n]; None: nothing."""
+
+
 class Proposal(Protocol):
     """The distribution from which a sampling planner draws its candidates."""
 

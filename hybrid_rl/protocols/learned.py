@@ -104,6 +104,23 @@ class LearnedPolicy(Policy, Protocol):
         """Log-density [...] of actions u [..., m] at x [..., n]."""
 
 
+class UnsquashedPolicy(LearnedPolicy, Protocol):
+    """A policy that squashes the outputs of a network; "weights" is an entry of its parameters."""
+
+    def unsquashed(self, params: PyTree, x: Array) -> Array:
+        """The mean [..., m] before squashing, at x [..., n]."""
+
+    def layers(self, params: PyTree, x: Array) -> tuple[Array, Array]:
+        """The features [..., h] of which that mean is an affine function, and the mean."""
+
+
+class Committee(LearnedPolicy, Protocol):
+    """Several policies that learn from the same data."""
+
+    def each(self, params: PyTree, x: Array) -> Array:
+        """The action of every member [members, ..., m] at x [..., n]."""
+
+
 class GoalPolicy(Policy, Protocol):
     """A policy that leads to a goal, which can be changed."""
 

@@ -108,8 +108,11 @@ def held_out(trained: list[Any], decisions: int) -> dict[str, tuple[Array, Array
     result = {}
     for kind, each in parts.items():
         share = decisions // len(each)
-        drawn = [[a[rng.integers(len(a), size=share)] for a in part] for part in each]
-        result[kind] = tuple(jnp.concatenate(column) for column in zip(*drawn, strict=True))
+        chosen = [rng.integers(len(obs), size=share) for obs, *_ in each]
+        result[kind] = tuple(
+            jnp.concatenate([a[rows] for a, rows in zip(column, chosen, strict=True)])
+            for column in zip(*each, strict=True)
+        )
     return result
 
 

@@ -9,6 +9,9 @@ import pytest
 from jax import Array
 
 from hybrid_rl.controllers.noisy import NoisyController
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.envs.analytic.lander import Lander
+from hybrid_rl.policies.regulator import Regulator
 from hybrid_rl.types import Params, Spec
 
 SPEC = Spec(obs=1, act=3, dt=0.02)
@@ -98,3 +101,17 @@ def test_bad_fields(change) -> None:
     """One line that names the field."""
     with pytest.raises(ValueError, match=next(iter(change))):
         NoisyController(Still(), **change)
+
+
+def test_noise_is_added_before_the_action_is_clipped() -> None:
+    """Around a regulator without a clip: noise that is smaller than the excess changes nothing."""
+    world, obs, key = Lander("hover"), jnp.zeros(6).at[4].set(-2.0), jax.random.key(0)
+    for clip, moved in ((False, False), (True, True)):
+        regulator = PolicyController(Regulator(world, (1.0,), (0.001,), clip=clip), explore=False)
+        noisy = NoisyController(regulator, level=1.0)
+        keys = jax.random.split(key, 200)
+        act = jax.vmap(
+            lambda key, noisy=noisy: noisy.act(Params(), noisy.init(world.spec), obs, key)
+        )
+        u = np.asarray(act(keys)[0])
+        assert (u < 1).any() == moved  # without a clip: 1/2 + 2 * 5.248 > 10

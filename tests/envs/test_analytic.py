@@ -12,8 +12,10 @@ from hybrid_rl.envs.analytic import cart_double_pendulum as cart
 from hybrid_rl.envs.analytic import quadcopter_se3 as quad
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
+from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
+from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import ACCELERATION, DT, PointMass
@@ -33,7 +35,10 @@ ENVS = [
     NoDynamics(),
     VanDerPol(),
     CartPendulum(),
+    CartSwingUp(),
     TwoLink(),
+    Lander("hover"),
+    Lander("flip"),
 ]
 over_envs = pytest.mark.parametrize("env", ENVS, ids=repr)
 

@@ -10,7 +10,9 @@ import numpy as np
 
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
+from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
+from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
@@ -34,6 +36,7 @@ STATE = {
     "sprk_sand": 4,
     "sawyer_torque": 14,
 }  # entries of the observation before a reference
+EULER = ("lander",)  # an action moves velocities now, and positions one decision later
 ANALYTIC = {
     "no_dynamics": NoDynamics,
     "pendulum": Pendulum,
@@ -42,9 +45,11 @@ ANALYTIC = {
     "quadcopter_se3": QuadcopterSE3,
     "van_der_pol": VanDerPol,
     "cart_pendulum": CartPendulum,
+    "cart_swing_up": CartSwingUp,
     "two_link": TwoLink,
     "sprk_sand": SprkSand,
     "contact_plane": ContactPlane,
+    "lander": Lander,
 }
 TASKS = {
     "halfcheetah": HalfCheetah,

@@ -13,6 +13,7 @@ from tiny import call, only_line
 
 from hybrid_rl import figures
 from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.studies import held_out
 from hybrid_rl.types import Params, Spec
@@ -50,6 +51,17 @@ def test_the_study_compares_runs_at_different_decisions(tmp_path: Path) -> None:
     numbers = out.with_suffix(".json")
     assert '"step": 60' in numbers.read_text()
     assert '"step": 120' in numbers.read_text()
+
+
+def test_held_out_decisions_are_transitions_of_the_task(tmp_path: Path) -> None:
+    """The pendulum's own dynamics lead from each observation to the next one, for both kinds."""
+    tiny.run(tmp_path / "run", "algo=nn_mppi", "total_steps=60", "num_seeds=2")
+    data = held_out.held_out([held_out.restored(tmp_path / "run")], 50)
+    assert sorted(data) == sorted(held_out.SETS)
+    for obs, action, after in data.values():
+        assert obs.shape == (50, 3)
+        want = jax.vmap(Pendulum().dynamics)(obs, jnp.clip(action, -1, 1))
+        np.testing.assert_allclose(after, want, atol=1e-4)
 
 
 def test_a_run_without_a_model_is_refused(

@@ -1,0 +1,127 @@
+"""Lander: a planar vehicle with two thrusters that hovers, or turns a backflip.
+
+    x'' = -S sin th,  z'' = S cos th - 1,  th'' = 2 (a1 - a2),  S = a1 + a2
+    flip   r = -(10 (th - goal)^2 + 5 z^2 + 10 relu(-z) + x'^2 + z'^2 + th'^2 + 0.1 |u|^2)
+    hover  r = -(|o|^2 + 0.001 |a - 1/2|^2),   both after the step
+
+o = (x, z, th, x', z', th') [6]; mass, gravity and distances have no units. a [2]: thrusts, of both
+signs, the right one first; a = 1/2 hovers; u = atanh(a), of |a| up to 0.9999. Start: N(0, 0.1 I)
+for the flip, at rest at 0 for the hover. A decision is 0.1 s, one Euler step; never terminates.
+
+goal = -2 pi turns: half a turn ends upside down, held by negative thrust; it is 0 for the hover.
+Metrics: success = |th - goal| < 0.35 and |z| < 1 throughout the last second; turned = 1 from the
+first time on at which |th - goal| < 0.35.
+
+Source: thesis section 6.3.4 and appendix C, 10 Hz, with a = tanh u for its input u: it prints tan
+where the text, and its author's code, have the bounded function, and it omits it in th''. The
+rewards are its costs. Euler is its author's; the criterion of success is our choice, the thesis
+has none.
+"""
+
+import math
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.types import EnvState, Spec
+
+DT = 0.1  # [s] of a decision
+VARIANCE = 0.1  # of each entry of the state at the start of a flip
+ANGLE, HEIGHT = 0.35, 1.0  # [rad], [length]: bounds of success
+HOLD = 10  # decisions within these bounds at a success
+LARGEST = 0.9999  # |a| in the cost of u, which is infinite at 1
+TASKS = ("hover", "flip")
+
+
+@dataclass(frozen=True)
+class Lander:
+    """A lander with two thrusters.
+
+    Raises:
+        ValueError: for an unknown task, or turns that are not 0.5 or 1.
+    """
+
+    task: str = "flip"  # or hover
+    turns: float = 0.5  # of a flip: 0.5 or 1
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if self.task not in TASKS:
+            raise ValueError(f"task={self.task}: choose {', '.join(TASKS)}")
+        if self.turns not in (0.5, 1.0):
+            raise ValueError(f"turns={self.turns}: choose 0.5 or 1.0")
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=6, act=2, dt=DT)
+
+    @property
+    def goal(self) -> float:
+        """The angle [rad] at which the task ends."""
+        return -2 * math.pi * self.turns if self.task == "flip" else 0.0
+
+    def reset(self, key: Array) -> EnvState:
+        """At rest for a hover, else at a random state."""
+        x = math.sqrt(VARIANCE) * jax.random.normal(key, (6,), jnp.float32)
+        x = x if self.task == "flip" else jnp.zeros(6, jnp.float32)
+        none = jnp.zeros((), jnp.int32)
+        return self._state(x, jnp.float32(0.0), {"held": none, "turned": none})
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [2] in [-1, 1]."""
+        u = jnp.clip(action, -1.0, 1.0)
+        x = self.dynamics(state.data, u)
+        return self._state(x, self.reward_of(state.data, u, x), state.info)
+
+    def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
+        """At x [6], after the decisions that `info` counts."""
+        at_goal = jnp.abs(x[2] - self.goal) < ANGLE
+        level = at_goal & (jnp.abs(x[1]) < HEIGHT)
+        held = jnp.where(level, info["held"] + 1, 0)
+        turned = info["turned"] | at_goal
+        success = (held >= HOLD).astype(jnp.float32)
+        return fully_observed(x, reward).replace(
+            metrics={"success": success, "turned": turned.astype(jnp.float32)},
+            info={**info, "held": held, "turned": turned},
+        )
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [2] at x [6], which led to `after` [6]."""
+        if self.task == "hover":
+            return -(jnp.sum(after**2) + 0.001 * jnp.sum((u - 0.5) ** 2))
+        z, th = after[1], after[2]
+        height = 5 * z**2 + 10 * jax.nn.relu(-z)
+        inputs = jnp.arctanh(jnp.clip(u, -LARGEST, LARGEST))
+        still = jnp.sum(after[3:] ** 2) + 0.1 * jnp.sum(inputs**2)
+        return -(10 * (th - self.goal) ** 2 + height + still)
+
+    def dynamics(self, x: Array, u: Array) -> Array:
+        """The next observation [6] after action u [2] at x [6]."""
+        thrust, sin, cos = u[0] + u[1], jnp.sin(x[2]), jnp.cos(x[2])
+        rate = jnp.stack([-thrust * sin, thrust * cos - 1, 2 * (u[0] - u[1])])
+        return x + DT * jnp.concatenate([x[3:], rate])
+
+    def equilibrium(self) -> tuple[Array, Array]:
+        """Upright at rest, on half the thrust."""
+        return jnp.zeros(6), jnp.full(2, 0.5)
+
+    def to_local(self, x: Array) -> Array:
+        """Local coordinates e [6] of the observation x [6]."""
+        return x
+
+    def from_local(self, e: Array) -> Array:
+        """The observation [6] at local coordinates e [6]."""
+        return e
+
+    def scene(self) -> str:
+        """MJCF text of the scene for rendering."""
+        return mjcf.text("lander.xml")
+
+    def pose(self, state: EnvState) -> Array:
+        """Position and angle, qpos [3], for rendering."""
+        return state.data[:3]

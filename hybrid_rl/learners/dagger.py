@@ -1,0 +1,293 @@
+"""Imitate a teacher that is asked what it would do at chosen states: DAgger, DAIL and their kin.
+
+Each decision, at the robot's state x:
+
+    x* = x_k of the largest target,   x_k = x + spread * scale * N(0, I),   k = 1 ... candidates
+    if a query is due:   labels += (x*, u* = teacher(x*)), or a path of `length` from x*
+    Adam steps on    -mean log pi(u* | x*)    over the labels
+
+    DAgger     one candidate, spread 0      RQ-DAgger  one candidate, spread above 0
+    DAIL       target: information          oracle     the clone's true error
+
+Source: thesis Algorithm 5 (DAIL) and, with `better` and `length`, Algorithm 12; Ross, Gordon and
+Bagnell 2011 (DAgger). The teacher drives for the `first` decisions (conf/controller/taught.yaml);
+they are the first demonstration, on which `first_steps` Adam steps are taken at its end.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import jax
+import jax.numpy as jnp
+import optax
+from flax import struct
+from jax import Array
+
+from hybrid_rl.core import labels, statistics, teaching
+from hybrid_rl.core.branching import when_any
+from hybrid_rl.core.teaching import Answer
+from hybrid_rl.protocols import Controller, LearnedPolicy, Model, Target
+from hybrid_rl.types import Batch, Params, Spec
+
+
+@struct.dataclass
+class DAggerState:
+    """The clone, the labels, and a record of queries: query i is in row i mod Q."""
+
+    policy: Any
+    optimiser: Any
+    labels: labels.Labels
+    visited: Array  # [R, o]
+    evidence: Any  # mean over the labels of what the target sums; None: nothing
+    seen: statistics.Running  # of the observations of the first demonstration
+    rest: Any  # the teacher's state before an answer
+    information: Array  # [Q] log density of the target at the last queries; 0 without one
+    decision: Array  # [Q] int32 decisions before each of them
+    queries: Array  # [] int32
+    decisions: Array  # [] int32
+    loss: Array  # []
+
+
+@dataclass(frozen=True)
+class DAgger:
+    """Queries to a teacher, and gradient steps on its answers.
+
+    Query i begins at row `first` + i `length` of the labels.
+
+    Raises:
+        ValueError: without a teacher, for numbers out of range, or for fields that contradict each
+            other.
+    """
+
+    policy: LearnedPolicy
+    teacher: Controller | None  # without memory: its state is the initial one at each answer
+    target: Target | None = None  # of the state to ask at; None: the only candidate
+    candidates: int = 1
+    spread: float = 0.0
+    normalise: bool = True  # spread in standard deviations of the first demonstration
+    oracle: bool = False  # asks where the clone errs most
+    model: Model | None = None  # of the paths of long answers
+    length: int = 1  # decisions of an answer
+    first: int = 0  # decisions of the first demonstration
+    spacing: int = 1  # decisions between two queries
+    most: int | None = None  # queries; None: no limit
+    better: bool = False  # asks only if the target exceeds that at the last query
+    steps: int = 1  # Adam steps per decision
+    first_steps: int = 200  # at the end of the first demonstration
+    learning_rate: float = 3e-3
+    batch_size: int = 64
+    edge: float = 0.99  # bound of the imitated actions
+    capacity: int = 20_000  # labels that are kept
+    recent: int = 0  # R, states that targets consult
+
+    data: ClassVar[str] = "latest"
+    owns: ClassVar[tuple[str, ...]] = ("policy", "belief")
+    every: ClassVar[int] = 1
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        teaching.require(self.teacher)
+        positive = ("candidates", "length", "spacing", "batch_size", "capacity")
+        for name in (*positive, "spread", "first", "steps", "first_steps", "recent"):
+            least = 1 if name in positive else 0
+            if getattr(self, name) < least:
+                self._refuse(name, f"must be {least} or more")
+        if self.most is not None and self.most < 1:
+            self._refuse("most", "must be 1 or more, or null")
+        if not self.learning_rate > 0:
+            self._refuse("learning_rate", "must be above 0")
+        if not 0 < self.edge <= 1:
+            self._refuse("edge", "must lie in (0, 1]")
+        self._check_queries()
+
+    def _check_queries(self) -> None:
+        """Raise ValueError for fields that contradict each other."""
+        if self.candidates > 1 and self.spread == 0:
+            self._refuse("candidates", "needs spread above 0")
+        if self.candidates > 1 and self.target is None and not self.oracle:
+            self._refuse("candidates", "needs a target or oracle=true to choose one")
+        if self.oracle and self.target is not None:
+            self._refuse("oracle", "needs target=null")
+        if self.better and self.target is None:
+            self._refuse("better", "needs a target")
+        if self.length > 1 and (self.model is None or self.first):
+            self._refuse("length", "needs a model of the world, and first=0")
+        if self.spread > 0 and self.normalise and not self.first:
+            self._refuse("normalise", "needs first above 0, the decisions whose deviations it uses")
+        if getattr(self.target, "needs_recent", False) and not self.recent:
+            self._refuse("recent", "this target needs recent states, such as 200")
+        if self.capacity % self.length:
+            self._refuse("capacity", f"must be a multiple of length={self.length}")
+
+    def _refuse(self, name: str, why: str) -> None:
+        raise ValueError(f"dagger_learner.{name}={getattr(self, name)}: {why}")
+
+    def init(self, key: Array, spec: Spec) -> DAggerState:
+        """An untrained clone without labels. The key is consumed.
+
+        Raises:
+            ValueError: for a teacher of other sizes.
+        """
+        rest = teaching.begin(teaching.require(self.teacher), spec)
+        policy = self.policy.init(key, spec)
+        count, zero = self.most or self.capacity // self.length, jnp.zeros((), jnp.int32)
+        return DAggerState(
+            policy,
+            optax.adam(self.learning_rate).init(policy),
+            labels.empty(self.capacity, spec.obs, spec.act),
+            jnp.zeros((self.recent, spec.obs)),
+            self._no_evidence(policy, spec),
+            statistics.init(spec.obs),
+            rest,
+            jnp.zeros(count),
+            jnp.zeros(count, jnp.int32),
+            zero,
+            zero,
+            jnp.zeros(()),
+        )
+
+    def _no_evidence(self, policy: Any, spec: Spec) -> Any:
+        """Zeros in the shape of what the target sums over the labels."""
+        evidence: Any = getattr(self.target, "evidence", None)
+        if evidence is None:
+            return None
+        shapes = jax.eval_shape(evidence, Params(policy=policy), jnp.zeros(spec.obs))
+        return jax.tree.map(lambda each: jnp.zeros(each.shape, each.dtype), shapes)
+
+    def params(self, state: DAggerState) -> dict[str, Any]:
+        """The policy, and as belief what targets consult (`core.labels.Belief`)."""
+        evidence = jax.tree.map(lambda mean: state.labels.count * mean, state.evidence)
+        return {
+            "policy": state.policy,
+            "belief": labels.Belief(state.labels, state.visited, state.seen.scale, evidence),
+        }
+
+    def update(
+        self, state: DAggerState, params: Params, batch: Batch, key: Array
+    ) -> tuple[DAggerState, dict[str, Array]]:
+        """Queries at the latest states where they are due, then Adam steps. The key is consumed."""
+        asking, learning, summing = jax.random.split(key, 3)
+        keys, before = jax.random.split(asking, len(batch.obs)), state.decisions
+
+        def ask(state: DAggerState, at: tuple[Array, Array]) -> tuple[DAggerState, None]:
+            return self._ask(self._visit(state, at[0]), params, *at), None
+
+        state = jax.lax.scan(ask, state, (batch.obs, keys))[0]
+        steps = jnp.where(before < self.first, self.first_steps, self.steps * len(batch.obs))
+        state = self.fit(state, jnp.where(state.decisions < self.first, 0, steps), learning)
+        state = self._sum(state, params, summing)
+        metrics = {
+            "dagger/policy_loss": state.loss,
+            "dagger/labels": state.labels.count,
+            "dagger/queries": state.queries,
+        }
+        return state, metrics
+
+    def _visit(self, state: DAggerState, obs: Array) -> DAggerState:
+        """The state with `obs` [o] among the recent ones and, at first, in the statistics."""
+        visited = state.visited
+        if self.recent:
+            slot = jnp.where(state.decisions == 0, jnp.arange(self.recent), state.decisions)
+            visited = visited.at[slot % self.recent].set(obs)
+        if not self.first:
+            return state.replace(visited=visited)
+        leading = state.decisions < self.first
+        new = statistics.update(state.seen, obs[None]), self.policy.observe(state.policy, obs[None])
+        old = state.seen, state.policy
+        seen, policy = jax.tree.map(lambda new, old: jnp.where(leading, new, old), new, old)
+        return state.replace(visited=visited, seen=seen, policy=policy)
+
+    def _ask(self, state: DAggerState, params: Params, obs: Array, key: Array) -> DAggerState:
+        """The state after one decision at obs [o], with the answer if a query was due."""
+        drawing, answering = jax.random.split(key)
+        x, value = self._query(state, params, obs, drawing)
+        leading = state.decisions < self.first
+        due = self._due(state, value) & ~leading
+        x = jnp.where(leading, obs, x)
+        rings = state.labels.obs, state.labels.action
+        none = Answer(*(jnp.zeros((self.length, ring.shape[1])) for ring in rings))
+        needed = when_any(lambda asked: asked[0], self._answer)
+        asked, made = needed((due | leading, none), (params, state.rest, x, answering))
+        slot = jnp.where(due, state.queries % len(state.decision), len(state.decision))
+        return state.replace(
+            labels=labels.add(state.labels, made.obs, made.action, asked),
+            information=state.information.at[slot].set(value, mode="drop"),
+            decision=state.decision.at[slot].set(state.decisions, mode="drop"),
+            queries=state.queries + due,
+            decisions=state.decisions + 1,
+        )
+
+    def _query(
+        self, state: DAggerState, params: Params, obs: Array, key: Array
+    ) -> tuple[Array, Array]:
+        """The state x* [o] to ask at, near obs [o], and log density [] of the target there."""
+        drawing, labelling = jax.random.split(key)
+        scale = state.seen.scale if self.normalise else jnp.ones(obs.size)
+        near = obs[None]
+        if self.spread > 0:
+            noise = jax.random.normal(drawing, (self.candidates, obs.size))
+            near = near + self.spread * scale[None] * noise
+        if self.target is None and not self.oracle:
+            return near[0], jnp.zeros(())
+        values = jax.vmap(lambda x: self._value(state, params, x, labelling))(near)
+        best = jnp.argmax(values)
+        return near[best], values[best]
+
+    def _value(self, state: DAggerState, params: Params, x: Array, key: Array) -> Array:
+        """What is to be large [] at x [o]: the target, or for an oracle the clone's error."""
+        if self.target is not None:
+            return self.target.log_density(params, x)
+        teacher = teaching.require(self.teacher)
+        u = teaching.answer(teacher, None, params, state.rest, x, 1, key).action[0]
+        return jnp.sum((self.policy.mean(state.policy, x) - u) ** 2)
+
+    def _due(self, state: DAggerState, value: Array) -> Array:
+        """[] bool: a query may be asked now, where the target is `value` []."""
+        last = (state.queries - 1) % len(state.decision)
+        none = state.queries == 0
+        due = none | (state.decisions - state.decision[last] >= self.spacing)
+        if self.better:
+            due &= none | (value > state.information[last])
+        return due & (state.queries < len(state.decision)) if self.most else due
+
+    def _answer(self, asked: tuple[Array, Answer], argument: tuple) -> tuple[Array, Answer]:
+        """`asked` with the teacher's answer if it is due."""
+        due, none = asked
+        teacher, (params, rest, x, key) = teaching.require(self.teacher), argument
+        new = teaching.answer(teacher, self.model, params, rest, x, self.length, key)
+        return due, jax.tree.map(lambda new, none: jnp.where(due, new, none), new, none)
+
+    def fit(self, state: DAggerState, steps: Array | int, key: Array) -> DAggerState:
+        """The state after `steps` [] Adam steps on the labels, none if there are no labels."""
+        adam = optax.adam(self.learning_rate)
+
+        def one(i: Array, carry: tuple) -> tuple:
+            policy, optimiser, _ = carry
+            x, u = labels.draw(state.labels, self.batch_size, jax.random.fold_in(key, i))
+            u = jnp.clip(u, -self.edge, self.edge)
+            value, grads = jax.value_and_grad(
+                lambda policy: -self.policy.log_prob(policy, x, u).mean()
+            )(policy)
+            change, optimiser = adam.update(grads, optimiser, policy)
+            return optax.apply_updates(policy, change), optimiser, value
+
+        steps = jnp.where(state.labels.count > 0, steps, 0)
+        policy, optimiser, loss = jax.lax.fori_loop(
+            0, steps, one, (state.policy, state.optimiser, state.loss)
+        )
+        return state.replace(policy=policy, optimiser=optimiser, loss=loss)
+
+    def _sum(self, state: DAggerState, params: Params, key: Array) -> DAggerState:
+        """The state with the running mean of the target's evidence, over a batch of labels."""
+        if state.evidence is None:
+            return state
+        target: Any = self.target
+        params = params._replace(policy=state.policy)
+        x = labels.draw(state.labels, self.batch_size, key)[0]
+        each = jax.vmap(lambda x: target.evidence(params, x))(x)
+        rate = jnp.maximum(1 / state.decisions, labels.RATE)
+
+        def mean(old: Array, each: Array) -> Array:
+            return old + rate * (each.mean(0) - old)
+
+        return state.replace(evidence=jax.tree.map(mean, state.evidence, each))

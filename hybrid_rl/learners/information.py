@@ -1,0 +1,100 @@
+"""The Fisher information of the data so far about a learned model's weights theta [P].
+
+    I_j = N mean_i |F_ij|^2 / sigma^2,   F = df / dtheta at a transition i of the replay memory
+
+N is the number of decisions. The mean is a running one over batches, since theta changes. I is kept
+in `belief`; a method has one. The model is fitted to one-step transitions, so F is the derivative
+by step (core/fisher.py).
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import jax
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+from jax.flatten_util import ravel_pytree
+
+from hybrid_rl.core import fisher
+from hybrid_rl.protocols import Model
+from hybrid_rl.types import Batch, Params, Spec
+
+
+@struct.dataclass
+class InformationState:
+    """The diagonal of the information."""
+
+    mean: Array  # [P] of one decision
+    decisions: Array  # []
+    batches: Array  # []
+
+    @property
+    def total(self) -> Array:
+        """[P] of all decisions."""
+        return self.decisions * self.mean
+
+
+@dataclass(frozen=True)
+class InformationLearner:
+    """The diagonal of the information of all decisions.
+
+    Raises:
+        ValueError: for numbers out of range, or a model without weights.
+    """
+
+    model: Model
+    sigma: float | None = 0.1  # of the change, in running deviations; None: the model's
+    floor: float = 0.01  # entries below it are counted in the metric information/floored
+    rate: float = 0.05  # of the running mean, per batch; exact over the first 1 / rate batches
+    batch_size: int = 64
+    updates: float = 1  # batches per decision
+
+    data: ClassVar[str] = "uniform"
+    owns: ClassVar[tuple[str, ...]] = ("belief",)
+    batches: ClassVar[int] = 1
+    early: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("sigma", "floor"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ValueError(f"information_learner.{name}={value}: must be above 0")
+        if not 0 < self.rate <= 1:
+            raise ValueError(f"information_learner.rate={self.rate}: must lie in (0, 1]")
+
+    def init(self, key: Array, spec: Spec) -> InformationState:
+        """No information. The key is not used."""
+        fisher.require_parameters("information_learner", self.model, spec)
+        model = self.model.init(key, spec)
+        size = ravel_pytree(fisher.weights_of(model))[0].size
+        return InformationState(jnp.zeros(size), jnp.zeros(()), jnp.zeros(()))
+
+    def params(self, state: InformationState) -> dict[str, Any]:
+        """The information, as the belief."""
+        return {"belief": state}
+
+    def update(
+        self, state: InformationState, params: Params, batch: Batch, key: Array
+    ) -> tuple[InformationState, dict[str, Array]]:
+        """The information after a batch of the memory; the key is not used."""
+        model = params.model
+
+        def one(x: Array, u: Array) -> Array:
+            def f(theta: Any) -> Array:
+                return self.model.step(fisher.with_weights(model, theta), x, u)
+
+            F = fisher.jacobian(f, fisher.weights_of(model))
+            return fisher.diagonal(F, fisher.noise_of(self.model, model, x, self.sigma))
+
+        now = jax.vmap(one)(batch.obs, batch.action).mean(0)
+        batches = state.batches + 1
+        mean = state.mean + jnp.maximum(1 / batches, self.rate) * (now - state.mean)
+        decisions = state.decisions if params.decisions is None else 1.0 * params.decisions
+        after = InformationState(mean, decisions, batches)
+        return after, {
+            "information/log_det": jnp.sum(jnp.log(after.total + self.floor)),
+            "information/trace": jnp.sum(after.total),
+            "information/floored": jnp.sum(after.total < self.floor).astype(jnp.float32),
+        }

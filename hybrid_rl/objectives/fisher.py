@@ -1,0 +1,90 @@
+"""J = a scalar of the Fisher information that a path has about a learned model's parameters.
+
+The criteria A_step, A, D, T and full, and the sensitivities `step` and `path`, are those of
+core/fisher.py; c = floor + the information of the data so far, which is `belief` in `Params`
+(learners/information.py). Thesis eq. (4.4) minimises tr I_t^-1 summed over time, by path and
+without the data so far: A_step, path, past=false. D by step, with the data so far, is our default.
+It is the term without the task; `weighted_sum` adds one.
+"""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+from jax.flatten_util import ravel_pytree
+
+from hybrid_rl.core import fisher
+from hybrid_rl.protocols import Model
+from hybrid_rl.types import Params, Path, Return, Spec
+
+
+@dataclass(frozen=True)
+class FisherInformation:
+    """Information along a path about the weights of the model in `Params`.
+
+    T with `probes` = k > 0 estimates tr I = E|F v|^2 / sigma^2, v ~ N(0, 1), by k directions, which
+    are drawn at every decision: networks with many weights need no derivative by each of them.
+
+    Raises:
+        ValueError: for an unknown criterion or sensitivity, numbers out of range, probes with
+            another criterion than T, or a model without weights.
+    """
+
+    model: Model
+    criterion: str = "D"  # A_step | A | D | T | full
+    sensitivity: str = "step"  # step | path
+    sigma: float | None = 0.1  # of the change, in running deviations; None: the model's
+    floor: float = 0.01  # of the diagonal [1/theta^2]
+    past: bool = True  # count the data so far, if a learner does
+    probes: int = 0  # directions that estimate T; 0: exact
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name, known in (("criterion", fisher.CRITERIA), ("sensitivity", fisher.KINDS)):
+            if getattr(self, name) not in known:
+                raise ValueError(
+                    f"information.{name}={getattr(self, name)}: choose {', '.join(known)}"
+                )
+        for name in ("sigma", "floor"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ValueError(f"information.{name}={value}: must be above 0")
+        if self.probes < 0:
+            raise ValueError(f"information.probes={self.probes}: must be 0 or more")
+        if self.probes and self.criterion != "T":
+            raise ValueError(f"information.probes={self.probes}: only criterion=T is estimated")
+
+    def init(self, spec: Spec) -> tuple[()]:
+        """No memory: what the data say is in `Params`."""
+        fisher.require_parameters("information", self.model, spec)
+        return ()
+
+    def prepare(
+        self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
+    ) -> tuple[Return, tuple[()]]:
+        """J of a path. The key is consumed."""
+        theta = fisher.weights_of(params.model)
+        flat, unravel = ravel_pytree(theta)
+        sigma = fisher.noise_of(self.model, params.model, x, self.sigma)
+        prior = jnp.full_like(flat, self.floor)
+        if self.past and params.belief is not None:
+            prior += params.belief.total
+
+        def step(theta: object, x: Array, u: Array) -> Array:
+            return self.model.step(fisher.with_weights(params.model, theta), x, u)
+
+        def exact(path: Path) -> Array:
+            F = fisher.along(step, theta, path, self.sensitivity)
+            return fisher.criterion(self.criterion, F, sigma, prior)
+
+        directions = jax.random.normal(key, (self.probes, flat.size), flat.dtype)
+
+        def estimated(path: Path) -> Array:
+            def one(v: Array) -> Array:
+                each = fisher.products(step, theta, path, self.sensitivity, unravel(v))
+                return jnp.sum((each / sigma[None]) ** 2)
+
+            return jnp.log(jax.vmap(one)(directions).mean() + prior.sum())
+
+        return estimated if self.probes else exact, memory

@@ -1,0 +1,155 @@
+"""u = squash(mu(x)): a deterministic policy for imitation, with a known sigma.
+
+    z ~ N(mu(x), sigma^2 I),   u = tanh(z), or clip(z, -1, 1)
+
+Behaviour cloning then is least squares: with `clip` of mu(x) - u, with `tanh` of mu(x) - atanh(u).
+`unsquashed` is mu(x), whose derivatives in the weights give the Fisher information of a
+demonstration. Source: thesis section 4.2, with sigma "assumed known"; the squashing is ours.
+
+`Clones` are several such networks with different initial weights, of which the first one acts.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import statistics
+from hybrid_rl.networks import ACTIVATIONS, MLP, check
+from hybrid_rl.types import Spec
+
+SQUASHES = ("tanh", "clip")
+
+
+@dataclass(frozen=True)
+class Deterministic:
+    """A network with a standard deviation that is not learned.
+
+    Its parameters are the network's "weights" and, with `normalise`, statistics of "state".
+
+    Raises:
+        ValueError: for invalid widths, activations, standard deviations or squashing.
+    """
+
+    hidden: tuple[int, ...] = (32, 32)
+    activation: str = "relu"
+    sigma: float = 1.0  # of z
+    squash: str = "tanh"  # or clip
+    normalise: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "hidden", tuple(self.hidden))
+        check("policy", self.hidden, self.activation)
+        if not self.sigma > 0:
+            raise ValueError(f"policy.sigma={self.sigma}: must be above 0")
+        if self.squash not in SQUASHES:
+            raise ValueError(f"policy.squash={self.squash}: choose {' or '.join(SQUASHES)}")
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """Initial parameters. The key is consumed."""
+        net = MLP(self.hidden, spec.act, self.activation)
+        state = {"state": statistics.init(spec.n)} if self.normalise else {}
+        return {**state, "weights": net.init(key, jnp.zeros(spec.n))["params"]}
+
+    def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
+        """Parameters with statistics updated by states x [B, n]."""
+        if not self.normalise:
+            return params
+        return {**params, "state": statistics.update(params["state"], x)}
+
+    def unsquashed(self, params: dict[str, Any], x: Array) -> Array:
+        """mu [..., m] at x [..., n]."""
+        return self.layers(params, x)[1]
+
+    def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
+        """The features [..., h] of which mu [..., m] is an affine function, and mu."""
+        if self.normalise:
+            x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
+        weights = params["weights"]
+        last = weights[f"Dense_{len(self.hidden)}"]
+        if self.hidden:
+            within = {name: layer for name, layer in weights.items() if layer is not last}
+            *hidden, width = self.hidden
+            net = MLP(hidden, width, self.activation)
+            inner: Any = net.apply({"params": within}, x)
+            x = ACTIVATIONS[self.activation](inner)
+        mu: Any = MLP((), last["bias"].size).apply({"params": {"Dense_0": last}}, x)
+        return x, mu
+
+    def mean(self, params: dict[str, Any], x: Array) -> Array:
+        """The action [..., m] at x [..., n]."""
+        return self._squashed(self.unsquashed(params, x))
+
+    def _squashed(self, z: Array) -> Array:
+        return jnp.tanh(z) if self.squash == "tanh" else jnp.clip(z, -1, 1)
+
+    def variance(self, params: dict[str, Any], x: Array) -> Array:
+        """Variance [..., m] of the action, to first order: sigma^2, times (1 - u^2)^2 with tanh."""
+        u = self.mean(params, x)
+        slope = 1 - u**2 if self.squash == "tanh" else jnp.ones_like(u)
+        return (slope * self.sigma) ** 2
+
+    def sample(self, params: dict[str, Any], x: Array, noise: Array) -> tuple[Array, Array]:
+        """The action [..., m] for noise [..., m] ~ N(0, I), and the log-density [...] of z."""
+        z = self.unsquashed(params, x) + self.sigma * noise
+        return self._squashed(z), self._log_normal(noise)
+
+    def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """The log-density [...] of z at actions u [..., m], inside (-1, 1) with tanh."""
+        z = jnp.arctanh(u) if self.squash == "tanh" else u
+        return self._log_normal((z - self.unsquashed(params, x)) / self.sigma)
+
+    def _log_normal(self, noise: Array) -> Array:
+        constant = jnp.log(self.sigma) + 0.5 * jnp.log(2 * jnp.pi)
+        return -jnp.sum(0.5 * noise**2 + constant, axis=-1)
+
+
+@dataclass(frozen=True)
+class Clones(Deterministic):
+    """`members` networks that learn from the same data; the first one acts.
+
+    Its "weights" have a first axis [members].
+
+    Raises:
+        ValueError: for fewer than two members.
+    """
+
+    members: int = 5
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        super().__post_init__()
+        if self.members < 2:
+            raise ValueError(f"policy.members={self.members}: must be 2 or more")
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """Initial parameters, different for each member. The key is consumed."""
+        keys = jax.random.split(key, self.members)
+        each = jax.vmap(lambda key: super(Clones, self).init(key, spec)["weights"])(keys)
+        return {**super().init(key, spec), "weights": each}
+
+    def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
+        """Features and mu of the first member."""
+        first = jax.tree.map(lambda each: each[0], params["weights"])
+        return super().layers({**params, "weights": first}, x)
+
+    def each(self, params: dict[str, Any], x: Array) -> Array:
+        """The action of every member [members, ..., m] at x [..., n]."""
+
+        def one(weights: Any) -> Array:
+            mu = super(Clones, self).layers({**params, "weights": weights}, x)[1]
+            return self._squashed(mu)
+
+        return jax.vmap(one)(params["weights"])
+
+    def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """The sum [...] over the members of the log-density of z."""
+
+        def one(weights: Any) -> Array:
+            alone = {**params, "weights": jax.tree.map(lambda w: w[None], weights)}
+            return super(Clones, self).log_prob(alone, x, u)
+
+        return jax.vmap(one)(params["weights"]).sum(0)

@@ -1,0 +1,244 @@
+"""Active learning of a model: cost, held-out loss and information over episodes, figure 4-1.
+
+    python -m hybrid_rl.figures study=active_learning runs="runs/fig_4_1/*" out=fig_4_1.png
+
+Runs of experiment=thesis/fig_4_1; the label of each is the name of its folder. Curves are IQM and
+95% band over seeds, after each episode.
+
+    cost          mean of -r over an episode; dotted: of the same planner with the exact model
+    held-out loss of the model after the episode, on uniform transitions and along swing-ups of the
+                  exact model: mean squared error over the variance of the change
+    information   log det and trace of I of the decisions so far under one reference model, which is
+                  fitted to uniform transitions: the I of methods' own models is not comparable
+    upright       share of seeds with cos th > 0.9 through the last second
+
+Where the rail has an end, an episode stands for `episode.steps` decisions. The area under a curve
+is its mean over episodes: of min(cost, 2) after the first episode, which costs up to 1e9 under
+every method; of the logarithm of a loss; `early` of the first three alone. A method differs from
+another where the bands of their areas do not overlap.
+"""
+
+from typing import Annotated, Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from hybrid_rl.cli.arguments import whole
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import checkpoint
+from hybrid_rl.studies import unseen
+from hybrid_rl.studies.curves import band, iqm
+from hybrid_rl.studies.recorded import Recorded, matching, read
+from hybrid_rl.studies.significant import rounded
+from hybrid_rl.studies.style import COLOURS, STROKES, STYLE, legend_below
+from hybrid_rl.studies.unseen import Unseen
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import Batch
+
+TASK, EXPERIMENT = "cart_swing_up", "thesis/fig_4_1"
+UPRIGHT, SECOND = 0.9, 25  # cos th, decisions of a second
+MOST_COST = 2.0  # of an episode in the area under the curve
+EARLY = 3  # first episodes, with an area of their own
+SIGMA, FLOOR = 0.1, 0.01  # of the reference information
+SEED = 123_456  # of held-out data and the reference model
+PANELS = {  # quantity -> title
+    "cost": "Cost per decision",
+    "loss_box": "Held-out loss, uniform",
+    "loss_swing_up": "Held-out loss, swing-ups",
+    "log_det": "log det I under the reference",
+    "trace": "tr I under the reference",
+    "upright": "Share upright in the last second",
+}
+LOG = ("loss_box", "loss_swing_up", "trace")
+
+
+def figure(
+    runs: Annotated[str, "run folders; a pattern in quotes"],
+    against: Annotated[str, "label of the run with which the others are compared"] = "none",
+    size: Annotated[int, "uniform held-out transitions", whole(10)] = 4000,
+    episodes: Annotated[int, "held-out swing-ups", whole()] = 20,
+) -> tuple[Any, dict[str, Any]]:
+    """The picture and the numbers."""
+    folders = matching(runs, "of this study")
+    if against not in [folder.name for folder in folders]:
+        names = ", ".join(folder.name for folder in folders)
+        raise UsageError(f"against={against}: no such run; choose one of {names}")
+    folders = sorted(folders, key=lambda folder: folder.name != against)  # it is drawn in black
+    data = unseen.collect(EXPERIMENT, size, episodes, SEED)
+    first = read(folders[0], TASK).run
+    small = next((r for f in folders if _single(r := read(f, TASK).run)), first)
+    fitted = unseen.reference(small, data.box, SEED)
+    learner: Any = small.agent.learners["model"]
+    reference = learner.model, fitted
+    each = {folder.name: measured(read(folder, TASK), data, reference) for folder in folders}
+    _check_size(each)
+    numbers = {
+        "exact_model": {
+            "cost": [iqm(data.cost), *band(data.cost)],
+            "upright": float((data.upright[:, -SECOND:] > UPRIGHT).all(1).mean()),
+        },
+        "reference_loss": {
+            "box": float(unseen.loss(learner.model, fitted, data.box)),
+            "swing_up": float(unseen.loss(learner.model, fitted, data.swing_up)),
+        },
+        "methods": {label: reported(one) for label, one in each.items()},
+        "against": against,
+    }
+    numbers["differences"] = differences(numbers["methods"], against)
+    return picture(each, numbers["exact_model"]), rounded(numbers)
+
+
+def _single(run: Any) -> bool:
+    """Whether the model of a run is not an ensemble."""
+    return getattr(run.agent.learners["model"].model, "members", 1) == 1
+
+
+def measured(recorded: Recorded, data: Unseen, reference: tuple[Any, Any]) -> dict[str, np.ndarray]:
+    """The quantities [S, E] of a run after each of E episodes of S learners."""
+    made, length = recorded.made, recorded.config.episode.steps
+    count = made.reward.shape[1] // length
+    by_episode = made.reward[:, : count * length].reshape(-1, count, length)
+    theta = made.next_obs[:, : count * length, 0].reshape(by_episode.shape)
+    learner: Any = recorded.run.agent.learners["model"]
+    models = history(recorded, count)
+
+    def loss(data: Batch) -> np.ndarray:
+        one = jax.vmap(jax.vmap(lambda params: unseen.loss(learner.model, params, data)))
+        return np.asarray(jax.jit(one)(models))
+
+    ends = length * np.arange(1, count + 1)
+    rows = []
+    for obs, action in zip(made.obs, made.action, strict=True):
+        model, params = reference
+        F = unseen.derivatives(model, params, SIGMA, jnp.asarray(obs), jnp.asarray(action))
+        rows.append(unseen.information(F, ends, FLOOR))
+    return {
+        "cost": -by_episode.astype(float).mean(-1),
+        "loss_box": loss(data.box),
+        "loss_swing_up": loss(data.swing_up),
+        **{name: np.stack([row[name] for row in rows]) for name in rows[0]},
+        "upright": (np.cos(theta[..., -SECOND:]) > UPRIGHT).all(-1).astype(float),
+    }
+
+
+def history(recorded: Recorded, count: int) -> Any:
+    """The models after each of `count` episodes, leaves [S, count, ...].
+
+    Raises:
+        UsageError: unless the run has a copy for each episode.
+    """
+    run, path = recorded.run, recorded.folder.path
+    kept: Any = run.agent.learners.get("history")
+    if kept is None or kept.every != recorded.config.episode.steps or kept.copies < count:
+        raise UsageError(f"runs={path}: needs copies of its models; experiment={EXPERIMENT}")
+    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+    few = {name: like.learners[name] for name in ("model", "history")}
+    like = like.replace(env=None, control=None, memory=None, key=None, learners=few)
+    learners = checkpoint.restore(path / "checkpoints", like, part=True)[1].learners
+    return jax.tree.map(
+        lambda copies, last: jnp.concatenate([copies[:, 1:count], last[:, None]], axis=1),
+        learners["history"].models,
+        learners["model"].model,
+    )
+
+
+def _check_size(each: dict[str, dict[str, np.ndarray]]) -> None:
+    shapes = {label: one["cost"].shape for label, one in each.items()}
+    if len(set(shapes.values())) > 1:
+        raise UsageError(f"runs: need the same seeds and episodes, have {shapes}")
+
+
+def reported(one: dict[str, np.ndarray]) -> dict[str, Any]:
+    """IQM and band [3, E] of each quantity, the share upright [E]; IQM and band [3] of areas."""
+    areas = area(one)
+    return {
+        "seeds": len(one["cost"]),
+        **{name: [iqm(each), *band(each)] for name, each in one.items() if name != "upright"},
+        "upright": one["upright"].mean(0),
+        "first_cost": one["cost"][:, 0],
+        "area": {name: [iqm(values), *band(values)] for name, values in areas.items()},
+    }
+
+
+def area(one: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The area under each curve, and the cost of the last three episodes: name -> [S]."""
+    cost = np.minimum(one["cost"], MOST_COST)
+    logs = {name: np.log10(one[name]) for name in LOG}
+    rest = {name: one[name] for name in ("log_det", "log_det_diagonal", "upright")}
+    each = {"cost": cost[:, 1:], "last_cost": cost[:, -3:], **logs, **rest}
+    names = ("loss_box", "loss_swing_up", "log_det")
+    early = {f"{name}_early": each[name][:, :EARLY] for name in names}
+    return {name: values.mean(1) for name, values in {**each, **early}.items()}
+
+
+def differences(methods: dict[str, Any], against: str) -> dict[str, Any]:
+    """For each method and area: higher or lower than that of `against`, or no difference."""
+    base = methods[against]["area"]
+
+    def verdict(one: Any, other: Any) -> str:
+        (_, low, high), (_, least, most) = one, other
+        return "higher" if low > most else "lower" if high < least else "no difference"
+
+    return {
+        label: {name: verdict(values, base[name]) for name, values in one["area"].items()}
+        for label, one in methods.items()
+        if label != against
+    }
+
+
+def summary(numbers: dict[str, Any]) -> list[str]:
+    """The exact model, then a line of areas for each method."""
+    exact = numbers["exact_model"]
+    lines = [f"exact model: cost {_banded(exact['cost'])}, upright {exact['upright']:.0%}"]
+    for label, one in numbers["methods"].items():
+        areas = one["area"]
+        apart = [
+            f"{k} {v}" for k, v in numbers["differences"].get(label, {}).items() if v[0] != "n"
+        ]
+        words = f"; against {numbers['against']}: {', '.join(apart)}" if apart else ""
+        lines.append(
+            f"{label}, {one['seeds']} seeds: cost {_banded(areas['cost'])}, last three episodes "
+            f"{_banded(areas['last_cost'])}, log10 loss: uniform {_banded(areas['loss_box'])}, "
+            f"swing-ups {_banded(areas['loss_swing_up'])}, log det {_banded(areas['log_det'])}, "
+            f"upright {_banded(areas['upright'])}{words}"
+        )
+    return lines
+
+
+def _banded(values: Any) -> str:
+    middle, low, high = values
+    return f"{middle:.4g} [{low:.4g}, {high:.4g}]"
+
+
+def picture(each: dict[str, dict[str, np.ndarray]], exact: dict[str, Any]) -> Any:
+    """A panel for each quantity."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(12, 7.6), layout="constrained")
+        panels = np.ravel(figure.subplots(2, 3))
+        for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
+            for i, (label, one) in enumerate(each.items()):
+                style = COLOURS[i % len(COLOURS) - 1], STROKES[i // len(COLOURS)]
+                _curve(axes, label, one[name], style)
+            axes.set(title=title, xlabel="Episodes")
+            if name in LOG:
+                axes.set_yscale("log")
+        panels[0].axhline(exact["cost"][0], color="k", lw=0.8, ls=":", label="exact model")
+        panels[0].set_ylim(-0.5, MOST_COST)
+        panels[-1].set_ylim(-0.02, 1.02)
+        panels[-1].axhline(exact["upright"], color="k", lw=0.8, ls=":", label="exact model")
+        for axes in panels[3:]:
+            legend_below(axes)
+    return figure
+
+
+def _curve(axes: Any, label: str, values: np.ndarray, style: tuple[str, str]) -> None:
+    """IQM and band of values [S, E]; the share of a yes or no is its mean."""
+    episodes, (colour, stroke) = np.arange(1, values.shape[1] + 1), style
+    shown = values.mean(0) if np.isin(values, (0, 1)).all() else iqm(values)
+    axes.plot(episodes, shown, color=colour, linestyle=stroke, label=label, lw=1.2)
+    if not np.isin(values, (0, 1)).all():
+        axes.fill_between(episodes, *band(values, 500), color=colour, alpha=0.1, lw=0)

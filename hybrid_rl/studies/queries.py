@@ -1,0 +1,290 @@
+"""Clones that choose the states at which their teacher labels them: figure 4-2.
+
+    share = score of the clone / score of the teacher, over the same first states
+
+The score is the share of successes where the task has it, else the return. N demonstrations are
+N times `dagger_learner.first` decisions after the first one, which the teacher drives; each has a
+label. The printed schedule makes `steps` Adam steps a decision; a refit starts again from random
+weights, with many steps on the same labels.
+"""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from omegaconf import OmegaConf
+
+from hybrid_rl.config import Run, build
+from hybrid_rl.errors import UsageError
+from hybrid_rl.protocols import Controller
+from hybrid_rl.run import checkpoint
+from hybrid_rl.run.results import RunFolder
+from hybrid_rl.studies.curves import band, curves, improvement, iqm
+from hybrid_rl.studies.recorded import labels, matching
+from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
+from hybrid_rl.types import Params
+
+REACHED = 0.9  # of the teacher's score
+TARGETS = {  # class of the target -> name
+    "PolicyDisagreement": "disagreement",
+    "FeatureInformation": "features",
+    "PolicyResidual": "residual",
+    "Likely": "product",
+}
+METRICS = ("eval/policy_success", "eval/policy_return")
+
+
+class Row(NamedTuple):
+    """One method: S seeds, G numbers of demonstrations."""
+
+    label: str
+    folder: Path
+    config: Any
+    N: np.ndarray  # [G]
+    each: np.ndarray  # [S, G] score
+
+
+def queries(pattern: str, refit: int, at: Sequence[int]) -> tuple[Any, dict[str, Any]]:
+    """Shares over demonstrations, as trained and after a refit of `refit` steps at N in `at`."""
+    folders = matching(pattern, "queries")
+    configs = [_config(folder) for folder in folders]
+    tasks = sorted({config.task for config in configs})
+    if len(tasks) > 1:
+        raise UsageError(f"runs={pattern}: has runs of {' and '.join(tasks)}; give one")
+    names = _names(folders, configs)
+    metric = _metric(folders)
+    rows = [_row(*each, metric) for each in zip(names, folders, configs, strict=True)]
+    rows.sort(key=lambda row: row.label)
+    name = metric.rpartition("_")[2]
+    teacher = taught(rows[0].config, name)
+    if not teacher > 0:
+        raise UsageError(
+            f"runs={pattern}: shares need a positive score; the teacher's is {teacher}"
+        )
+    numbers = {row.label: _printed(row, teacher) for row in rows}
+    for row in rows if refit else ():
+        shares = refitted(row, refit, at, name) / teacher
+        numbers[row.label]["refit"] = _reported(np.array(at), shares)
+    first = int(rows[0].config.learners.policy.first)
+    made = {
+        "task": tasks[0],
+        "score": name,
+        "teacher": teacher,
+        "decisions_of_a_demonstration": first,
+        "refit_steps": refit,
+        "methods": numbers,
+        "comparisons": _compared(numbers),
+    }
+    return _picture(made), made
+
+
+def _config(folder: Path) -> Any:
+    """The configuration of a run whose clone asks a teacher."""
+    if not RunFolder(folder).settings:  # a damaged file raises here, with its name
+        raise UsageError(f"runs={folder}: not a run folder (it has no config.yaml)")
+    config: Any = OmegaConf.load(folder / "config.yaml")
+    learner = config.learners.get("policy")
+    if learner is None or "teacher" not in learner or not learner.first:
+        raise UsageError(
+            f"runs={folder}: needs algo=dagger or its kin, with dagger_learner.first above 0"
+        )
+    return config
+
+
+def _names(folders: list[Path], configs: list[Any]) -> list[str]:
+    """The name of each method; that of studies.recorded where two are equal."""
+    names = [name_of(config) for config in configs]
+    others = labels(folders)
+    return [a if names.count(a) == 1 else f"{a}, {b}" for a, b in zip(names, others, strict=True)]
+
+
+def name_of(config: Any) -> str:
+    """The usual name of the rule by which a run chooses its queries."""
+    learner, stages = config.learners.policy, config.controllers.full
+    if stages.get("decisions", [0])[0] >= config.total_steps:
+        return "behaviour cloning"
+    if learner.oracle:
+        return "oracle"
+    if learner.target is None:
+        return "RQ-DAgger" if learner.spread > 0 else "DAgger"
+    if "criterion" in learner.target:
+        return f"DAIL, {learner.target.criterion}"
+    kind = learner.target._target_.rpartition(".")[2]
+    return TARGETS.get(kind, kind)
+
+
+def _metric(folders: list[Path]) -> str:
+    """The metric that all runs have."""
+    for metric in METRICS:
+        if all(any(metric in row for row in RunFolder(path).rows) for path in folders):
+            return metric
+    raise UsageError(f"runs={folders[0]}: train with eval_modes=[policy]")
+
+
+def _row(label: str, folder: Path, config: Any, metric: str) -> Row:
+    """The scores of a run."""
+    curve = curves([folder], metric)[0]
+    first = config.learners.policy.first
+    return Row(label, folder, config, curve.x / first - 1, curve.each)
+
+
+def built(config: Any) -> Run:
+    """The run of a configuration from its folder."""
+    made: Any = OmegaConf.merge(config, {"resume": None})
+    return build(made)
+
+
+@partial(jax.jit, static_argnums=(0, 1))
+def _evaluated(episode: Episode, controller: Controller, params: Any, keys: Any) -> Any:
+    """The scores [..., S, M] of policies with parameters [..., S, ...], for keys [S, M]."""
+
+    def one(policy: Any, keys: Any) -> Any:
+        return evaluate_episodes(episode, controller, Params(policy=policy), keys)
+
+    return jax.vmap(jax.vmap(one), in_axes=(0, None))(params, keys)
+
+
+def _keys(run: Run) -> Any:
+    episodes = run.config.eval_episodes
+    return jnp.stack([evaluation_keys(seed, episodes) for seed in run.seeds])
+
+
+def taught(config: Any, score: str) -> float:
+    """The mean score of the teacher over the episodes of an evaluation of all seeds."""
+    run = built(config)
+    learner: Any = run.agent.learners["policy"]
+    teacher, episode = learner.teacher.greedy(), run.agent.episode
+
+    @jax.jit
+    def scores(keys: Any) -> Any:
+        return evaluate_episodes(episode, teacher, Params(), keys)[score]
+
+    return float(scores(_keys(run).reshape(-1)).mean())
+
+
+def refitted(row: Row, steps: int, at: Sequence[int], score: str) -> np.ndarray:
+    """[S, G] scores of clones that learn `steps` steps on the labels of the first N demonstrations.
+
+    Raises:
+        UsageError: if the run has fewer.
+    """
+    run, first = built(row.config), int(row.config.learners.policy.first)
+    learner: Any = run.agent.learners["policy"]
+    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+    like = like.replace(env=None, control=None, memory=None, key=None)
+    state = checkpoint.restore(row.folder / "checkpoints", like, part=True)[1].learners["policy"]
+    counts = first * (np.array(at) + 1)
+    least = min(int(np.asarray(state.labels.count).min()), learner.capacity)
+    if counts.max() > least:
+        raise UsageError(f"at={','.join(map(str, at))}: {row.folder} has {least} labels")
+
+    def fitted(state: Any, count: Any, seed: Any) -> Any:
+        beginning, learning = jax.random.split(jax.random.key(seed))
+        fresh = learner.init(beginning, run.agent.spec)
+        policy = {**state.policy, "weights": fresh.policy["weights"]}
+        known = state.labels.replace(count=count)
+        state = state.replace(policy=policy, optimiser=fresh.optimiser, labels=known)
+        return learner.fit(state, steps, learning).policy
+
+    each = jax.vmap(fitted, in_axes=(0, None, 0))
+    policies = jax.jit(jax.vmap(each, in_axes=(None, 0, None)))(
+        state, jnp.asarray(counts), jnp.asarray(run.seeds)
+    )
+    scores = _evaluated(run.agent.episode, run.controllers["policy"], policies, _keys(run))
+    return np.asarray(scores[score].mean(-1)).T
+
+
+def _reported(N: np.ndarray, each: np.ndarray) -> dict[str, Any]:
+    """Shares [S, G] at N [G]: interquartile means, bands, and the first N that reaches 90%."""
+    middle, (low, high) = iqm(each), band(each)
+    reached = N[middle >= REACHED]
+    return {
+        "N": N,
+        "each": each,
+        "iqm": middle,
+        "low": low,
+        "high": high,
+        "reaches": float(reached[0]) if len(reached) else None,
+        "over_90": (each >= REACHED).mean(0),
+    }
+
+
+def _printed(row: Row, teacher: float) -> dict[str, Any]:
+    """The numbers of one method on the printed schedule; `area` is the mean over N above 0."""
+    each = row.each / teacher
+    area = each[:, row.N > 0.5].mean(1)
+    return {
+        **_reported(row.N, each),
+        "area_each": area,
+        "area": [float(iqm(area)), *map(float, band(area))],
+        "seeds": len(each),
+    }
+
+
+def _compared(methods: dict[str, Any]) -> dict[str, Any]:
+    """Method -> P(its area exceeds that of RQ-DAgger), and the same for its last refit."""
+    if "RQ-DAgger" not in methods:
+        return {}
+    base, result = methods["RQ-DAgger"], {}
+    for label, one in methods.items():
+        if label == "RQ-DAgger":
+            continue
+        result[label] = {"area": improvement(one["area_each"], base["area_each"])}
+        if "refit" in one:
+            last = [each["refit"]["each"][:, -1] for each in (one, base)]
+            result[label]["refit"] = improvement(*last)
+    return result
+
+
+def _picture(made: dict[str, Any]) -> Any:
+    """Shares over demonstrations, a panel for each schedule."""
+    from matplotlib.figure import Figure
+
+    methods = made["methods"]
+    schedules = ["printed", *(["refit"] if made["refit_steps"] else [])]
+    figure = Figure(figsize=(4.6 * len(schedules), 4.2), layout="constrained")
+    panels = figure.subplots(1, len(schedules), sharey=True, squeeze=False)[0]
+    for axes, schedule in zip(panels, schedules, strict=True):
+        for i, (label, one) in enumerate(methods.items()):
+            line = one if schedule == "printed" else one["refit"]
+            colour, stroke = COLOURS[i % len(COLOURS)], STROKES[i // len(COLOURS)]
+            axes.plot(line["N"], line["iqm"], stroke, color=colour, label=label, marker=".")
+            axes.fill_between(line["N"], line["low"], line["high"], color=colour, alpha=0.12)
+        axes.axhline(1, color="#444444", linewidth=0.8)
+        axes.set_xlabel(f"demonstrations of {made['decisions_of_a_demonstration']} decisions")
+        steps = f"{made['refit_steps']:,} steps on the same labels"
+        axes.set_title("one Adam step a decision" if schedule == "printed" else steps)
+    words = {"success": "share of successes", "return": "return"}[made["score"]]
+    panels[0].set_ylabel(f"{words} / the teacher's")
+    legend_below(panels[0])
+    return figure
+
+
+def lines(numbers: dict[str, Any]) -> list[str]:
+    """A line for each method, then the comparisons with random queries."""
+    result = [f"{numbers['task']}: the teacher's {numbers['score']} is {numbers['teacher']:.4g}"]
+    for label, one in numbers["methods"].items():
+        each = [("printed", one), *([("refit", one["refit"])] if "refit" in one else [])]
+        for schedule, line in each:
+            shares = ", ".join(
+                f"N={n:g} {m:.2f} [{a:.2f}, {b:.2f}]"
+                for n, m, a, b in zip(
+                    *(line[name] for name in ("N", "iqm", "low", "high")), strict=True
+                )
+                if n in (1, 2, 4, 8, 12)
+            )
+            reached = "never" if line["reaches"] is None else f"at {line['reaches']:g}"
+            result.append(f"{label}, {schedule}: {shares}; 90% {reached}")
+        middle, low, high = one["area"]
+        result.append(f"{label}: mean over N {middle:.3f} [{low:.3f}, {high:.3f}]")
+    for label, one in numbers["comparisons"].items():
+        words = [f"{key} {p:.2f} [{a:.2f}, {b:.2f}]" for key, (p, a, b) in one.items()]
+        result.append(f"P({label} > RQ-DAgger): {', '.join(words)}")
+    return result

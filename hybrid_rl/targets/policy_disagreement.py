@@ -1,0 +1,38 @@
+"""p(s) ~ the variance of the actions that several clones of a teacher choose at s.
+
+    p(s) ~ sum_i var_j pi_ji(s) + floor,   j: clones, i: entries of the action
+
+Source: the doubt of EnsembleDAgger (Menda, Driggs-Campbell and Kochenderfer 2019), which decides
+there who acts; as a choice of queries it is query by committee (Seung, Opper and Sompolinsky 1992).
+"""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.protocols import Committee
+from hybrid_rl.types import Params
+
+
+@dataclass(frozen=True)
+class PolicyDisagreement:
+    """Proportional to the variance of the clones' actions.
+
+    Raises:
+        ValueError: for a single policy.
+    """
+
+    policy: Committee
+    floor: float = 1e-8  # of the variance
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not hasattr(self.policy, "each"):
+            raise ValueError(f"target.policy={type(self.policy).__name__}: needs policy=clones")
+        if not self.floor > 0:
+            raise ValueError(f"target.floor={self.floor}: must be above 0")
+
+    def log_density(self, params: Params, s: Array) -> Array:
+        """log p [] at the planning state s [n], up to a constant."""
+        return jnp.log(self.policy.each(params.policy, s).var(0).sum() + self.floor)

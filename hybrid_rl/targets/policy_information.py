@@ -1,0 +1,88 @@
+"""p(s) ~ c(I(s)): the Fisher information of a demonstration at s about a policy's weights.
+
+    I(s) = diag(sum_i sigma^-2 (d mu_i / d theta)^2)  [P],   mu: the policy before squashing
+
+    trace    c = tr I(s) = sum_j I_j
+    inverse  c = 1 / sum_j 1 / (I_j + floor)
+    gain     c = sum_j log(1 + I_j / (B_j + floor)),   B: information of the labels so far
+
+`gain` is twice the information that the answer adds, with a diagonal prior `floor`. Behind tanh
+the derivatives vanish where an action is saturated, so they are taken before it. Source: thesis
+eq. (4.5)-(4.6) (`inverse`) and (6.28) (`trace`), with sigma^-2 where the thesis has sigma; `gain`
+is ours.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import fisher
+from hybrid_rl.core.analytic import require_equilibrium
+from hybrid_rl.core.domain import Box
+from hybrid_rl.protocols import BalancedEnv, UnsquashedPolicy
+from hybrid_rl.types import Params
+
+CRITERIA = ("trace", "inverse", "gain")
+
+
+@dataclass(frozen=True)
+class PolicyInformation:
+    """Proportional to a criterion of the information that a demonstration has.
+
+    Without a domain s is a planning state; with one, the coordinates that it lacks have their
+    equilibrium values.
+
+    Raises:
+        ValueError: for an unknown criterion, numbers out of range, or a domain in a world without
+            equilibrium.
+    """
+
+    policy: UnsquashedPolicy
+    world: BalancedEnv | None = None  # of the equilibrium
+    domain: Box | None = None
+    criterion: str = "gain"
+    sigma: float = 1.0  # of mu
+    floor: float = 0.01  # [1/weight^2]
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if self.criterion not in CRITERIA:
+            raise ValueError(f"target.criterion={self.criterion}: choose {', '.join(CRITERIA)}")
+        for name in ("sigma", "floor"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"target.{name}={getattr(self, name)}: must be above 0")
+        if not hasattr(self.policy, "unsquashed"):
+            kind = type(self.policy).__name__
+            raise ValueError(f"target.policy={kind}: needs policy=deterministic")
+        if self.domain is not None:
+            world: Any = self.world
+            require_equilibrium("target", world)
+
+    def information(self, params: Params, x: Array) -> Array:
+        """I(x) [P] at the planning state x [n]."""
+
+        def mu(weights: Any) -> Array:
+            return self.policy.unsquashed({**params.policy, "weights": weights}, x)
+
+        F = fisher.jacobian(mu, params.policy["weights"])
+        return fisher.diagonal(F, jnp.full(len(F), self.sigma))
+
+    def evidence(self, params: Params, x: Array) -> Array | None:
+        """What params.belief sums over the labels: I(x) [P] for `gain`, else nothing."""
+        return self.information(params, x) if self.criterion == "gain" else None
+
+    def log_density(self, params: Params, s: Array) -> Array:
+        """log p [] at s [v], up to a constant; `gain` needs params.belief."""
+        x = s
+        if self.domain is not None:
+            assert self.world is not None
+            x = self.domain.put(self.world.equilibrium()[0].astype(s.dtype), s)
+        here = self.information(params, x)
+        if self.criterion == "trace":
+            return jnp.log(jnp.sum(here))
+        if self.criterion == "inverse":
+            return -jnp.log(jnp.sum(1 / (here + self.floor)))
+        before = params.belief.evidence + self.floor
+        return jnp.log(jnp.sum(jnp.log1p(here / before)))

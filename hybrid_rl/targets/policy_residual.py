@@ -1,0 +1,46 @@
+"""p(s) ~ the squared difference between a policy and the labels near s.
+
+    p(s) ~ |pi(s) - u(s)|^2 + floor,   u(s) = sum_i w_i u_i / sum_i w_i,
+    w_i = exp(-|(s - s_i) / (h scale)|^2 / 2)   over the labels (s_i, u_i) so far
+
+u is kernel regression (Nadaraya 1964, Watson 1964), which follows the labels at once where a clone
+needs many gradient steps. As a choice of queries it is ours: where the two disagree, the clone has
+not learned what the labels show, or there is no label nearby.
+"""
+
+from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.protocols import Policy
+from hybrid_rl.types import Params
+
+
+@dataclass(frozen=True)
+class PolicyResidual:
+    """Proportional to the squared difference to a kernel regression of the labels.
+
+    Raises:
+        ValueError: for a bandwidth or a floor that is not positive.
+    """
+
+    policy: Policy
+    bandwidth: float = 0.5  # h, in standard deviations of the first demonstration
+    floor: float = 1e-6
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("bandwidth", "floor"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"target.{name}={getattr(self, name)}: must be above 0")
+
+    def log_density(self, params: Params, s: Array) -> Array:
+        """log p [] at the planning state s [n], up to a constant; needs params.belief."""
+        known = params.belief.labels
+        away = (known.obs - s[None]) / (self.bandwidth * params.belief.scale)[None]
+        filled = jnp.arange(len(away)) < known.count
+        log_w = jnp.where(filled, -0.5 * jnp.sum(away**2, 1), -jnp.inf)
+        u = jax.nn.softmax(jnp.where(known.count > 0, log_w, 0.0)) @ known.action
+        return jnp.log(jnp.sum((self.policy.mean(params.policy, s) - u) ** 2) + self.floor)

@@ -1,0 +1,224 @@
+"""Fisher information: closed forms, reverse mode, NumPy, and the variance of estimates."""
+
+from collections.abc import Iterator
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+from jax.flatten_util import ravel_pytree
+
+from hybrid_rl.core import adjoint, fisher
+from hybrid_rl.models.gaussian import Gaussian
+from hybrid_rl.types import Path, Spec
+
+T, N, M = 3, 2, 1
+SIGMA = np.array([0.3, 0.7])
+RNG = np.random.default_rng(0)
+V = RNG.uniform(-1, 1, (T, M))
+MODEL = Gaussian(hidden=(3,), activation="tanh", normalise=False)
+
+
+def policy(x: Array) -> Array:
+    return jnp.tanh(x[:M])
+
+
+@pytest.fixture(autouse=True)
+def _double() -> Iterator[None]:
+    """Float64, so that bounds can be close."""
+    with jax.enable_x64(True):
+        yield
+
+
+def network(model: Gaussian = MODEL) -> tuple:
+    """A step of (theta, x, u) and theta, in float64."""
+    params = model.init(jax.random.key(1), Spec(N, M, 0.1))
+    params = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), params)
+
+    def step(theta, x: Array, u: Array) -> Array:
+        return model.step(fisher.with_weights(params, theta), x, u)
+
+    return step, fisher.weights_of(params)
+
+
+def rolled(step, theta, v) -> Path:
+    return adjoint.roll(lambda x, u: step(theta, x, u), policy, jnp.array([0.4, -0.2]), v)
+
+
+def test_information_of_a_linear_model_is_that_of_its_regression() -> None:
+    """diag kron(1 / sigma^2, Z'Z), the rows of Z are (1, x, u): here [bias [n], kernel [., n]]."""
+    step, theta = network(Gaussian(hidden=(), normalise=False))
+    x, u = RNG.normal(size=(T + 1, N)), RNG.normal(size=(T, M))
+    F = fisher.along(step, theta, Path(jnp.asarray(x), jnp.asarray(u)), "step")
+    z = np.column_stack([np.ones(T), x[:-1], u])
+    expected = np.kron((z**2).sum(0), 1 / SIGMA**2)
+    np.testing.assert_allclose(fisher.diagonal(F, jnp.asarray(SIGMA)).sum(0), expected, rtol=1e-12)
+    flat = np.asarray(F).reshape(-1, expected.size) / np.tile(SIGMA, T)[:, None]
+    np.testing.assert_allclose(flat.T @ flat, np.kron(z.T @ z, np.diag(SIGMA**-2)), atol=1e-12)
+
+
+def test_information_of_one_decision_of_a_linear_model_is_the_gain_of_its_regression() -> None:
+    """n log(1 + s' S s / sigma^2), the objective of chapter 7, for a diagonal S."""
+    s, S = RNG.normal(size=3), RNG.uniform(0.5, 2.0, 3)
+    F = jnp.asarray(np.kron(np.eye(N), s)[None])
+    value = fisher.log_det(F, jnp.full(N, 0.3), jnp.asarray(np.tile(1 / S, N)))
+    np.testing.assert_allclose(value, N * np.log(1 + (S * s**2).sum() / 0.09), rtol=1e-12)
+
+
+def test_information_of_a_decay_by_path_has_a_closed_form() -> None:
+    """x' = a x: I = sum_t (t a^(t-1) x_0)^2 / sigma^2."""
+    a, x0, sigma = 0.9, 1.5, 0.2
+    path = Path(jnp.asarray(x0 * a ** np.arange(T + 1))[:, None], jnp.zeros((T, 1)))
+    F = fisher.along(lambda a, x, u: a * x, jnp.asarray([a]), path, "path")
+    t = np.arange(1, T + 1)
+    expected = ((t * a ** (t - 1) * x0) ** 2).sum() / sigma**2
+    total = fisher.diagonal(F, jnp.array([sigma])).sum()
+    np.testing.assert_allclose(total, expected, rtol=1e-12)
+
+
+def test_sensitivities_by_path_are_derivatives_of_the_rolled_out_states() -> None:
+    """By forward mode through the whole path, with open-loop actions."""
+    step, theta = network()
+    path = rolled(step, theta, V)
+    flat, unravel = ravel_pytree(theta)
+
+    def states(flat: Array) -> Array:
+        def forward(x: Array, u: Array) -> tuple[Array, Array]:
+            return (step(unravel(flat), x, u),) * 2
+
+        return jax.lax.scan(forward, path.x[0], path.u)[1]
+
+    F = fisher.along(step, theta, path, "path")
+    np.testing.assert_allclose(F, jax.jacfwd(states)(flat), atol=1e-13)
+
+
+@pytest.mark.parametrize("kind", fisher.KINDS)
+def test_products_are_those_of_the_derivatives(kind) -> None:
+    step, theta = network()
+    path, (flat, unravel) = rolled(step, theta, V), ravel_pytree(theta)
+    v = jnp.asarray(RNG.normal(size=flat.size))
+    F = fisher.along(step, theta, path, kind)
+    product = fisher.products(step, theta, path, kind, unravel(v))
+    np.testing.assert_allclose(product, F @ v, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", fisher.KINDS)
+def test_costate_gradient_is_reverse_mode_through_the_path(kind) -> None:
+    """For each criterion, with a policy that depends on the state."""
+    step, theta = network()
+    prior = jnp.asarray(RNG.uniform(0.5, 2.0, ravel_pytree(theta)[0].size))
+
+    def objective(name: str, path: Path) -> Array:
+        F = fisher.along(step, theta, path, kind)
+        return fisher.criterion(name, F, jnp.asarray(SIGMA), prior)
+
+    def by_costate(name: str, v: Array) -> Array:
+        nominal = rolled(step, theta, v)
+        return adjoint.adjoint(
+            lambda x, u: step(theta, x, u), policy, lambda path: objective(name, path), nominal
+        ).gradient
+
+    @jax.jit
+    def both(v: Array) -> tuple:
+        reverse = [
+            jax.grad(lambda v, n=n: objective(n, rolled(step, theta, v)))(v)
+            for n in fisher.CRITERIA
+        ]
+        return [by_costate(n, v) for n in fisher.CRITERIA], reverse
+
+    for name, gradient, expected in zip(fisher.CRITERIA, *both(jnp.asarray(V)), strict=True):
+        assert np.abs(expected).max() > 1e-3, name
+        np.testing.assert_allclose(gradient, expected, rtol=1e-10, atol=1e-12, err_msg=name)
+
+
+@pytest.mark.parametrize("name", fisher.CRITERIA)
+def test_criteria_are_those_of_numpy(name) -> None:
+    """D, A and T of the diagonal; `full` is the determinant of the P x P matrix."""
+    F, prior = RNG.normal(size=(T, N, 7)), RNG.uniform(0.1, 1.0, 7)
+    each = np.stack([f.T @ np.diag(SIGMA**-2) @ f for f in F])
+    known, total = np.diag(prior), each.sum(0) + np.diag(prior)
+    diagonals = np.diagonal(each, axis1=1, axis2=2)
+    expected = {
+        "A_step": -(1 / (diagonals + prior[None])).sum(),
+        "A": -(1 / np.diag(total)).sum(),
+        "D": np.log(np.diag(total) / prior).sum(),
+        "T": np.log(np.trace(total)),
+        "full": np.linalg.slogdet(total)[1] - np.linalg.slogdet(known)[1],
+    }
+    value = fisher.criterion(name, jnp.asarray(F), jnp.asarray(SIGMA), jnp.asarray(prior))
+    np.testing.assert_allclose(value, expected[name], rtol=1e-12)
+
+
+def test_an_unstable_path_does_not_overflow() -> None:
+    """x' = 1e4 x in float32: the derivative is cut, criteria and gradients stay finite."""
+    x = jnp.ones((21, 1), jnp.float32)
+
+    def total(u: Array) -> Array:
+        path = Path(x, u)
+        F = fisher.along(lambda a, x, u: 1e4 * a * x + u, jnp.ones(1, jnp.float32), path, "path")
+        each = [fisher.criterion(n, F, jnp.ones(1), jnp.ones(1)) for n in fisher.CRITERIA]
+        return jnp.stack(each).sum()
+
+    value, slope = jax.value_and_grad(total)(jnp.zeros((20, 1), jnp.float32))
+    assert np.isfinite(value)
+    assert np.isfinite(slope).all()
+
+
+LENGTH, SETS, NOISE = 30, 4000, 0.01
+LINEAR = np.array([0.95, 0.5])  # x' = a x + b u
+
+
+def simulated(theta: np.ndarray, u: np.ndarray, noise: np.ndarray) -> np.ndarray:
+    """x [S, T+1] from 1 for theta [S, 2] and process noise [S, T]."""
+    x = [np.ones(len(noise))]
+    for t in range(len(u)):
+        x.append(theta[:, 0] * x[-1] + theta[:, 1] * u[t] + noise[:, t])
+    return np.stack(x, 1)
+
+
+def one_step_estimates(u: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Least squares [S, 2] of x' on (x, u), every state measured, noise in the process."""
+    x = simulated(np.tile(LINEAR, (SETS, 1)), u, NOISE * rng.normal(size=(SETS, LENGTH)))
+    z = np.stack([x[:, :-1], np.broadcast_to(u, x[:, 1:].shape)], -1)
+    gram, right = z.swapaxes(1, 2) @ z, np.einsum("stk,st->sk", z, x[:, 1:])
+    return np.linalg.solve(gram, right[..., None])[..., 0]
+
+
+def output_error_estimates(u: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Gauss-Newton [S, 2] on the whole path from a known x_0, noise in the measurements."""
+    theta = np.tile(LINEAR, (SETS, 1))
+    none = np.zeros((SETS, LENGTH))
+    y = simulated(theta, u, none)[:, 1:] + NOISE * rng.normal(size=(SETS, LENGTH))
+    for _ in range(5):
+        slopes = [
+            (simulated(theta + d, u, none) - simulated(theta - d, u, none))[:, 1:] / 2e-6
+            for d in 1e-6 * np.eye(2)
+        ]
+        z, rest = np.stack(slopes, -1), y - simulated(theta, u, none)[:, 1:]
+        gram, right = z.swapaxes(1, 2) @ z, np.einsum("stk,st->sk", z, rest)
+        theta = theta + np.linalg.solve(gram, right[..., None])[..., 0]
+    return theta
+
+
+def test_variance_of_estimates_is_the_inverse_of_the_information() -> None:
+    """Output error goes with path, one-step errors with step; the crossed pairs are far off.
+
+    The noise is small: the information is that of the path without noise.
+    """
+    rng = np.random.default_rng(3)
+    u = rng.uniform(-1, 1, LENGTH)
+    x = simulated(LINEAR[None], u, np.zeros((1, LENGTH)))[0]
+    path = Path(jnp.asarray(x)[:, None], jnp.asarray(u)[:, None])
+    predicted = {}
+    for kind in fisher.KINDS:
+        F = fisher.along(
+            lambda theta, x, u: theta[0] * x + theta[1] * u, jnp.asarray(LINEAR), path, kind
+        )
+        rows = np.asarray(F)[:, 0] / NOISE
+        predicted[kind] = np.diag(np.linalg.inv(rows.T @ rows))
+    one, whole = one_step_estimates(u, rng).var(0), output_error_estimates(u, rng).var(0)
+    np.testing.assert_allclose(whole, predicted["path"], rtol=0.1)
+    np.testing.assert_allclose(one, predicted["step"], rtol=0.1)
+    assert predicted["step"][0] > 3 * whole[0]
+    assert one[0] > 3 * predicted["path"][0]

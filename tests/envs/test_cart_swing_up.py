@@ -1,0 +1,99 @@
+"""The cart that swings a rod up, against mechanics and a NumPy roll-out."""
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+from worlds import follow, jitted
+
+from hybrid_rl.envs.analytic import cart_swing_up
+from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
+from hybrid_rl.envs.analytic.state import fully_observed
+
+G = 9.81
+
+
+def test_the_mass_feels_only_gravity_and_the_rod(monkeypatch) -> None:
+    """Across the rod its acceleration is that of gravity, in fine steps without friction."""
+    dt = 1e-4
+    monkeypatch.setattr(cart_swing_up, "DT", dt)
+    monkeypatch.setattr(cart_swing_up, "SUBSTEPS", 1)
+    env = CartSwingUp(damping=0.0, friction=0.0)
+    u = np.repeat(np.random.default_rng(0).uniform(-1, 1, (4, 1)), 1000, axis=0)
+    th, x = follow(env, [2.0, 0.3, 1.0, -0.5], u)[:, :2].T
+    mass = np.stack([x - env.length * np.sin(th), env.length * np.cos(th)], 1)
+    acceleration = (mass[2:] - 2 * mass[1:-1] + mass[:-2]) / dt**2
+    across = np.stack([np.cos(th), np.sin(th)], 1)[1:-1]
+    along = (acceleration + np.array([0, G])) * across
+    steady = np.arange(1, len(u)) % 1000 > 1  # not where the action jumps
+    np.testing.assert_allclose(along.sum(1)[steady], 0, atol=0.02)
+    push = (x[2:] - 2 * x[1:-1] + x[:-2]) / dt**2
+    np.testing.assert_allclose(push[steady], 10 * u[:-1, 0][steady], atol=1e-3)
+    assert np.ptp(th) > 1
+
+
+def test_a_decision_is_two_euler_steps_with_friction() -> None:
+    env, x = CartSwingUp(), np.array([2.0, 0.3, 1.0, -0.5])
+    expected = x.copy()
+    for _ in range(2):
+        th, _, w, v = expected
+        turn = (G * np.sin(th) - 6.0 * np.cos(th)) / 0.6 - 0.2 * w
+        expected = expected + 0.02 * np.array([w, v, turn, -6.0 - 0.1 * v])
+    np.testing.assert_allclose(follow(env, x, [[-0.6]])[1], expected, rtol=1e-12)
+    assert env.spec.dt == pytest.approx(0.04)
+
+
+def test_reward_is_that_of_the_thesis() -> None:
+    """At 60 degrees, 1.2 m, with 6 m/s^2: 0.5 - 0.43 - 0.36."""
+    after = jnp.array([np.pi / 3, 1.2, 0.0, 0.0])
+    reward = CartSwingUp().reward_of(after, jnp.array([0.6]), after)
+    assert float(reward) == pytest.approx(0.5 - 0.1 * 1.2**8 - 0.36, abs=1e-5)
+
+
+def test_the_rod_hangs_at_the_start_and_success_is_upright() -> None:
+    env = CartSwingUp(start=0.1)
+    obs = jax.vmap(env.reset)(jax.random.split(jax.random.key(0), 2000)).obs
+    np.testing.assert_allclose(obs.mean(0), [np.pi, 0, 0, 0], atol=0.01)
+    np.testing.assert_allclose(obs.std(0), 0.1, rtol=0.1)
+    for angle, success in ((2 * np.pi - 0.4, 1), (0.5, 0), (np.pi, 0)):
+        state = fully_observed(jnp.array([angle, 0.0, 0.0, 0.0]), jnp.zeros(()))
+        after = jitted(env, "step")(state, jnp.zeros(1))
+        assert after.metrics["success"] == success
+        assert not after.terminated
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected"),
+    [({}, "000"), ({"rail": 1.0}, "010"), ({"turns": 0.75}, "001")],
+)
+def test_the_end_of_the_rail_or_of_a_turn_ends_an_episode(fields, expected) -> None:
+    """At the start, beyond 1 m, and 0.8 turns away from hanging."""
+    env, ended = CartSwingUp(**fields), ""
+    for th, x in ((np.pi, 0.9), (np.pi, -1.1), (-0.6 * np.pi, 0.0)):
+        state = fully_observed(jnp.array([th, x, 0.0, 0.0]), jnp.zeros(()))
+        ended += str(int(jitted(env, "step")(state, jnp.zeros(1)).terminated))
+    assert ended == expected
+
+
+def test_the_scene_shows_the_rod_on_the_side_of_its_mass() -> None:
+    env, x = CartSwingUp(length=1.2), jnp.array([0.3, 0.5, 0.0, 0.0])
+    model = mujoco.MjModel.from_xml_string(env.scene())
+    data = mujoco.MjData(model)
+    data.qpos[:] = env.pose(fully_observed(x, jnp.zeros(())))
+    mujoco.mj_forward(model, data)
+    middle = [0.5 - 0.6 * np.sin(0.3), 0, 0.6 * np.cos(0.3)]
+    np.testing.assert_allclose(data.geom("rod").xpos, middle, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("fields", "line"),
+    [
+        ({"length": 0.0}, "length=0.0: must be above 0"),
+        ({"rail": 0.0}, "rail=0.0: must be above 0"),
+        ({"friction": -0.1}, "friction=-0.1: must be 0 or more"),
+    ],
+)
+def test_bad_fields_are_named(fields, line) -> None:
+    with pytest.raises(ValueError, match=line):
+        CartSwingUp(**fields)

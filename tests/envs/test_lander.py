@@ -1,0 +1,124 @@
+"""The lander against closed forms, its regulator against a Riccati equation solved by SciPy."""
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+from scipy.linalg import solve_discrete_are
+from worlds import follow, jitted
+
+from hybrid_rl.envs.analytic.lander import DT, Lander
+from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.policies.regulator import Regulator
+
+ENV = Lander()
+START = np.array([0.2, -0.4, 0.7, 0.3, -0.1, 0.5])
+MIRROR = np.array([-1, 1, -1, -1, 1, -1])  # x -> -x, angle -> -angle
+GAIN = [  # of a = 1/2 - K o, for Q = I, R = 0.001 I
+    [-2.189, 4.541, 6.406, -5.841, 5.248, 3.060],
+    [2.189, 4.541, -6.406, 5.841, 5.248, -3.060],
+]
+
+
+def test_mirrored_thrusts_lead_a_mirrored_lander_along_the_mirrored_path() -> None:
+    u = np.random.default_rng(0).uniform(-1, 1, (30, 2))
+    path = follow(ENV, START, u)
+    assert np.ptp(path[:, 2]) > 1
+    mirrored = follow(ENV, MIRROR * START, u[:, ::-1])
+    np.testing.assert_allclose(mirrored, MIRROR * path, rtol=1e-12, atol=1e-12)
+
+
+def test_half_thrust_hovers_exactly() -> None:
+    """Bit for bit, also in float32."""
+    x, u = ENV.equilibrium()
+    np.testing.assert_array_equal(ENV.dynamics(x, u), np.zeros(6))
+
+
+def test_it_falls_freely_without_thrust() -> None:
+    """Euler steps of constant acceleration: z = -t (t - dt) / 2, z' = -t; the angle turns on."""
+    path, t = follow(ENV, [0, 0, 0.3, 0, 0, 0.2], np.zeros((25, 2))), DT * np.arange(26)
+    np.testing.assert_allclose(path[:, 1], -t * (t - DT) / 2, atol=1e-12)
+    np.testing.assert_allclose(path[:, 4], -t, atol=1e-12)
+    np.testing.assert_allclose(path[:, 2], 0.3 + 0.2 * t, atol=1e-12)
+    np.testing.assert_array_equal(path[:, [0, 3]], 0)
+
+
+def test_thrust_pushes_along_the_axis_of_the_vehicle() -> None:
+    """Upside down, negative thrust carries it: x and z stay."""
+    path = follow(ENV, [0, 0, -np.pi, 0, 0, 0], np.full((20, 2), -0.5))
+    np.testing.assert_allclose(path[:, [0, 1, 3, 4]], 0, atol=1e-12)
+
+
+def test_its_regulator_has_the_gain_of_the_riccati_equation() -> None:
+    """Linearised by hand: x'' = -th, z'' = a1 + a2, th'' = 2 (a1 - a2)."""
+    A, B = np.eye(6), np.zeros((6, 2))
+    A[:3, 3:] = DT * np.eye(3)
+    A[3, 2] = -DT
+    B[4], B[5] = DT, [2 * DT, -2 * DT]
+    R = 0.001 * np.eye(2)
+    P = solve_discrete_are(A, B, np.eye(6), R)
+    K = np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A)
+    got = Regulator(Lander("hover"), (1.0,), (0.001,)).solve()[0]
+    np.testing.assert_allclose(got, K, rtol=1e-5, atol=1e-6)
+    np.testing.assert_allclose(got, GAIN, atol=1e-3)
+
+
+def test_the_rewards_are_the_costs_of_the_thesis() -> None:
+    """At a state below the ground, with the goal of half a turn and of a whole one."""
+    x, u = np.array([3.0, -0.5, -1.0, 0.3, 0.2, -0.4]), np.tanh([0.7, -0.2])
+    rest = 5 * 0.25 + 10 * 0.5 + (0.09 + 0.04 + 0.16) + 0.1 * (0.49 + 0.04)
+    for turns in (0.5, 1.0):
+        want = 10 * (-1 + 2 * np.pi * turns) ** 2 + rest
+        got = Lander(turns=turns).reward_of(jnp.zeros(6), jnp.asarray(u), jnp.asarray(x))
+        assert float(got) == pytest.approx(-want, rel=1e-6)
+    hover = Lander("hover").reward_of(jnp.zeros(6), jnp.asarray(u), jnp.asarray(x))
+    assert float(hover) == pytest.approx(-(x @ x + 0.001 * np.sum((u - 0.5) ** 2)), rel=1e-6)
+
+
+def test_a_success_holds_the_goal_for_a_second() -> None:
+    """Ten decisions near the goal; one outside begins the second again, `turned` remains."""
+    upside_down = jnp.array([0.0, 0.0, -jnp.pi, 0.0, 0.0, 0.0])
+    step, state = jitted(ENV, "step"), jitted(ENV, "reset")(jax.random.key(0))
+    assert (state.metrics["success"], state.metrics["turned"]) == (0, 0)
+    for decision in range(1, 12):
+        state = step(state.replace(data=upside_down), jnp.full(2, -0.5))
+        assert state.metrics["success"] == (decision >= 10)
+        assert state.metrics["turned"] == 1
+    for off in (upside_down.at[1].set(-2.0), upside_down.at[2].set(-2.0)):
+        state = step(state.replace(data=off), jnp.full(2, -0.5))
+        assert (state.metrics["success"], state.metrics["turned"]) == (0, 1)
+
+
+def test_a_flip_begins_around_the_hover_and_a_hover_at_rest() -> None:
+    """Mean 0 and variance 0.1 of each of the six entries."""
+    keys = jax.random.split(jax.random.key(0), 4000)
+    x = np.asarray(jax.vmap(ENV.reset)(keys).obs)
+    np.testing.assert_allclose(x.mean(0), 0, atol=0.02)
+    np.testing.assert_allclose(np.cov(x.T), 0.1 * np.eye(6), atol=0.01)
+    np.testing.assert_array_equal(Lander("hover").reset(keys[0]).obs, 0)
+
+
+def test_the_scene_shows_the_angle() -> None:
+    """A quarter turn to the left: the vehicle's axis points to -x, its right side up."""
+    model = mjcf.load("lander.xml")
+    data = mujoco.MjData(model)
+    x = jnp.array([0.4, 0.3, jnp.pi / 2, 0.0, 0.0, 0.0])
+    data.qpos[:] = ENV.pose(fully_observed(x, jnp.zeros(())))
+    mujoco.mj_forward(model, data)
+    np.testing.assert_allclose(data.body("lander").xpos, [0.4, 0, 0.3], atol=1e-6)
+    np.testing.assert_allclose(data.body("lander").xmat.reshape(3, 3)[:, 2], [-1, 0, 0], atol=1e-6)
+    assert data.geom("right").xpos[2] > 0.3
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"task": "land"}, "task=land: choose hover, flip"),
+        ({"turns": 0.7}, "turns=0.7: choose 0.5"),
+    ],
+)
+def test_other_tasks_are_refused(fields: dict, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        Lander(**fields)

@@ -1,0 +1,96 @@
+"""The policy by the gradient of a known return: against finite differences, and on a task."""
+
+import dataclasses
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.envs.analytic.point_mass import PointMass
+from hybrid_rl.learners.analytic import AnalyticGradient
+from hybrid_rl.models.exact import Exact
+from hybrid_rl.objectives.known_reward import KnownReward
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.types import Batch, Params
+
+WORLD = PointMass()
+POLICY = TanhGaussian((8,), "tanh")
+LEARNER = AnalyticGradient(
+    POLICY, Exact(WORLD), KnownReward(WORLD), WORLD, horizon=6, starts=3, learning_rate=0.01
+)
+NOTHING = Batch(*(jnp.zeros(1) for _ in Batch._fields[:-1]))
+
+
+def updated(learner: AnalyticGradient, state: Any, key: jax.Array) -> tuple:
+    return learner.update(state, Params(model=(), policy=state.policy), NOTHING, key)
+
+
+@jax.jit
+def mean_return(policy: Any, key: jax.Array) -> jax.Array:
+    """Minus the loss, by stepping the environment."""
+    total, starting = jnp.zeros(()), jax.random.split(key)[0]
+    for each in jax.random.split(starting, LEARNER.starts):
+        state = WORLD.reset(each)
+        for _ in range(LEARNER.horizon):
+            state = WORLD.step(state, POLICY.mean(policy, state.obs))
+            total += state.reward
+    return total / LEARNER.starts / LEARNER.horizon
+
+
+def test_the_loss_and_its_gradient_are_those_of_episodes() -> None:
+    """The gradient's norm by central differences along the step of plain gradient descent."""
+    state, key = LEARNER.init(jax.random.key(0), WORLD.spec), jax.random.key(1)
+    plain = dataclasses.replace(LEARNER, clip=1e9)
+    _, metrics = updated(plain, state, key)
+    assert float(metrics["analytic/policy_loss"]) == pytest.approx(
+        -mean_return(state.policy, key), rel=1e-5
+    )
+    flat, build = jax.flatten_util.ravel_pytree(state.policy)
+    h = 1e-2
+    slopes = [
+        (mean_return(build(flat + e), key) - mean_return(build(flat - e), key)) / (2 * h)
+        for e in h * np.eye(len(flat), dtype=np.float32)[::9]
+    ]
+    exact = jax.grad(
+        lambda flat: (
+            -updated(plain, state.replace(policy=build(flat)), key)[1]["analytic/policy_loss"]
+        )
+    )(flat)
+    np.testing.assert_allclose(exact[::9], slopes, atol=2e-4)
+    assert float(metrics["analytic/gradient_norm"]) == pytest.approx(
+        float(jnp.linalg.norm(exact)), rel=1e-4
+    )
+
+
+def test_it_learns_to_lead_a_point_mass_to_the_middle() -> None:
+    """The mean distance after 3 s, from fresh starts, is a tenth of the first one."""
+    learner = dataclasses.replace(LEARNER, horizon=30, starts=16)
+    state = learner.init(jax.random.key(0), WORLD.spec)
+
+    @jax.jit
+    def run(state: Any) -> Any:
+        keys = jax.random.split(jax.random.key(2), 400)
+        return jax.lax.scan(lambda state, key: updated(learner, state, key), state, keys)[0]
+
+    policy = run(state).policy
+    first = jax.vmap(WORLD.reset)(jax.random.split(jax.random.key(3), 50))
+
+    def last(state: Any) -> jax.Array:
+        def one(state: Any, _: None) -> tuple[Any, None]:
+            return WORLD.step(state, POLICY.mean(policy, state.obs)), None
+
+        return jax.lax.scan(one, state, None, length=30)[0].obs[:2]
+
+    before, after = first.obs[:, :2], jax.vmap(last)(first)
+    distances = [np.linalg.norm(np.asarray(p) - 0.5, axis=1).mean() for p in (before, after)]
+    assert distances[1] < 0.1 * distances[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("horizon", 0), ("starts", 0), ("learning_rate", 0.0), ("clip", -1.0)]
+)
+def test_values_out_of_range_are_refused(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=rf"analytic_learner\.{name}={value}: must be"):
+        dataclasses.replace(LEARNER, **{name: value})

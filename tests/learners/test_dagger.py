@@ -1,0 +1,293 @@
+"""Queries to a linear teacher: what is asked, when, and what the clone learns from it."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tiny import call_train, only_line
+
+from hybrid_rl import config
+from hybrid_rl.core.labels import Belief
+from hybrid_rl.learners.dagger import DAgger, DAggerState
+from hybrid_rl.models.exact import Exact
+from hybrid_rl.policies.deterministic import Deterministic
+from hybrid_rl.targets.likely import Likely
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import Batch, Params, Spec
+
+SPEC = Spec(obs=3, act=2, dt=0.1)
+GAIN = np.array([[0.25, -0.5, 0.125], [-0.125, 0.0625, 0.5]], np.float32)
+X: Any = np.random.default_rng(0).normal(size=(40, 3)).astype(np.float32)
+POLICY = Deterministic(hidden=(8,))
+
+
+@dataclass(frozen=True)
+class Linear:
+    """u = GAIN x."""
+
+    rows: int = 2  # of GAIN
+
+    def init(self, spec: Spec) -> tuple[()]:
+        """No state."""
+        return ()
+
+    def act(self, params: Params, state: Any, obs: Any, key: Any) -> tuple:
+        """The action."""
+        return jnp.asarray(GAIN[: self.rows]) @ obs, state, {}
+
+    def greedy(self) -> "Linear":
+        """This controller."""
+        return self
+
+
+@dataclass(frozen=True)
+class Far:
+    """A density that grows with the first entry."""
+
+    def log_density(self, params: Params, s: Any) -> Any:
+        """The first entry."""
+        return s[0]
+
+
+@dataclass(frozen=True)
+class Halved:
+    """x' = x / 2 + (u, 0)."""
+
+    def dynamics(self, x: Any, u: Any) -> Any:
+        """The next state."""
+        return x / 2 + jnp.append(u, 0.0)
+
+
+def after(learner: DAgger, x: Any = X) -> DAggerState:
+    """The state after decisions at the rows of x."""
+
+    def one(state: DAggerState, at: tuple) -> tuple:
+        obs, key = at
+        batch = Batch(*[obs[None]] * 7)
+        params = Params(**learner.params(state))
+        return learner.update(state, params, batch, key)[0], None
+
+    keys = jax.random.split(jax.random.key(0), len(x))
+    first = learner.init(jax.random.key(1), SPEC)
+    return jax.jit(lambda s: jax.lax.scan(one, s, (jnp.asarray(x), keys))[0])(first)
+
+
+def asked(state: DAggerState) -> np.ndarray:
+    """The decisions before each query."""
+    return np.asarray(state.decision)[: int(state.queries)]
+
+
+def test_dagger_labels_the_states_of_the_run() -> None:
+    """The ring is (obs, teacher(obs)), bit for bit."""
+    state = after(DAgger(POLICY, Linear(), capacity=64))
+    assert int(state.labels.count) == len(X)
+    np.testing.assert_array_equal(state.labels.obs[:40], X)
+    wanted = jax.jit(jax.vmap(lambda x: jnp.asarray(GAIN) @ x))(X)
+    np.testing.assert_array_equal(state.labels.action[:40], wanted)
+    assert not np.asarray(state.labels.obs[40:]).any()
+
+
+def test_the_ring_keeps_the_last_labels() -> None:
+    """The oldest are overwritten."""
+    state = after(DAgger(POLICY, Linear(), capacity=16))
+    rows = {tuple(row) for row in np.asarray(state.labels.obs)}
+    assert rows == {tuple(row) for row in X[-16:]}
+
+
+def test_random_queries_are_spread_by_the_deviations_of_the_first_demonstration() -> None:
+    """In units of them, or in those of the observation."""
+    x = np.tile(np.array([[1.0, 0.0, 0.0], [-1.0, 4.0, 0.0]], np.float32), (1000, 1))
+    for normalise, wanted in ((True, [0.2, 0.4, 0.2]), (False, [0.2, 0.2, 0.2])):
+        learner = DAgger(
+            POLICY, Linear(), spread=0.2, normalise=normalise, first=100, steps=0, capacity=2000
+        )
+        state = after(learner, x)
+        np.testing.assert_array_equal(state.labels.obs[:100], x[:100])
+        away = np.asarray(state.labels.obs[100:]) - x[100:]
+        np.testing.assert_allclose(away.std(0), wanted, rtol=0.06)
+        np.testing.assert_allclose(away.mean(0), 0, atol=0.04)
+
+
+def test_a_target_chooses_among_the_candidates() -> None:
+    """The largest of ten normal deviations is 1.54 on average; the record has its value."""
+    x = np.zeros((2000, 3), np.float32)
+    learner = DAgger(
+        POLICY, Linear(), Far(), candidates=10, spread=0.5, normalise=False, steps=0, capacity=2000
+    )
+    state = after(learner, x)
+    assert float(state.labels.obs[:, 0].mean()) == pytest.approx(0.5 * 1.5388, rel=0.03)
+    np.testing.assert_array_equal(state.information, state.labels.obs[:, 0])
+
+
+def test_an_oracle_asks_where_the_clone_errs_most() -> None:
+    """Its queries have a larger error than those at random."""
+    x = np.zeros((500, 3), np.float32)
+    plain = DAgger(POLICY, Linear(), spread=1.0, normalise=False, steps=0, capacity=500)
+    errors = []
+    for learner in (plain, replace(plain, candidates=10, oracle=True)):
+        state = after(learner, x)
+        clone = POLICY.mean(state.policy, state.labels.obs)
+        errors.append(np.square(clone - state.labels.action).sum(1).mean())
+    assert errors[1] > 1.5 * errors[0]
+
+
+def test_there_are_most_queries() -> None:
+    """The first ones."""
+    state = after(DAgger(POLICY, Linear(), most=7))
+    np.testing.assert_array_equal(asked(state), np.arange(7))
+    assert int(state.labels.count) == 7
+
+
+def test_queries_are_spaced() -> None:
+    """From the first decision on."""
+    state = after(DAgger(POLICY, Linear(), spacing=15, most=9))
+    np.testing.assert_array_equal(asked(state), [0, 15, 30])
+    np.testing.assert_array_equal(state.labels.obs[:3], X[[0, 15, 30]])
+
+
+def test_only_better_queries_are_asked() -> None:
+    """Each exceeds the one before."""
+    state = after(DAgger(POLICY, Linear(), Far(), better=True))
+    best, wanted = -np.inf, []
+    for i, value in enumerate(X[:, 0]):
+        if value > best:
+            best = value
+            wanted.append(i)
+    np.testing.assert_array_equal(asked(state), wanted)
+
+
+@pytest.mark.parametrize("members", [1, 3])
+def test_a_long_answer_is_a_path_of_the_teacher(members: int) -> None:
+    """Through the model, from the state that was asked about; for one learner and for several."""
+    world: Any = Halved()
+    model = Exact(world)
+    learner = DAgger(POLICY, Linear(), model=model, length=5, spacing=20, most=2, capacity=10)
+    x = jnp.broadcast_to(jnp.asarray(X), (members, *X.shape))
+    state = jax.tree.map(lambda each: each[-1], jax.vmap(lambda x: after(learner, x))(x))
+    x, rows = X[0], []
+    for _ in range(5):
+        u = GAIN @ x
+        rows.append(x)
+        x = x / 2 + np.append(u, 0)
+    np.testing.assert_allclose(state.labels.obs[:5], rows, rtol=1e-5, atol=1e-6)
+    np.testing.assert_array_equal(state.labels.obs[5], X[20])
+    assert int(state.labels.count) == 10
+
+
+def test_the_clone_learns_the_teacher() -> None:
+    """After more steps on the labels; a linear clone is exact."""
+    learner = DAgger(Deterministic(hidden=(), squash="clip"), Linear(), learning_rate=0.01, edge=1)
+    state = jax.jit(learner.fit, static_argnums=1)(after(learner, X / 4), 3000, jax.random.key(2))
+    layer = state.policy["weights"]["Dense_0"]
+    np.testing.assert_allclose(layer["kernel"], GAIN.T, atol=1e-2)
+    np.testing.assert_allclose(layer["bias"], 0, atol=1e-2)
+
+
+def test_no_step_is_taken_before_the_first_demonstration_ends() -> None:
+    """Nor without a label."""
+    learner = DAgger(POLICY, Linear(), first=40, first_steps=30)
+    before, end = after(learner, X[:39]), after(learner)
+    weights = learner.init(jax.random.key(1), SPEC).policy["weights"]
+    jax.tree.map(np.testing.assert_array_equal, before.policy["weights"], weights)
+    assert int(end.optimiser[0].count) == 30
+    assert int(end.queries) == 0
+    state = learner.fit(learner.init(jax.random.key(1), SPEC), 10, jax.random.key(0))
+    assert int(state.optimiser[0].count) == 0
+
+
+@dataclass(frozen=True)
+class Summed:
+    """A target that wants x x' of the labels, and compares with it."""
+
+    def evidence(self, params: Params, x: Any) -> Any:
+        """x x'."""
+        return jnp.outer(x, x)
+
+    def log_density(self, params: Params, s: Any) -> Any:
+        """What one label adds in the direction of s."""
+        assert isinstance(params.belief, Belief)
+        return -(s @ params.belief.evidence @ s)
+
+
+def test_the_evidence_is_a_sum_over_the_labels() -> None:
+    """Its running mean over batches, times the number of labels, for labels of two kinds."""
+    x = np.tile(np.array([[1.0, 0.0, 2.0], [0.0, -3.0, 1.0]], np.float32), (500, 1))
+    learner = DAgger(POLICY, Linear(), Summed(), steps=0, batch_size=256, capacity=1000)
+    belief = learner.params(after(learner, x))["belief"]
+    np.testing.assert_allclose(belief.evidence, x.T @ x, rtol=0.05, atol=0.05 * 4500)
+
+
+def test_recent_states_are_kept() -> None:
+    """The last five."""
+    belief = after(DAgger(POLICY, Linear(), recent=5), X[:12]).visited
+    assert {tuple(row) for row in np.asarray(belief)} == {tuple(row) for row in X[7:12]}
+    np.testing.assert_array_equal(
+        after(DAgger(POLICY, Linear(), recent=5), X[:1]).visited, X[[0] * 5]
+    )
+
+
+BAD = [
+    ({"most": 0}, "most=0: must be 1 or more"),
+    ({"candidates": 10, "spread": 0.2}, "candidates=10: needs a target"),
+    ({"candidates": 10}, "candidates=10: needs spread above 0"),
+    ({"spread": 0.2}, "normalise=True: needs first above 0"),
+    ({"better": True}, "better=True: needs a target"),
+    ({"length": 5}, "length=5: needs a model"),
+    ({"oracle": True, "target": Far()}, "oracle=True: needs target=null"),
+    ({"spacing": 0}, "spacing=0: must be 1 or more"),
+    ({"edge": 1.5}, "edge=1.5: must lie in"),
+    ({"target": Likely(Far())}, "recent=0: this target needs recent states"),
+]
+
+
+@pytest.mark.parametrize(("fields", "line"), BAD, ids=[line.partition(":")[0] for _, line in BAD])
+def test_bad_fields_are_refused(fields: dict, line: str) -> None:
+    """The error names the field."""
+    with pytest.raises(ValueError, match=f"dagger_learner.{line}"):
+        DAgger(POLICY, Linear(), **fields)
+
+
+def test_a_teacher_of_other_sizes_is_refused() -> None:
+    """Of other actions, and of other observations."""
+    with pytest.raises(ValueError, match=r"expert=Linear: decides \[1\], and must map 3 "):
+        DAgger(POLICY, Linear(rows=1)).init(jax.random.key(0), SPEC)
+    with pytest.raises(ValueError, match="expert=Linear: does not map 4 observed numbers to 2"):
+        DAgger(POLICY, Linear()).init(jax.random.key(0), SPEC._replace(obs=4))
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        ("", "expert=null: this task has no expert"),
+        ("dagger_learner.most=0", "dagger_learner.most=0: must be 1 or more, or null"),
+        ("expert.policy.file=demonstrations/ant_policy.npz", "is of task ant, not of pendulum"),
+    ],
+)
+def test_the_command_line_refuses_in_one_line(
+    override: str, line: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Exit code 2."""
+    kind = "trained" if "policy.file" in override else "regulator"
+    given = [f"expert={kind}", override] if override else []
+    run = f"run_dir={tmp_path / 'run'}"
+    assert call_train("task=pendulum", "algo=dagger", *given, run) == 2
+    assert line in only_line(capfd)
+
+
+@pytest.mark.parametrize("algo", ["dagger", "dail"])
+def test_a_resumed_run_equals_one_that_never_stopped(algo: str) -> None:
+    """All parameters, labels and records, bit for bit, from a copy of the state half-way."""
+    overrides = ["task=pendulum", "expert=regulator", f"algo={algo}", "dagger_learner.first=20"]
+    run = config.build(config.load([*overrides, "policy.hidden=[8]", "total_steps=60"]))
+    loop = Loop(run.agent, (0, 1), stride=60)
+    program = loop.compile(loop.init())
+    whole = program(loop.init(), jnp.int32(0), jnp.int32(60))[0]
+    half = program(loop.init(), jnp.int32(0), jnp.int32(30))[0]
+    stored = jax.tree.map(jnp.copy, half)
+    rest = program(loop.on_devices(stored), jnp.int32(30), jnp.int32(30))[0]
+    jax.tree.map(np.testing.assert_array_equal, whole.learners, rest.learners)
+    assert (np.asarray(whole.learners["policy"].labels.count) == 60).all()

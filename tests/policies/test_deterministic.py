@@ -1,0 +1,114 @@
+"""The deterministic policy: its density, its features, and least squares by cloning."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from hybrid_rl.learners.bc import BehaviourCloning
+from hybrid_rl.policies.deterministic import Clones, Deterministic
+from hybrid_rl.types import Batch, Params, Spec, Transition
+
+SPEC = Spec(obs=3, act=2, dt=0.1)
+X: Any = np.random.default_rng(0).normal(size=(200, 3)).astype(np.float32)
+NO: Any = np.zeros(200, np.float32)
+
+
+@pytest.mark.parametrize(("squash", "inverse"), [("tanh", np.arctanh), ("clip", np.asarray)])
+def test_the_density_is_a_gaussian_before_squashing(squash: str, inverse: Any) -> None:
+    """Of actions, and of samples."""
+    policy = Deterministic(hidden=(5,), sigma=0.3, squash=squash)
+    params = policy.init(jax.random.key(0), SPEC)
+    u = np.array([0.4, -0.8])
+    wanted = norm.logpdf(inverse(u), policy.unsquashed(params, X[0]), 0.3).sum()
+    got = policy.log_prob(params, X[0], jnp.asarray(u))
+    assert float(got) == pytest.approx(wanted, rel=1e-4)
+    sample, density = policy.sample(params, X[0], jnp.array([0.1, -0.2]))
+    assert float(density) == pytest.approx(float(policy.log_prob(params, X[0], sample)), rel=1e-3)
+    assert (np.abs(policy.mean(params, 1e3 * X)) <= 1).all()
+
+
+@pytest.mark.parametrize("squash", ["tanh", "clip"])
+def test_the_variance_is_that_of_samples(squash: str) -> None:
+    """Of 100,000, for a small sigma."""
+    policy = Deterministic(hidden=(5,), sigma=0.02, squash=squash)
+    params = policy.init(jax.random.key(0), SPEC)
+    noise = jax.random.normal(jax.random.key(1), (100_000, 2))
+    x = jnp.broadcast_to(jnp.asarray(X[0]), (100_000, 3))
+    drawn = np.var(policy.sample(params, x, noise)[0], axis=0)
+    np.testing.assert_allclose(policy.variance(params, X[0]), drawn, rtol=0.03)
+
+
+@pytest.mark.parametrize("hidden", [(), (6,), (6, 4)])
+def test_the_mean_is_linear_in_the_features(hidden: tuple[int, ...]) -> None:
+    """It is that of the network, whose last layer acts on the features."""
+    policy = Deterministic(hidden=hidden, normalise=True)
+    params = policy.observe(policy.init(jax.random.key(0), SPEC), 3 * X + 1)
+    features, mu = policy.layers(params, X)
+    assert features.shape == (200, hidden[-1] if hidden else 3)
+    z = (X - (3 * X + 1).mean(0)) / (3 * X + 1).std(0)
+    for i in range(len(hidden)):
+        layer = params["weights"][f"Dense_{i}"]
+        z = np.maximum(z @ np.asarray(layer["kernel"]) + np.asarray(layer["bias"]), 0)
+    np.testing.assert_allclose(features, z, atol=1e-5)
+    last = params["weights"][f"Dense_{len(hidden)}"]
+    wanted = z @ np.asarray(last["kernel"]) + np.asarray(last["bias"])
+    np.testing.assert_allclose(mu, wanted, atol=1e-5)
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Actions that are noisy and not linear in the state."""
+
+    def load(self) -> Transition:
+        """Decisions whose other columns are not used."""
+        u: Any = np.clip(np.stack([X[:, 0] - X[:, 1] ** 2, np.sin(X[:, 2])], 1), -0.9, 0.9)
+        return Transition(X, u, NO, NO, NO, X)
+
+
+def test_cloning_is_least_squares() -> None:
+    """A linear policy becomes the regression of NumPy."""
+    learner = BehaviourCloning(
+        Deterministic(hidden=(), squash="clip"), Shown(), learning_rate=0.01, batch_size=200
+    )
+
+    def one(state: Any, key: jax.Array) -> tuple:
+        return learner.update(state, Params(), Batch(*[X] * 7), key)[0], None
+
+    keys = jax.random.split(jax.random.key(1), 3000)
+    state = jax.jit(lambda s: jax.lax.scan(one, s, keys)[0])(learner.init(keys[0], SPEC))
+    z = np.concatenate([X, np.ones((200, 1))], 1)
+    wanted = np.linalg.lstsq(z, Shown().load().action, rcond=None)[0]
+    got = state.policy["weights"]["Dense_0"]
+    np.testing.assert_allclose(got["kernel"], wanted[:3], atol=0.03)
+    np.testing.assert_allclose(got["bias"], wanted[3], atol=0.03)
+
+
+def test_clones_are_independent_policies() -> None:
+    """The first one acts, and their likelihoods add up."""
+    clones, alone = Clones(hidden=(5,), members=3), Deterministic(hidden=(5,))
+    params, u = clones.init(jax.random.key(0), SPEC), jnp.array([0.3, -0.6])
+    each = [jax.tree.map(lambda w, i=i: w[i], params) for i in range(3)]
+    actions = np.stack([alone.mean(one, X) for one in each])
+    np.testing.assert_allclose(clones.each(params, X), actions, atol=1e-6)
+    np.testing.assert_allclose(clones.mean(params, X), actions[0], atol=1e-6)
+    assert np.abs(actions[0] - actions[1]).max() > 0.01
+    wanted = sum(float(alone.log_prob(one, X[0], u)) for one in each)
+    assert float(clones.log_prob(params, X[0], u)) == pytest.approx(wanted, rel=1e-5)
+
+
+def test_a_single_clone_is_refused() -> None:
+    """Its disagreement would be 0."""
+    with pytest.raises(ValueError, match=r"policy\.members=1"):
+        Clones(members=1)
+
+
+@pytest.mark.parametrize("fields", [{"sigma": 0.0}, {"squash": "sin"}])
+def test_bad_fields_are_refused(fields: dict) -> None:
+    """The error names the field."""
+    with pytest.raises(ValueError, match=f"policy.{next(iter(fields))}"):
+        Deterministic(**fields)
