@@ -1,5 +1,6 @@
 """docs/results/chapter6.md."""
 
+from pages import chapter6_backflips
 from pages.chapter6_values import (
     ABOVE,
     ALONE,
@@ -37,6 +38,7 @@ from pages.values import curve, read
 
 PAGE = "docs/results/chapter6.md"
 CITED = [
+    *chapter6_backflips.CITED,
     Table("after | 5 s | 10 s | 20 s | 40 s", divergence),
     Text(
         "sum of Gaussians #, Fourier with 20 cosines per axis # (#% of its mass negative), "
@@ -160,6 +162,7 @@ CITED = [
     Table(" | real-time step | 1 robot | 1,024 robots", plan_ms, plain=("real-time step",)),
 ]
 PLAIN = [
+    *chapter6_backflips.PLAIN,
     # settings
     "jax 0.10",
     "10 starts of 40 s",
