@@ -51,7 +51,7 @@ def test_shares_are_those_of_the_teacher(runs: Path, capsys: pytest.CaptureFixtu
     assert list(numbers["methods"]) == ["RQ-DAgger", "behaviour cloning"]
     run = config.build(config.load([*SHORT, "algo=dagger"]))
     learner: Any = run.agent.learners["policy"]
-    keys = np.concatenate([jax.random.key_data(evaluation_keys(seed, 3)) for seed in (0, 1)])
+    keys: Any = np.concatenate([jax.random.key_data(evaluation_keys(seed, 3)) for seed in (0, 1)])
     scores = evaluate_episodes(
         run.agent.episode, learner.teacher, Params(), jax.random.wrap_key_data(keys)
     )
