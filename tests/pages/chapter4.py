@@ -1,7 +1,7 @@
 """docs/results/chapter4.md."""
 
-from pages import chapter4_exploration
+from pages import chapter4_exploration, chapter4_queries
 
 PAGE = "docs/results/chapter4.md"
-CITED = [*chapter4_exploration.CITED]
-PLAIN = [*chapter4_exploration.PLAIN]
+CITED = [*chapter4_exploration.CITED, *chapter4_queries.CITED]
+PLAIN = [*chapter4_exploration.PLAIN, *chapter4_queries.PLAIN]
