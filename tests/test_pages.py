@@ -22,6 +22,7 @@ PAGES = [
     "readme",
     "results",
     "chapter3",
+    "chapter4",
     "chapter6",
     "chapter7",
     "robots",

@@ -1,12 +1,12 @@
 """Point mass: a double integrator on the plane.
 
-    dp/dt = v,   dv/dt = a u,   integrated exactly for a constant u
+    dp/dt = v,   dv/dt = a u - b v,   integrated exactly for a constant u
     r = -(|p - c|^2 + 0.01 |u|^2), of the state after the step; c = (0.5, 0.5)
 
-o = (p, v) [4] in m and m/s; a = 2 m/s^2; start: p uniform in the unit square, v = 0; a decision
-is 0.1 s; never terminates; there are no walls.
+o = (p, v) [4] in m and m/s; a = 2 m/s^2, b = 0; start: p uniform in the unit square, v = 0; a
+decision is 0.1 s; never terminates; there are no walls.
 
-Source: thesis sections 5.3 and 6.1.1; a is our choice.
+Source: thesis sections 5.3 and 6.1.1; a and b are our choice.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,20 @@ MIDDLE = (0.5, 0.5)  # [m]
 
 @dataclass(frozen=True)
 class PointMass:
-    """Double integrator on the plane."""
+    """Double integrator on the plane.
+
+    Raises:
+        ValueError: for an acceleration that is not positive, or a drag below 0.
+    """
+
+    acceleration: float = ACCELERATION  # [m/s^2] a
+    drag: float = 0.0  # [1/s] b
+
+    def __post_init__(self) -> None:
+        if not self.acceleration > 0:
+            raise ValueError(f"acceleration={self.acceleration}: must be above 0")
+        if not self.drag >= 0:
+            raise ValueError(f"drag={self.drag}: must be 0 or more")
 
     @property
     def spec(self) -> Spec:
@@ -51,10 +64,7 @@ class PointMass:
 
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [4] after action u [2] at x [4]."""
-        p, v = x[:2], x[2:]
-        return jnp.concatenate(
-            [p + v * DT + 0.5 * ACCELERATION * u * DT**2, v + ACCELERATION * u * DT]
-        )
+        return move(x, self.acceleration * u, self.drag, DT)
 
     def equilibrium(self) -> tuple[Array, Array]:
         """At rest in the middle of the unit square."""
@@ -75,3 +85,12 @@ class PointMass:
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [2] for rendering."""
         return state.data[:2]
+
+
+def move(x: Array, a: Array, drag: float, dt: float) -> Array:
+    """(p, v) [4] after `dt` [s] from x [4] under acceleration a [2] [m/s^2] and drag [1/s]."""
+    p, v = x[:2], x[2:]
+    if not drag:
+        return jnp.concatenate([p + v * dt + 0.5 * a * dt**2, v + a * dt])
+    share = -jnp.expm1(-drag * dt) / drag  # [s] integral of exp(-b t)
+    return jnp.concatenate([p + share * v + (dt - share) / drag * a, v + share * (a - drag * v)])

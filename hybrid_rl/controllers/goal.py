@@ -39,11 +39,14 @@ class GoalController:
     policy: StabilizingPolicy | None = None  # None: the action is the goal
     samples: int = 1000  # N candidates
     every: int = 20  # [decisions]
+    near: float | None = None  # distance at which a new goal is chosen; None: only every `every`
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if self.samples < 1 or self.every < 1:
             raise ValueError("goal: samples and every must be 1 or more")
+        if self.near is not None and not self.near > 0:
+            raise ValueError(f"goal.near={self.near}: must be above 0, or null")
 
     def init(self, spec: Spec) -> GoalState:
         """No goal yet."""
@@ -55,8 +58,11 @@ class GoalController:
         """Action [m], next state, metrics. The key is consumed."""
         s = self.domain.sample(self.samples, key)
         best = s[jnp.argmax(jax.vmap(self.target.log_density, (None, 0))(params, s))]
-        goal = jnp.where(state.age == 0, best, state.s)
-        after = GoalState(goal, (state.age + 1) % self.every)
+        due = state.age == 0
+        if self.near is not None:
+            due = due | (jnp.linalg.norm(self.domain.of(obs) - state.s) < self.near)
+        goal = jnp.where(due, best, state.s)
+        after = GoalState(goal, (jnp.where(due, 0, state.age) + 1) % self.every)
         if self.policy is None:
             low, high = jnp.array(self.domain.low), jnp.array(self.domain.high)
             return 2 * (goal - low) / (high - low) - 1, after, {}

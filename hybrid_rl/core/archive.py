@@ -46,12 +46,16 @@ def find(file: Path | str) -> Path:
 
 
 def read(
-    prefix: str, file: Path | str, needed: Iterable[str] = (), hint: str = ""
+    prefix: str,
+    file: Path | str,
+    needed: Iterable[str] = (),
+    hint: str = "",
+    header: tuple[str, ...] = HEADER,
 ) -> dict[str, np.ndarray]:
     """The arrays of `file` by name, with the header; the others are numbers.
 
     prefix: the beginning of every message; needed: names that the file must have besides the
-    header; hint: what to do if there is no such file.
+    header, which may be empty; hint: what to do if there is no such file.
 
     Raises:
         ValueError: for a file that is missing or damaged, or lacks a name.
@@ -64,11 +68,13 @@ def read(
             arrays = {name: archive[name] for name in archive.files}
     except UNREADABLE as error:
         raise ValueError(f"{prefix} is damaged, cut short, or no .npz file") from error
-    if missing := [name for name in (*needed, *HEADER) if name not in arrays]:
+    if missing := [name for name in (*needed, *header) if name not in arrays]:
         raise ValueError(f"{prefix} lacks {', '.join(missing)}")
     for name, array in arrays.items():
         if name != "task" and array.dtype.kind not in "biuf":
             raise ValueError(f"{prefix} {name} must hold numbers")
+    if not header:
+        return arrays
     if arrays["sizes"].shape != (2,) or arrays["dt"].ndim or arrays["task"].ndim:
         raise ValueError(f"{prefix} sizes must be two numbers, dt a number, task a name")
     return arrays

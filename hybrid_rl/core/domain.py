@@ -5,12 +5,17 @@ from math import prod
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 
 @dataclass(frozen=True)
 class Box:
     """The points s [v] with low <= s <= high, where s are `coordinates` of a state x [n].
+
+    A lattice, s_i = frac(shift + i a), a_j = g^-j with g^(v+1) = g + 1, covers the box more evenly
+    than independent points; each of its points is uniform, since the shift is (Roberts 2018, The
+    Unreasonable Effectiveness of Quasirandom Sequences).
 
     Raises:
         ValueError: for lists of different lengths, or a box without volume.
@@ -19,6 +24,7 @@ class Box:
     coordinates: tuple[int, ...] = (0,)  # of x
     low: tuple[float, ...] = (-1.0,)  # in units of x
     high: tuple[float, ...] = (1.0,)
+    lattice: bool = False  # points that `sample` draws; false: independent
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -51,7 +57,14 @@ class Box:
     def sample(self, count: int, key: Array) -> Array:
         """Points [count, v], uniform in the box. The key is consumed."""
         shape, low, high = (count, self.size), jnp.array(self.low), jnp.array(self.high)
-        return jax.random.uniform(key, shape, minval=low, maxval=high)
+        if not self.lattice:
+            return jax.random.uniform(key, shape, minval=low, maxval=high)
+        root = 2.0
+        for _ in range(64):
+            root = (1 + root) ** (1 / (self.size + 1))
+        steps = np.outer(np.arange(count), root ** -np.arange(1.0, self.size + 1)) % 1
+        points = (jnp.asarray(steps, jnp.float32) + jax.random.uniform(key, (1, self.size))) % 1
+        return low[None] + (high - low)[None] * points
 
     def outside(self, s: Array) -> Array:
         """Mean [] over s [M, v] of the squared distance to the box."""

@@ -21,6 +21,14 @@ class Points(NamedTuple):
     log_p: Array  # [N] log of weights that sum to one
 
 
+def log_weights(log_p: Array, share: float) -> Array:
+    """log of (1 - share) p + share / N [N]: p, normalised, mixed with the uniform weights."""
+    log_p = jax.nn.log_softmax(log_p)
+    if not share:
+        return log_p
+    return jnp.logaddexp(log_p + jnp.log1p(-share), jnp.log(share / len(log_p)))
+
+
 def log_sum(s: Array, x: Array, variance: Array, counted: Array | None = None) -> Array:
     """log sum_t N(s; x_t, diag(variance)) [N] at s [N, v]; `counted` [M] selects among x [M, v]."""
     apart = (s[:, None] - x[None]) ** 2 / variance[None, None]

@@ -1,6 +1,7 @@
 """J = -sum_k Lambda_k (c_k - phi_k)^2 - b outside: the Fourier ergodic metric.
 
-c_k averages over the path and the earlier states of the episode; phi_k is estimated at the same N
+c_k averages over the path and the earlier states of the episode, of which each decision forgets a
+share 1 - f: f = 0 counts the path alone, as the thesis prints it. phi_k is estimated at the same N
 uniform points as the KL-ergodic measure. See core.fourier.
 """
 
@@ -37,11 +38,16 @@ class FourierErgodic:
     samples: int = 1000  # N
     modes: int = 5  # K for each coordinate
     barrier: float = 0.0  # b, cost of leaving the domain [1/length^2]
+    share: float = 0.0  # of the uniform density in p; 1: coverage
+    forget: float = 1.0  # f, the weight that earlier states keep per decision
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if self.samples < 1 or self.modes < 1 or self.barrier < 0:
             raise ValueError("exploration: samples and modes 1 or more, barrier 0 or more")
+        for name in ("share", "forget"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise ValueError(f"exploration.{name}={getattr(self, name)}: must lie in [0, 1]")
 
     def init(self, spec: Spec) -> FourierState:
         """An empty memory."""
@@ -52,7 +58,8 @@ class FourierErgodic:
     ) -> tuple[Return, FourierState]:
         """J of a path, with phi estimated at new points; the memory includes x [n]."""
         s = self.domain.sample(self.samples, key)
-        p = jax.nn.softmax(jax.vmap(self.target.log_density, (None, 0))(params, s))
+        log_p = jax.vmap(self.target.log_density, (None, 0))(params, s)
+        p = (1 - self.share) * jax.nn.softmax(log_p) + self.share / self.samples
         phi = p @ self.features(s)
         weights = fourier.decay(self.domain.size, self.modes)
 
@@ -61,7 +68,9 @@ class FourierErgodic:
             return -apart - self.barrier * self.domain.outside(self.domain.of(path.x))
 
         now = self.features(self.domain.of(x)[None])[0]
-        return value, FourierState(memory.total + now, memory.count + 1)
+        return value, FourierState(
+            self.forget * (memory.total + now), self.forget * (memory.count + 1)
+        )
 
     def features(self, s: Array) -> Array:
         """F_k [M, K^v] at s [M, v]."""

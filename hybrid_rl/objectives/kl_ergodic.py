@@ -44,6 +44,7 @@ class KLErgodic:
     memory: int = 0  # M [decisions]
     floor: float = 0.0  # added to q [1/volume of s]: distant regions attract less
     barrier: float = 0.0  # b, cost of leaving the domain [1/length^2]
+    share: float = 0.0  # of the uniform density in p; 1: coverage
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -54,6 +55,8 @@ class KLErgodic:
             raise ValueError(f"exploration.variance={list(self.variance)}: 1 or v numbers above 0")
         if self.floor < 0 or self.barrier < 0:
             raise ValueError("exploration: floor and barrier must be 0 or more")
+        if not 0 <= self.share <= 1:
+            raise ValueError(f"exploration.share={self.share}: must lie in [0, 1]")
 
     @property
     def _variance(self) -> Array:
@@ -70,7 +73,8 @@ class KLErgodic:
         """J [nat] of a path, at newly drawn points; the memory then includes x [n]."""
         s = self.domain.sample(self.samples, key)
         log_p = jax.vmap(self.target.log_density, (None, 0))(params, s)
-        value = self.measure(ergodic.Points(s, jax.nn.log_softmax(log_p)), memory)
+        points = ergodic.Points(s, ergodic.log_weights(log_p, self.share))
+        value = self.measure(points, memory)
         after = memory._replace(count=memory.count + 1)
         if self.memory:
             slot = (memory.count % self.memory).astype(jnp.int32)

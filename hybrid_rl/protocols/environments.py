@@ -63,3 +63,14 @@ class AnalyticEnv(BalancedEnv, Protocol):
 
     def from_local(self, e: Array) -> Array:
         """x [o] of local coordinates e [d]."""
+
+
+class ContactEnv(Env, Protocol):
+    """An environment on a plane in which a round robot touches objects."""
+
+    radius: float  # [m] of the robot
+    low: tuple[float, ...]  # [m] of the plane
+    high: tuple[float, ...]
+
+    def distance(self, s: Array) -> Array:
+        """Signed distance [] [m] of s [2] to the nearest object, at rest where they are listed."""

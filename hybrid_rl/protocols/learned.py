@@ -2,6 +2,7 @@
 
 from typing import Protocol
 
+import numpy as np
 from jax import Array
 
 from hybrid_rl.protocols.environments import AnalyticEnv
@@ -185,3 +186,26 @@ class Belief(Protocol):
 
     def report(self, state: PyTree) -> dict[str, Array]:
         """Metrics, name -> []."""
+
+
+class InformedBelief(Belief, Protocol):
+    """A belief that measures what a measurement would tell it."""
+
+    def information(self, state: PyTree, s: Array) -> Array:
+        """The information [] of a measurement at s [v], up to a factor."""
+
+    def gain(self, state: PyTree, s: Array) -> Array:
+        """The entropy [nat] that a measurement at s [v] is expected to remove."""
+
+    def informed(self, state: PyTree) -> Array:
+        """[] bool: whether any measurement distinguished one region from another."""
+
+
+class ContactMap(Protocol):
+    """p(y = 1 | s): where a robot on a plane touches an object."""
+
+    middle: tuple[float, float]  # [m] of the map
+    outline: np.ndarray  # [M, 2] [m] positions of contact
+
+    def chance(self, s: Array) -> Array:
+        """p [] in (0, 1) at s [2]."""

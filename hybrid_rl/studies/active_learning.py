@@ -11,6 +11,8 @@ Runs of experiment=thesis/fig_4_1; the label of each is the name of its folder. 
     information   log det and trace of I of the decisions so far under one reference model, which is
                   fitted to uniform transitions: the I of methods' own models is not comparable
     upright       share of seeds with cos th > 0.9 through the last second
+    beyond        share of decisions more than a turn of the rod or 2 m away from the start
+    refit         held-out loss of a new model, fitted to all decisions of the run
 
 Where the rail has an end, an episode stands for `episode.steps` decisions. The area under a curve
 is its mean over episodes: of min(cost, 2) after the first episode, which costs up to 1e9 under
@@ -18,13 +20,15 @@ every method; of the logarithm of a loss; `early` of the first three alone. A me
 another where the bands of their areas do not overlap.
 """
 
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import Array
 
 from hybrid_rl.cli.arguments import whole
+from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.studies import unseen
@@ -39,6 +43,8 @@ from hybrid_rl.types import Batch
 TASK, EXPERIMENT = "cart_swing_up", "thesis/fig_4_1"
 UPRIGHT, SECOND = 0.9, 25  # cos th, decisions of a second
 MOST_COST = 2.0  # of an episode in the area under the curve
+BEYOND = 2.0  # [m]
+UPDATES = 20_000  # Adam steps of the reference model
 EARLY = 3  # first episodes, with an area of their own
 SIGMA, FLOOR = 0.1, 0.01  # of the reference information
 SEED = 123_456  # of held-out data and the reference model
@@ -58,6 +64,7 @@ def figure(
     against: Annotated[str, "label of the run with which the others are compared"] = "none",
     size: Annotated[int, "uniform held-out transitions", whole(10)] = 4000,
     episodes: Annotated[int, "held-out swing-ups", whole()] = 20,
+    refit: Annotated[int, "Adam steps of a new model on all decisions", whole(0)] = 0,
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers."""
     folders = matching(runs, "of this study")
@@ -68,10 +75,12 @@ def figure(
     data = unseen.collect(EXPERIMENT, size, episodes, SEED)
     first = read(folders[0], TASK).run
     small = next((r for f in folders if _single(r := read(f, TASK).run)), first)
-    fitted = unseen.reference(small, data.box, SEED)
+    fit = jax.jit(lambda data, key: unseen.fitted(small, data, UPDATES, key))
+    fitted = fit(data.box, jax.random.key(SEED))
     learner: Any = small.agent.learners["model"]
     reference = learner.model, fitted
-    each = {folder.name: measured(read(folder, TASK), data, reference) for folder in folders}
+    recorded = {folder.name: read(folder, TASK) for folder in folders}
+    each = {label: measured(one, data, reference) for label, one in recorded.items()}
     _check_size(each)
     numbers = {
         "exact_model": {
@@ -85,6 +94,10 @@ def figure(
         "methods": {label: reported(one) for label, one in each.items()},
         "against": against,
     }
+    if refit:
+        numbers["refit"] = {
+            label: refitted(one, data, small, refit) for label, one in recorded.items()
+        }
     numbers["differences"] = differences(numbers["methods"], against)
     return picture(each, numbers["exact_model"]), rounded(numbers)
 
@@ -99,7 +112,7 @@ def measured(recorded: Recorded, data: Unseen, reference: tuple[Any, Any]) -> di
     made, length = recorded.made, recorded.config.episode.steps
     count = made.reward.shape[1] // length
     by_episode = made.reward[:, : count * length].reshape(-1, count, length)
-    theta = made.next_obs[:, : count * length, 0].reshape(by_episode.shape)
+    theta, x = (made.next_obs[:, : count * length, i].reshape(by_episode.shape) for i in (0, 1))
     learner: Any = recorded.run.agent.learners["model"]
     models = history(recorded, count)
 
@@ -118,7 +131,27 @@ def measured(recorded: Recorded, data: Unseen, reference: tuple[Any, Any]) -> di
         "loss_box": loss(data.box),
         "loss_swing_up": loss(data.swing_up),
         **{name: np.stack([row[name] for row in rows]) for name in rows[0]},
+        "beyond": ((np.abs(theta - np.pi) > 2 * np.pi) | (np.abs(x) > BEYOND)).mean(-1),
         "upright": (np.cos(theta[..., -SECOND:]) > UPRIGHT).all(-1).astype(float),
+    }
+
+
+def refitted(recorded: Recorded, data: Unseen, small: Run, updates: int) -> dict[str, Any]:
+    """IQM and band of log10 loss of models that are fitted to all decisions of each seed."""
+    made, learner = recorded.made, cast(Any, small.agent.learners["model"])
+
+    def one(obs: Array, action: Array, after: Array, key: Array) -> tuple[Array, Array]:
+        batch = unseen.transitions(obs, action, after)
+        params = unseen.fitted(small, batch, updates, key)
+        box, swing_up = (unseen.loss(learner.model, params, each) for each in data[:2])
+        return box, swing_up
+
+    keys = jax.random.split(jax.random.key(SEED), len(made.obs))
+    losses = jax.jit(jax.vmap(one))(*map(jnp.asarray, (made.obs, made.action, made.next_obs)), keys)
+    logs = [np.log10(np.asarray(each)) for each in losses]
+    return {
+        name: [iqm(each), *band(each)]
+        for name, each in zip(("loss_box", "loss_swing_up"), logs, strict=True)
     }
 
 
@@ -165,7 +198,7 @@ def area(one: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The area under each curve, and the cost of the last three episodes: name -> [S]."""
     cost = np.minimum(one["cost"], MOST_COST)
     logs = {name: np.log10(one[name]) for name in LOG}
-    rest = {name: one[name] for name in ("log_det", "log_det_diagonal", "upright")}
+    rest = {name: one[name] for name in ("log_det", "log_det_diagonal", "upright", "beyond")}
     each = {"cost": cost[:, 1:], "last_cost": cost[:, -3:], **logs, **rest}
     names = ("loss_box", "loss_swing_up", "log_det")
     early = {f"{name}_early": each[name][:, :EARLY] for name in names}
@@ -203,6 +236,9 @@ def summary(numbers: dict[str, Any]) -> list[str]:
             f"swing-ups {_banded(areas['loss_swing_up'])}, log det {_banded(areas['log_det'])}, "
             f"upright {_banded(areas['upright'])}{words}"
         )
+    for label, one in numbers.get("refit", {}).items():
+        box, swing_up = (_banded(one[name]) for name in ("loss_box", "loss_swing_up"))
+        lines.append(f"{label}, fitted again: log10 loss: uniform {box}, swing-ups {swing_up}")
     return lines
 
 

@@ -5,7 +5,7 @@
 view=queries    figure 4-2: runs of experiment=thesis/fig_4_2, one per method. Score of the clone
                 over its teacher's against demonstrations, IQM and 95% band over seeds, as trained
                 (one Adam step a decision) and after `refit` steps on the labels of the first N
-                demonstrations, N of `at`; the first N with 90%
+                demonstrations, N of `at`; the first N with 90%. runs=A.json,B.json joins files
 view=backflips  figure 6-9: runs of experiment=thesis/fig_6_9. Flights of the clones that succeed,
                 and that turn at some time, after 3,000 and 15,000 more steps on their labels;
                 safety of the exploration
@@ -17,19 +17,19 @@ from typing import Annotated, Any
 
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.errors import UsageError
-from hybrid_rl.studies import backflip_picture, queries
+from hybrid_rl.studies import backflip_picture, queries_picture
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE
 
 LINES = {
-    "queries": queries.lines,
+    "queries": queries_picture.lines,
     "backflips": backflip_picture.lines,
     "information": backflip_picture.query_lines,
 }
 
 
 def figure(
-    runs: Annotated[str, "run folders, a pattern in quotes"],
+    runs: Annotated[str, "run folders, a pattern in quotes; or JSON files, to join"],
     view: Annotated[str, ", ".join(LINES), one_of(*LINES)] = "queries",
     refit: Annotated[int, "of view=queries: Adam steps of a refit; 0: none", whole(0)] = 15_000,
     at: Annotated[str, "of view=queries: demonstrations of a refit"] = "1,2,4,8,12",
@@ -38,7 +38,7 @@ def figure(
     import matplotlib
 
     views = {
-        "queries": lambda: queries.queries(runs, refit, _counts(at)),
+        "queries": lambda: queries_picture.drawn(runs, refit, _counts(at)),
         "backflips": lambda: backflip_picture.flips(runs),
         "information": lambda: backflip_picture.queries(runs),
     }

@@ -25,7 +25,6 @@ from hybrid_rl.run import checkpoint
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.studies.curves import band, curves, improvement, iqm
 from hybrid_rl.studies.recorded import labels, matching
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
@@ -51,7 +50,7 @@ class Row(NamedTuple):
     each: np.ndarray  # [S, G] score
 
 
-def queries(pattern: str, refit: int, at: Sequence[int]) -> tuple[Any, dict[str, Any]]:
+def queries(pattern: str, refit: int, at: Sequence[int]) -> dict[str, Any]:
     """Shares over demonstrations, as trained and after a refit of `refit` steps at N in `at`."""
     folders = matching(pattern, "queries")
     configs = [_config(folder) for folder in folders]
@@ -80,9 +79,9 @@ def queries(pattern: str, refit: int, at: Sequence[int]) -> tuple[Any, dict[str,
         "decisions_of_a_demonstration": first,
         "refit_steps": refit,
         "methods": numbers,
-        "comparisons": _compared(numbers),
+        "comparisons": compared(numbers),
     }
-    return _picture(made), made
+    return made
 
 
 def _config(folder: Path) -> Any:
@@ -228,7 +227,7 @@ def _printed(row: Row, teacher: float) -> dict[str, Any]:
     }
 
 
-def _compared(methods: dict[str, Any]) -> dict[str, Any]:
+def compared(methods: dict[str, Any]) -> dict[str, Any]:
     """Method -> P(its area exceeds that of RQ-DAgger), and the same for its last refit."""
     if "RQ-DAgger" not in methods:
         return {}
@@ -236,55 +235,12 @@ def _compared(methods: dict[str, Any]) -> dict[str, Any]:
     for label, one in methods.items():
         if label == "RQ-DAgger":
             continue
-        result[label] = {"area": improvement(one["area_each"], base["area_each"])}
-        if "refit" in one:
+        chances = {}
+        if len(one["N"]) == len(base["N"]):
+            chances["area"] = improvement(one["area_each"], base["area_each"])
+        if "refit" in one and "refit" in base:
             last = [each["refit"]["each"][:, -1] for each in (one, base)]
-            result[label]["refit"] = improvement(*last)
-    return result
-
-
-def _picture(made: dict[str, Any]) -> Any:
-    """Shares over demonstrations, a panel for each schedule."""
-    from matplotlib.figure import Figure
-
-    methods = made["methods"]
-    schedules = ["printed", *(["refit"] if made["refit_steps"] else [])]
-    figure = Figure(figsize=(4.6 * len(schedules), 4.2), layout="constrained")
-    panels = figure.subplots(1, len(schedules), sharey=True, squeeze=False)[0]
-    for axes, schedule in zip(panels, schedules, strict=True):
-        for i, (label, one) in enumerate(methods.items()):
-            line = one if schedule == "printed" else one["refit"]
-            colour, stroke = COLOURS[i % len(COLOURS)], STROKES[i // len(COLOURS)]
-            axes.plot(line["N"], line["iqm"], stroke, color=colour, label=label, marker=".")
-            axes.fill_between(line["N"], line["low"], line["high"], color=colour, alpha=0.12)
-        axes.axhline(1, color="#444444", linewidth=0.8)
-        axes.set_xlabel(f"demonstrations of {made['decisions_of_a_demonstration']} decisions")
-        steps = f"{made['refit_steps']:,} steps on the same labels"
-        axes.set_title("one Adam step a decision" if schedule == "printed" else steps)
-    words = {"success": "share of successes", "return": "return"}[made["score"]]
-    panels[0].set_ylabel(f"{words} / the teacher's")
-    legend_below(panels[0])
-    return figure
-
-
-def lines(numbers: dict[str, Any]) -> list[str]:
-    """A line for each method, then the comparisons with random queries."""
-    result = [f"{numbers['task']}: the teacher's {numbers['score']} is {numbers['teacher']:.4g}"]
-    for label, one in numbers["methods"].items():
-        each = [("printed", one), *([("refit", one["refit"])] if "refit" in one else [])]
-        for schedule, line in each:
-            shares = ", ".join(
-                f"N={n:g} {m:.2f} [{a:.2f}, {b:.2f}]"
-                for n, m, a, b in zip(
-                    *(line[name] for name in ("N", "iqm", "low", "high")), strict=True
-                )
-                if n in (1, 2, 4, 8, 12)
-            )
-            reached = "never" if line["reaches"] is None else f"at {line['reaches']:g}"
-            result.append(f"{label}, {schedule}: {shares}; 90% {reached}")
-        middle, low, high = one["area"]
-        result.append(f"{label}: mean over N {middle:.3f} [{low:.3f}, {high:.3f}]")
-    for label, one in numbers["comparisons"].items():
-        words = [f"{key} {p:.2f} [{a:.2f}, {b:.2f}]" for key, (p, a, b) in one.items()]
-        result.append(f"P({label} > RQ-DAgger): {', '.join(words)}")
+            chances["refit"] = improvement(*last)
+        if chances:
+            result[label] = chances
     return result

@@ -21,7 +21,7 @@ from hybrid_rl.types import Batch, Params
 
 BOX = np.array([[-1.0, 7.3], [-2.0, 2.0], [-10.0, 10.0], [-5.0, 5.0]])  # th, x, th', x'
 EXACT = ("+model@known_model=exact", "shooting_planner.model=${known_model}")
-UPDATES, ROWS = 20_000, 256  # Adam steps of the reference model, transitions of each
+ROWS = 256  # transitions of an Adam step
 CHUNK = 256  # transitions whose derivatives are computed together
 
 
@@ -66,19 +66,18 @@ def loss(model: Any, params: Any, data: Batch) -> Array:
     return jnp.mean((predicted - data.next_obs) ** 2 / variance[None])
 
 
-def reference(run: Run, data: Batch, seed: int) -> Any:
-    """The parameters of `run`'s kind of model, fitted to data [B]."""
+def fitted(run: Run, data: Batch, updates: int, key: Array) -> Any:
+    """The parameters of `run`'s kind of model after Adam steps on data [B]. The key is consumed."""
     learner: Any = run.agent.learners["model"]
-    first, drawing = jax.random.split(jax.random.key(seed))
+    first, drawing = jax.random.split(key)
 
     def one(state: Any, key: Array) -> tuple[Any, None]:
         rows = jax.random.randint(key, (ROWS,), 0, len(data.obs))
         batch = jax.tree.map(lambda x: x[rows], data)
         return learner.update(state, Params(), batch, key)[0], None
 
-    keys = jax.random.split(drawing, UPDATES)
-    state = jax.jit(jax.lax.scan, static_argnums=0)(one, learner.init(first, run.agent.spec), keys)
-    return state[0].model
+    start = learner.init(first, run.agent.spec)
+    return jax.lax.scan(one, start, jax.random.split(drawing, updates))[0].model
 
 
 def derivatives(model: Any, params: Any, sigma: float, obs: Any, action: Any) -> np.ndarray:

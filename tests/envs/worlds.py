@@ -11,6 +11,7 @@ import numpy as np
 from hybrid_rl.envs.analytic.cart_double_pendulum import CartDoublePendulum
 from hybrid_rl.envs.analytic.cart_pendulum import CartPendulum
 from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.pendulum import Pendulum
@@ -47,6 +48,7 @@ ANALYTIC = {
     "cart_swing_up": CartSwingUp,
     "two_link": TwoLink,
     "sprk_sand": SprkSand,
+    "contact_plane": ContactPlane,
     "lander": Lander,
 }
 TASKS = {

@@ -135,6 +135,42 @@ def test_fourier_memory_is_the_mean_over_all_states() -> None:
     np.testing.assert_allclose(got, objective.features(x[:, jnp.array([2, 0])]).mean(0), atol=1e-5)
 
 
+@pytest.mark.parametrize("name", ["kl", "fourier"])
+def test_a_share_of_the_target_is_uniform(name) -> None:
+    """With share 1 the target does not matter; with less, J is that of the mixed density."""
+
+    class Mixed:
+        def log_density(self, params, s):
+            p = jnp.exp(TARGET.log_density(params, s)) / TOTAL
+            return jnp.log(0.7 * p + 0.3 / BOX.volume)
+
+    grid = np.stack(np.meshgrid(np.linspace(-1, 1, 401), np.linspace(-0.8, 1.2, 401)), -1)
+    TOTAL = p_of(grid.reshape(-1, 2)).mean() * BOX.volume  # of the density in the box
+    path = Path(jnp.asarray(walk(6)), jnp.zeros((5, 1)))
+    many = replace(EACH[name], samples=100_000, barrier=0.0)
+    mixed = float(after(replace(many, share=0.3), walk(1))(path))
+    assert mixed == pytest.approx(float(after(replace(many, target=Mixed()), walk(1))(path)), 0.01)
+    assert abs(mixed / float(after(many, walk(1))(path)) - 1) > 0.03
+    coverage = [
+        float(after(replace(EACH[name], share=1.0, target=target), walk(1))(path))
+        for target in (TARGET, Mixture(((0.9, 0.9),), (0.1,), (1.0,)))
+    ]
+    assert coverage[0] == coverage[1]
+
+
+@pytest.mark.parametrize(("forget", "weights"), [(0.0, [0, 0, 0]), (0.5, [0.125, 0.25, 0.5])])
+def test_earlier_states_are_forgotten(forget, weights) -> None:
+    """Three earlier states with their weights, and the path."""
+    objective, x = replace(EACH["fourier"], forget=forget), jnp.asarray(walk(6))
+    memory, remember = objective.init(SPEC), remembering(objective)
+    for state in x[:3]:
+        memory = remember(memory, state)
+    got = objective.average(memory, Path(x[3:], jnp.zeros((2, 1))))
+    features = np.asarray(objective.features(x[:, jnp.array([2, 0])]))
+    all_weights = np.array([*weights, 1, 1, 1])
+    np.testing.assert_allclose(got, all_weights @ features / all_weights.sum(), atol=1e-5)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

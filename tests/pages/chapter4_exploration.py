@@ -1,6 +1,7 @@
 """The half-cheetah that explores by disagreement, on docs/results/chapter4.md."""
 
 import numpy as np
+from scipy.stats import fisher_exact
 
 from hybrid_rl.studies.curves import band, iqm
 from pages.cited import Table, Text
@@ -46,6 +47,7 @@ def pairs_below(label: str, other: str) -> float:
     return 100 * float((a[:, None] < b[None]).mean())
 
 
+TRAPPED = stuck(CURVES, "1,000 random")
 WITH_REWARD = "reward and {}disagreement, seeds from 1000"
 CITED = [
     Table(
@@ -64,6 +66,7 @@ CITED = [
         [curve(MIXED, WITH_REWARD.format(w)).at(END)[0] for w in ("", "0.1 ")],
     ),
     Text("random decisions # of 10 seeds end below", [stuck(CURVES, "1,000 random")]),
+    Text("over all 50 seeds: p #)", [fisher_exact([[TRAPPED, 10 - TRAPPED], [0, 40]]).pvalue]),
 ]
 OTHERS = ("5,000 random", "noise, policy learns", "disagreement")
 assert not sum(stuck(CURVES, label) for label in OTHERS)
@@ -80,5 +83,6 @@ PLAIN = [
     "the return at 50,000 is",
     "With 1,000 random decisions",
     "of 10 seeds end below 3,000; with 5,000\n  decisions",
+    "over all 50 seeds",
     "none of 30, nor of ten more seeds (10 to 19) with 5,000 random decisions",
 ]

@@ -47,11 +47,11 @@ def data(*_: Any) -> unseen.Unseen:
 def test_figure_of_tiny_runs(tmp_path, monkeypatch, capsys) -> None:
     """Costs are those of the log; the last loss is that of the last model."""
     monkeypatch.setattr(unseen, "collect", data)
-    monkeypatch.setattr(unseen, "UPDATES", 200)
+    monkeypatch.setattr(active_learning, "UPDATES", 200)
     for level in (0.0, 0.5):
         folder = tmp_path / ("noise" if level else "none")
         train.train(config.load([*SHORT, f"noisy.level={level}", f"run_dir={folder}"]))
-    assert draw(f"runs={tmp_path}/no*", f"out={tmp_path}/f.png") == 0
+    assert draw(f"runs={tmp_path}/no*", "refit=20", f"out={tmp_path}/f.png") == 0
     numbers = json.loads((tmp_path / "f.json").read_text())
     lines = (tmp_path / "none" / "metrics.jsonl").read_text().splitlines()
     rows = [json.loads(line) for line in lines]
@@ -64,9 +64,11 @@ def test_figure_of_tiny_runs(tmp_path, monkeypatch, capsys) -> None:
     last = numbers["methods"]["none"]["loss_box"][0][-1]
     assert last == pytest.approx(losses(trained.params.model).mean(), rel=1e-3)
     assert set(numbers["differences"]) == {"noise"}
+    assert set(numbers["refit"]) == {"noise", "none"}
     printed = capsys.readouterr().out
     assert "exact model: cost 0.6 [0.5, 0.7], upright 100%" in printed
     assert "noise, 2 seeds: cost " in printed
+    assert "none, fitted again: log10 loss: uniform " in printed
 
 
 def test_the_exact_model_has_no_loss_and_standing_still_has_one() -> None:

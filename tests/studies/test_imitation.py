@@ -86,6 +86,20 @@ def test_a_refit_uses_the_labels_of_the_first_demonstrations(runs: Path) -> None
     assert (some[:, 0] != some[:, 1]).all()
 
 
+def test_files_are_joined(runs: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """The numbers are those of one file of all runs; a method cannot be there twice."""
+    files = [runs.parent / f"{name}.json" for name in ("a", "b", "ab", "joined")]
+    one, other, both, joined = (file.with_suffix(".png") for file in files)
+    assert draw(f"runs={runs}/a", "refit=0", f"out={one}") == 0
+    assert draw(f"runs={runs}/b", "refit=0", f"out={other}") == 0
+    assert draw(f"runs={runs}/*", "refit=0", f"out={both}") == 0
+    assert draw(f"runs={files[0]},{files[1]}", f"out={joined}") == 0
+    assert json.loads(files[2].read_text()) == json.loads(files[3].read_text())
+    capfd.readouterr()
+    assert draw(f"runs={files[0]},{files[0]}", f"out={joined}") == 2
+    assert "behaviour cloning is in another file, too" in only_line(capfd)
+
+
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [

@@ -1,0 +1,219 @@
+"""Contact plane: a ball rolls among solid objects and feels only whether it touches one.
+
+    dp/dt = v,   dv/dt = a u - b v,   a contact removes the velocity into the object: no bounce
+    r = y, the measured contact, 0 or 1
+
+o = (p, v) [4] in m and m/s. Objects are rounded boxes (x, y, angle, half width, half height,
+rounding) in their reference arrangement; theta = (t, a) moves all of them,
+
+    s~ = R(a)' (s - t) + c,   c the middle of the box [low, high]
+
+from a position s to one among the objects in their reference arrangement; theta is drawn from
+`theta` +- `spread` at the reset. Start: at rest, uniform in the box, outside of the objects; a
+decision is 0.1 s in ten steps; never terminates; there are no walls. y is the contact of any of
+the steps, wrong with probability `missed` after a contact and `false_contact` |u - u_before| / 2
+without one.
+Metrics: touch, the true contact; pose_x, pose_y and pose_angle, theta.
+
+Source: thesis sections 5.3 and 5.4: a second-order point among fixed objects, false contacts in
+quick movements. Objects, their sizes, a, b and the error rates are our choice.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs.analytic.point_mass import DT, move
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.types import EnvState, Spec
+
+SUBSTEPS, CORNER = 10, 2  # steps of a decision; projections of a step, for corners of two objects
+STARTS, CLEAR = 64, 0.02  # candidates for the start; [m] from the surface
+THREE = (  # a disc, a box and a bar, without symmetry
+    (0.25, 0.72, 0.0, 0.10, 0.10, 0.10),
+    (0.72, 0.68, 0.4, 0.09, 0.06, 0.01),
+    (0.50, 0.25, -0.3, 0.12, 0.03, 0.01),
+)
+
+
+class Body(NamedTuple):
+    """The ball and its sensor."""
+
+    x: Array  # [4]
+    u: Array  # [2] the previous action
+    pose: Array  # [3] theta
+    noise: Array  # [2] uint32, a key for the sensor's errors
+
+
+@dataclass(frozen=True)
+class ContactPlane:
+    """A ball among objects, with a binary contact sensor.
+
+    Raises:
+        ValueError: for objects that are no rounded boxes, that lie outside of the box, or numbers
+            out of range.
+    """
+
+    objects: tuple[tuple[float, ...], ...] = THREE
+    acceleration: float = 1.0  # [m/s^2] a
+    drag: float = 0.0  # [1/s] b
+    radius: float = 0.03  # [m] of the ball
+    low: tuple[float, ...] = (0.0, 0.0)  # [m]
+    high: tuple[float, ...] = (1.0, 1.0)
+    theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
+    spread: tuple[float, ...] = (0.0, 0.0, 0.0)  # of theta at the reset
+    false_contact: float = 0.0  # probability for |u - u_before| = 2
+    missed: float = 0.0  # probability
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high", "spread"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "objects", tuple(tuple(each) for each in self.objects))
+        if self.theta is not None:
+            object.__setattr__(self, "theta", tuple(self.theta))
+        for name in ("acceleration", "radius"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
+        if not self.drag >= 0:
+            raise ValueError(f"drag={self.drag}: must be 0 or more")
+        for name in ("false_contact", "missed"):
+            if not 0 <= getattr(self, name) < 1:
+                raise ValueError(f"{name}={getattr(self, name)}: must lie in [0, 1)")
+        if len(self.low) != 2 or len(self.high) != 2 or not _below(self.low, self.high):
+            raise ValueError(f"low={list(self.low)}: needs two numbers below high")
+        if len(self.spread) != 3 or len(self.theta or self.spread) != 3:
+            raise ValueError("theta, spread: each needs three numbers: x, y and the angle")
+        for shape in self.objects:
+            _check(shape, self.low, self.high)
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=4, act=2, dt=DT)
+
+    @property
+    def middle(self) -> Array:
+        """c [2] [m]."""
+        return (jnp.array(self.low) + jnp.array(self.high)) / 2
+
+    def reset(self, key: Array) -> EnvState:
+        """A random position and pose."""
+        posing, starting, noise = jax.random.split(key, 3)
+        pose = jnp.append(self.middle, 0.0) if self.theta is None else jnp.array(self.theta)
+        pose = pose + jnp.array(self.spread) * jax.random.uniform(posing, (3,), minval=-1, maxval=1)
+        low, high = jnp.array(self.low), jnp.array(self.high)
+        starts = jax.random.uniform(starting, (STARTS, 2), minval=low, maxval=high)
+        clear = jax.vmap(lambda s: self.distance(s, pose))(starts) > self.radius + CLEAR
+        x = jnp.concatenate([starts[jnp.argmax(clear)], jnp.zeros(2)])
+        body = Body(x, jnp.zeros(2), pose, jax.random.key_data(noise))
+        none = jnp.zeros(())
+        return self._state(body, none, none)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [2] in [-1, 1]."""
+        body: Body = state.data
+        u, pose = jnp.clip(action, -1.0, 1.0), body.pose
+
+        def substep(carry: tuple[Array, Array], _: None) -> tuple[tuple[Array, Array], None]:
+            x, touched = carry
+            x = move(x, self.acceleration * u, self.drag, DT / SUBSTEPS)
+            for _corner in range(CORNER):
+                x, touches = self._pushed_out(x, pose)
+                touched = touched | touches
+            return (x, touched), None
+
+        first = body.x, jnp.zeros((), bool)
+        (x, touched), _ = jax.lax.scan(substep, first, None, length=SUBSTEPS)
+        noise, drawing = jax.random.split(jax.random.wrap_key_data(body.noise))
+        false = self.false_contact * jnp.linalg.norm(u - body.u) / 2
+        wrong = jax.random.uniform(drawing) < jnp.where(touched, self.missed, false)
+        touch = touched.astype(jnp.float32)
+        measured = jnp.where(wrong, 1 - touch, touch)
+        measured = jnp.where(jnp.isfinite(x).all(), measured, jnp.nan)  # no contact hides a NaN
+        return self._state(Body(x, u, pose, jax.random.key_data(noise)), touch, measured)
+
+    def _pushed_out(self, x: Array, pose: Array) -> tuple[Array, Array]:
+        """x [4] outside of the objects, without velocity into them; whether it was in contact."""
+        d, normal = jax.value_and_grad(self.distance)(x[:2], pose)
+        touches = d < self.radius
+        p = x[:2] + (self.radius - d) * normal
+        v = x[2:] - jnp.minimum(x[2:] @ normal, 0) * normal
+        return jnp.where(touches, jnp.concatenate([p, v]), x), touches
+
+    def _state(self, body: Body, touch: Array, measured: Array) -> EnvState:
+        no = jnp.zeros((), bool)
+        x, y, angle = body.pose
+        metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
+        return EnvState(body, body.x, measured, no, no, metrics, {})
+
+    def distance(self, s: Array, pose: Array | None = None) -> Array:
+        """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
+        if pose is not None:
+            s = turned(s - pose[:2], -pose[2]) + self.middle
+        each = [rounded_box(s, *shape) for shape in self.objects]
+        return jnp.min(jnp.stack(each)) if each else jnp.float32(jnp.inf)
+
+    def scene(self) -> str:
+        """MJCF text of the scene for rendering."""
+        x, y = ((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
+        geoms = "".join(_geom(shape, x, y) for shape in self.objects)
+        text = mjcf.text("contact_plane.xml").replace('<geom name="object" size="1"/>', geoms)
+        edges = zip(("WEST", "SOUTH", "EAST", "NORTH"), (*self.low, *self.high), strict=True)
+        for name, value in edges:
+            text = text.replace(name, f"{value:g}")
+        return text.replace("RADIUS", f"{self.radius:g}")
+
+    def pose(self, state: EnvState) -> Array:
+        """theta and the position of the ball, qpos [5], for rendering."""
+        return jnp.concatenate([state.data.pose, state.data.x[:2]])
+
+
+def turned(s: Array, angle: Array) -> Array:
+    """s [2] rotated by an angle [] [rad]."""
+    sin, cos = jnp.sin(angle), jnp.cos(angle)
+    return jnp.stack([cos * s[0] - sin * s[1], sin * s[0] + cos * s[1]])
+
+
+def rounded_box(
+    s: Array, x: float, y: float, angle: float, half_x: float, half_y: float, rounding: float
+) -> Array:
+    """Signed distance [] of s [2] to the surface of a rounded box."""
+    local = turned(s - jnp.array([x, y]), jnp.float32(-angle))
+    q = jnp.abs(local) - jnp.array([half_x - rounding, half_y - rounding])
+    outside = jnp.sqrt(jnp.sum(jnp.maximum(q, 0) ** 2) + 1e-12)  # with a slope at 0
+    return outside + jnp.minimum(jnp.max(q), 0) - rounding
+
+
+def _below(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+    """Whether every number of a is below that of b."""
+    return all(x < y for x, y in zip(a, b, strict=True))
+
+
+def _check(shape: tuple[float, ...], low: tuple[float, ...], high: tuple[float, ...]) -> None:
+    """Raise ValueError unless `shape` is a rounded box whose middle lies between low and high."""
+    if len(shape) != 6 or not 0 < shape[5] <= min(shape[3:5]):
+        raise ValueError(
+            f"objects={list(shape)}: each is x, y, angle, half width, half height, and a rounding "
+            "above 0 that is at most the smaller half"
+        )
+    if not (_below(low, shape[:2]) and _below(shape[:2], high)):
+        raise ValueError(f"objects={list(shape)}: its middle lies outside of the box")
+
+
+def _geom(shape: tuple[float, ...], x: float, y: float) -> str:
+    """MJCF of a rounded box, 6 cm high, relative to the middle (x, y) of the plane."""
+    cx, cy, angle, half_x, half_y, rounding = shape
+    parts = [(half_x, half_y - rounding), (half_x - rounding, half_y)]
+    boxes = [(0.0, 0.0, f'type="box" size="{a:g} {b:g} 0.03"') for a, b in parts if min(a, b) > 0]
+    corners = {(i * (half_x - rounding), j * (half_y - rounding)) for i in (-1, 1) for j in (-1, 1)}
+    discs = [(a, b, f'type="cylinder" size="{rounding:g} 0.03"') for a, b in sorted(corners)]
+    cos, sin = math.cos(angle), math.sin(angle)
+    return "".join(
+        f'<geom pos="{cx - x + cos * a - sin * b:g} {cy - y + sin * a + cos * b:g} 0.03" '
+        f'euler="0 0 {angle:g}" {words} material="object"/>'
+        for a, b, words in (*boxes, *discs)
+    )

@@ -1,0 +1,222 @@
+"""p(theta | y): where known objects lie, from contacts, by particles theta = (t, a) [N, 3].
+
+    log w_i += log p(y | s, theta_i),   p(1 | s, theta) = map(s~),   s~ = R(a)' (s - t) + c
+
+If the effective number falls below N/2, particles are resampled and moved by Metropolis steps that
+compare the likelihood of all measurements, so that the posterior is exact: the objects rest
+(iterated batch importance sampling, Chopin 2002). A measurement at s informs by
+
+    trace   E |dp/dtheta|^2 / (p (1 - p)),  angles in units of 1 / rho
+    det     the determinant of E [dp/dtheta dp/dtheta' / (p (1 - p))]
+    mutual  h(E p) - E h(p),  h the entropy of a binary variable
+
+Source: thesis eq. (5.1) and section 5.3.2, with the information at s~ instead of s.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import poses, resampling
+from hybrid_rl.core.branching import when_any
+from hybrid_rl.core.domain import Box
+from hybrid_rl.protocols import ContactMap
+from hybrid_rl.types import Spec
+
+MEASURES = ("trace", "det", "mutual")
+
+
+class Particles(NamedTuple):
+    """The particles, and all measurements."""
+
+    theta: Array  # [N, 3]
+    log_w: Array  # [N]
+    log_like: Array  # [N] of all measurements
+    s: Array  # [C, 2]
+    y: Array  # [C]
+    count: Array  # [] measurements
+    accepted: Array  # [] share of the last moves
+
+
+@dataclass(frozen=True)
+class PoseParticles:
+    """A belief about the pose of objects.
+
+    A full memory takes no more measurements (`belief/full` is 1).
+
+    Raises:
+        ValueError: for numbers out of range, an unknown measure, or a domain that is no plane.
+    """
+
+    map: ContactMap
+    domain: Box  # bounds of t
+    particles: int = 1000  # N
+    capacity: int = 400  # C
+    moves: int = 4  # Metropolis steps after a resampling
+    every: int = 10  # measurements between two looks at the effective number
+    leaps: bool = True  # moves onto the contact manifold
+    measure: str = "trace"  # or det, mutual
+    subset: int = 64  # particles in the information
+    length: float = 0.3  # rho [m]
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        for name in ("particles", "capacity", "moves", "every", "subset", "length"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"belief.{name}={getattr(self, name)}: must be above 0")
+        if self.measure not in MEASURES:
+            raise ValueError(f"belief.measure={self.measure}: choose {', '.join(MEASURES)}")
+        if self.domain.size != 2:
+            raise ValueError(f"domain.coordinates: poses need a plane, not {self.domain.size}")
+
+    @property
+    def _frame(self) -> poses.Frame:
+        """The frame of poses, as Metropolis moves need it."""
+        low, high = jnp.array(self.domain.low), jnp.array(self.domain.high)
+        return poses.Frame(low, high, jnp.array(self.map.middle), jnp.asarray(self.map.outline))
+
+    def init(self, key: Array, spec: Spec) -> Particles:
+        """Particles from the prior. The key is consumed."""
+        theta = jax.vmap(lambda k: poses.draw(self._frame, k))(
+            jax.random.split(key, self.particles)
+        )
+        none, empty = jnp.zeros(self.particles), jnp.zeros(self.capacity)
+        zero = jnp.zeros(())
+        return Particles(theta, none, none, jnp.zeros((self.capacity, 2)), empty, zero, zero)
+
+    def _chance(self, theta: Array, s: Array) -> Array:
+        """p(y = 1) [] at s [2] if the objects are at theta [3]."""
+        return self.map.chance(poses.to_map(theta, s, jnp.array(self.map.middle)))
+
+    def _log_like(self, state: Particles, theta: Array) -> Array:
+        """log p(all measurements | theta [3]) []."""
+        p = jax.vmap(self._chance, (None, 0))(theta, state.s)
+        each = jnp.log(jnp.where(state.y > 0.5, p, 1 - p))
+        return jnp.sum(jnp.where(jnp.arange(self.capacity) < state.count, each, 0.0))
+
+    def add(self, state: Particles, s: Array, y: Array, key: Array) -> Particles:
+        """The belief after y [], 0 or 1, was measured at s [2]. The key is consumed."""
+        room = state.count < self.capacity
+        slot = jnp.minimum(state.count, self.capacity - 1).astype(jnp.int32)
+        p = jax.vmap(self._chance, (0, None))(state.theta, s)
+        each = jnp.where(room, jnp.log(jnp.where(y > 0.5, p, 1 - p)), 0.0)
+        state = state._replace(
+            log_w=state.log_w + each,
+            log_like=state.log_like + each,
+            s=state.s.at[slot].set(jnp.where(room, s, state.s[slot])),
+            y=state.y.at[slot].set(jnp.where(room, y, state.y[slot])),
+            count=state.count + room,
+        )
+        return when_any(self._due, self._renew)(state, key)
+
+    def _due(self, state: Particles) -> Array:
+        """[] bool: whether to resample."""
+        few = resampling.effective(state.log_w) < self.particles / 2
+        return few & (state.count % self.every == 0)
+
+    def _renew(self, state: Particles, key: Array) -> Particles:
+        """Resampled and moved particles; the same ones where none is due. The key is consumed."""
+        shifting, moving = jax.random.split(key)
+        shift = jax.random.uniform(shifting)
+        drawn = resampling.systematic(state.log_w, self.particles, shift)
+        first = state.theta[drawn], state.log_like[drawn]
+        keys = jax.random.split(moving, self.moves)
+        (theta, log_like), accepted = jax.lax.scan(
+            lambda carry, k: self._moved(state, *carry, k), first, keys
+        )
+        renewed = state._replace(
+            theta=theta,
+            log_w=jnp.zeros(self.particles),
+            log_like=log_like,
+            accepted=accepted.mean(),
+        )
+        due = self._due(state)
+        return jax.tree.map(lambda new, old: jnp.where(due, new, old), renewed, state)
+
+    def _moved(
+        self, state: Particles, theta: Array, log_like: Array, key: Array
+    ) -> tuple[tuple[Array, Array], Array]:
+        """theta [N, 3] and its log-likelihood [N] after one Metropolis step; share accepted."""
+        frame, filled = self._frame, jnp.arange(self.capacity) < state.count
+        contacts = jnp.log(jnp.where(filled & (state.y > 0.5), 1.0, 0.0))
+        known = jnp.any(jnp.isfinite(contacts))
+        weights = jnp.where(known, contacts, 0.0)
+        chances = poses.CHANCES if self.leaps else poses.NO_LEAPS
+
+        def one(theta: Array, log_like: Array, key: Array) -> tuple[Array, Array, Array]:
+            choosing, proposing, accepting = jax.random.split(key, 3)
+            contact = state.s[jax.random.categorical(choosing, weights)]
+            new, ratio = poses.move(frame, theta, contact, known, chances, proposing)
+            log_new = self._log_like(state, new)
+            ratio = ratio + log_new - log_like
+            good = jnp.log(jax.random.uniform(accepting)) < ratio
+            good = good & poses.inside(frame, new)
+            return jnp.where(good, new, theta), jnp.where(good, log_new, log_like), good
+
+        theta, log_like, good = jax.vmap(one)(theta, log_like, jax.random.split(key, len(theta)))
+        return (theta, log_like), good.mean()
+
+    def predict(self, state: Particles, s: Array) -> tuple[Array, Array]:
+        """p(y = 1) and the standard deviation [] of y at s [2]."""
+        p = jax.vmap(self._chance, (0, None))(state.theta, s)
+        p = jax.nn.softmax(state.log_w) @ p
+        return p, jnp.sqrt(p * (1 - p))
+
+    def loss(self, state: Particles, s: Array, y: Array) -> Array:
+        """-log p(y | s) [nat] at s [2], before y [] is added."""
+        p, _ = self.predict(state, s)
+        return -jnp.log(jnp.where(y > 0.5, p, 1 - p))
+
+    def _subset(self, state: Particles) -> Array:
+        """Particles [subset, 3] in proportion to their weights."""
+        return state.theta[resampling.systematic(state.log_w, self.subset, jnp.float32(0.5))]
+
+    def information(self, state: Particles, s: Array) -> Array:
+        """The information [] of a measurement at s [2], by `measure`."""
+        if self.measure == "mutual":
+            return self.gain(state, s)
+        value = jax.vmap(jax.value_and_grad(self._chance), (0, None))
+        p, g = value(self._subset(state), s)
+        g = g / jnp.array([[1.0, 1.0, self.length]]) / jnp.sqrt(p * (1 - p))[:, None]
+        if self.measure == "trace":
+            return jnp.mean(jnp.sum(g**2, -1))
+        a, b, c = jnp.mean(g[:, :, None] * g[:, None, :], 0)
+        return jnp.maximum(a @ jnp.cross(b, c), 0.0)
+
+    def gain(self, state: Particles, s: Array) -> Array:
+        """The mutual information [nat] of the pose and a measurement at s [2]."""
+        p = jax.vmap(self._chance, (0, None))(self._subset(state), s)
+        return jnp.maximum(_entropy(p.mean()) - _entropy(p).mean(), 0.0)
+
+    def informed(self, state: Particles) -> Array:
+        """[] bool: whether any measurement was 1."""
+        return jnp.any((state.y > 0.5) & (jnp.arange(self.capacity) < state.count))
+
+    def report(self, state: Particles) -> dict[str, Array]:
+        """The mean pose, its spread, the most likely particle, and the filter's health."""
+        w = jax.nn.softmax(state.log_w)
+        x, y = w @ state.theta[:, :2]
+        angle, length = resampling.circular(state.theta[:, 2], w)
+        best = state.theta[jnp.argmax(state.log_like)]
+        spread = jnp.sqrt(w @ jnp.sum((state.theta[:, :2] - jnp.stack([x, y])[None]) ** 2, -1))
+        return {
+            "belief/mean_x": x,
+            "belief/mean_y": y,
+            "belief/mean_angle": angle,
+            "belief/best_x": best[0],
+            "belief/best_y": best[1],
+            "belief/best_angle": best[2],
+            "belief/spread_position": spread,
+            "belief/spread_angle": jnp.sqrt(-2 * jnp.log(jnp.clip(length, 1e-6, 1.0))),
+            "belief/effective": resampling.effective(state.log_w),
+            "belief/accepted": state.accepted,
+            "belief/full": (state.count >= self.capacity).astype(jnp.float32),
+        }
+
+
+def _entropy(p: Array) -> Array:
+    """h [nat] of binary variables with probabilities p [...]."""
+    return -p * jnp.log(p) - (1 - p) * jnp.log1p(-p)

@@ -1,0 +1,74 @@
+"""p(y = 1 | s) = lo + (hi - lo) sigmoid((r + w - d(s)) / w): the map of known objects.
+
+d is the signed distance of the world's objects in their reference arrangement, and r the radius of
+the robot: a robot in contact is at d = r, so that the step lies a width w outside.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.protocols import ContactEnv
+
+OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
+NEWTON = 20  # iterations
+
+
+@dataclass(frozen=True)
+class KnownMap:
+    """The map of a world whose objects are known.
+
+    Raises:
+        ValueError: for a world without a distance to its objects, or numbers out of range.
+    """
+
+    world: ContactEnv
+    width: float = 0.008  # w [m]
+    low: float = 0.01  # lo: at least twice the sensor's rate of false contacts
+    high: float = 0.99  # hi
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not hasattr(self.world, "distance"):
+            raise ValueError(f"map.world={type(self.world).__name__}: needs contacts")
+        if not self.width > 0:
+            raise ValueError(f"map.width={self.width}: must be above 0")
+        if not 0 < self.low < self.high < 1:
+            raise ValueError(f"map.low={self.low}: must lie between 0 and map.high={self.high}")
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """c: the middle of the map's box [m]."""
+        (a, b), (c, d) = self.world.low, self.world.high
+        return (a + c) / 2, (b + d) / 2
+
+    @property
+    def outline(self) -> np.ndarray:
+        """Positions [M, 2] of the robot in contact."""
+        return _outline(self.world)
+
+    def chance(self, s: Array) -> Array:
+        """p(y = 1) [] at s [2]."""
+        inside = (self.world.radius + self.width - self.world.distance(s)) / self.width
+        return self.low + (self.high - self.low) * jax.nn.sigmoid(inside)
+
+
+@cache
+def _outline(world: ContactEnv) -> np.ndarray:
+    """Positions [M, 2] at d = r, by Newton's method from a grid."""
+    with jax.ensure_compile_time_eval():
+        sides = [jnp.linspace(a, b, GRID) for a, b in zip(world.low, world.high, strict=True)]
+        s = jnp.stack(jnp.meshgrid(*sides), -1).reshape(-1, 2)
+        step = jax.vmap(jax.value_and_grad(world.distance))
+        for _ in range(NEWTON):
+            d, slope = step(s)
+            s = s - (d - world.radius)[:, None] * slope
+        d = np.asarray(jax.vmap(world.distance)(s))
+        s = np.asarray(s)[np.abs(d - world.radius) < 1e-4]
+    if not len(s):
+        raise ValueError("map.world: has no objects to touch")
+    return s[np.random.default_rng(0).choice(len(s), OUTLINE)]

@@ -1,0 +1,122 @@
+"""p(y = 1 | s) = lo + (hi - lo) sigmoid(slope f(s)): a map that a robot learned, from a file.
+
+f is the decision function of a support vector machine on a grid, bilinear in between, and -1
+outside of the box: f changes more slowly than p, so that slopes stay smooth. The file is a NumPy
+.npz without pickles:
+
+    f [G, G], first index along x   low, high [2] [m] of the box   slope
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.core import archive
+
+FIELDS = ("f", "low", "high", "slope")
+WRITE = "`python -m hybrid_rl.figures study=contact_maps view=map` writes one"
+
+
+def save(file: Path | str, f: Any, low: Any, high: Any, slope: float) -> None:
+    """Write a map: f [G, G] in the box from low [2] to high [2] [m]."""
+    Path(file).parent.mkdir(parents=True, exist_ok=True)
+    columns = {"f": f, "low": low, "high": high, "slope": slope}
+    with Path(file).open("wb") as out:
+        arrays: dict[str, Any] = {k: np.asarray(v, np.float32) for k, v in columns.items()}
+        np.savez_compressed(out, **arrays)
+
+
+@dataclass(frozen=True)
+class LearnedMap:
+    """The map in `file`, which must cover the box.
+
+    Raises:
+        ValueError: for an unusable file, one of another box, one without contacts, or chances out
+            of range.
+    """
+
+    file: str
+    box_low: tuple[float, ...] = (0.0, 0.0)  # [m] of the plane
+    box_high: tuple[float, ...] = (1.0, 1.0)
+    low: float = 0.04  # lo: at least twice the sensor's rate of false contacts
+    high: float = 0.96  # hi
+
+    def __post_init__(self) -> None:
+        """Check the fields and the file."""
+        for name in ("box_low", "box_high"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        if not 0 < self.low < self.high < 1:
+            raise ValueError(f"map.low={self.low}: must lie between 0 and map.high={self.high}")
+        arrays, prefix = _load(self.file), f"map.file={self.file}:"
+        box = [*self.box_low, *self.box_high]
+        if not np.allclose([*arrays["low"], *arrays["high"]], box, atol=1e-5):
+            has = [float(value) for value in (*arrays["low"], *arrays["high"])]
+            raise ValueError(f"{prefix} is of the box {has}, this task's is {box}")
+        if not len(self.outline):
+            raise ValueError(f"{prefix} has no contact")
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """c: the middle of the box [m]."""
+        (a, b), (c, d) = self.box_low, self.box_high
+        return (a + c) / 2, (b + d) / 2
+
+    @property
+    def outline(self) -> np.ndarray:
+        """Positions [M, 2] where f = 0, by linear interpolation along the grid's lines."""
+        f, low, high = (_load(self.file)[name] for name in ("f", "low", "high"))
+        step = (high - low) / (np.array(f.shape) - 1)
+        points = []
+        for axis in (0, 1):
+            a = f[:-1] if axis == 0 else f[:, :-1]
+            b = f[1:] if axis == 0 else f[:, 1:]
+            index = np.argwhere((a < 0) != (b < 0)).astype(float)
+            first, second = a[(a < 0) != (b < 0)], b[(a < 0) != (b < 0)]
+            index[:, axis] += first / (first - second)
+            points.append(low + index * step)
+        return np.concatenate(points).astype(np.float32)
+
+    def decision(self, s: Array) -> Array:
+        """f [] at s [2]."""
+        arrays = _load(self.file)
+        f, low, high = (jnp.asarray(arrays[name]) for name in ("f", "low", "high"))
+        cells = jnp.array(f.shape) - 1
+        at = (s - low) / (high - low) * cells
+        inside = jnp.all((at >= 0) & (at <= cells))
+        corner = jnp.clip(jnp.floor(at).astype(jnp.int32), 0, cells - 1)
+        x, y = at - corner
+        i, j = corner
+        value = (1 - x) * ((1 - y) * f[i, j] + y * f[i, j + 1])
+        value = value + x * ((1 - y) * f[i + 1, j] + y * f[i + 1, j + 1])
+        return jnp.where(inside, value, -1.0)
+
+    def chance(self, s: Array) -> Array:
+        """p(y = 1) [] at s [2]."""
+        p = jax.nn.sigmoid(float(_load(self.file)["slope"]) * self.decision(s))
+        return self.low + (self.high - self.low) * p
+
+
+@cache
+def _load(file: str) -> dict[str, np.ndarray]:
+    """The arrays of a map file.
+
+    Raises:
+        ValueError: for a file that is missing, damaged, not finite or of wrong sizes.
+    """
+    prefix = f"map.file={file}:"
+    arrays = archive.read(prefix, file, FIELDS, WRITE, header=())
+    shapes = {"low": (2,), "high": (2,), "slope": ()}
+    if arrays["f"].ndim != 2 or min(arrays["f"].shape) < 2:
+        raise ValueError(f"{prefix} f must be a grid")
+    for name in FIELDS:
+        if not np.isfinite(arrays[name]).all():
+            raise ValueError(f"{prefix} {name} must hold finite numbers")
+        if name in shapes and arrays[name].shape != shapes[name]:
+            raise ValueError(f"{prefix} {name} is {arrays[name].shape}, not {shapes[name]}")
+    return arrays

@@ -1,0 +1,128 @@
+"""Maps of contacts: pictures of the first trial, and measures over time."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hybrid_rl.errors import UsageError
+from hybrid_rl.maps import learned
+from hybrid_rl.studies.contacts import Trials, decisions, distances, grid, quality, trials
+from hybrid_rl.studies.curves import band, iqm, plural
+from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
+
+NAMES = {
+    "objects": "objects touched",
+    "outline": "outline covered",
+    "iou": "intersection over union",
+    "cells": "free cells visited",
+}
+
+
+def marks_of(times: str, length: int, dt: float) -> list[int]:
+    """Decisions at `times` [s], with commas between; empty: at thirds of the trial.
+
+    Raises:
+        UsageError: for words, or times outside of the trial.
+    """
+    if not times:
+        return [length // 3, 2 * length // 3, length]
+    try:
+        marks = [round(float(word) / dt) for word in times.split(",")]
+    except ValueError:
+        raise UsageError(f"times={times}: must be numbers with commas between") from None
+    if marks != sorted(marks) or marks[0] < 1 or marks[-1] > length:
+        raise UsageError(f"times={times}: must rise, up to {length * dt:g} s")
+    return marks
+
+
+def maps(pattern: str, times: str, trial: int, map_out: str) -> tuple[Any, dict[str, Any]]:
+    """Maps of the first trial of every run, and measures of all trials at the same times."""
+    runs = trials(pattern, "map")
+    dt, length = runs[0].world.spec.dt, min(run.y.shape[1] for run in runs)
+    marks = marks_of(times, length, dt)
+    fine = sorted({*marks, *np.linspace(length / 12, length, 12).round().astype(int).tolist()})
+    figure, panels, below = _panels(len(runs), len(marks))
+    numbers: dict[str, Any] = {"times": [mark * dt for mark in fine], "methods": {}}
+    for i, run in enumerate(runs):
+        f = decisions(run, fine)
+        measured = quality(run, f, fine)
+        numbers["methods"][run.label] = _reported(measured)
+        for axes, mark in zip(panels[i], marks, strict=True):
+            _map(axes, run, f[0, fine.index(mark)], mark)
+            axes.set_title(f"{run.label}, {mark * dt:g} s", fontsize=7)
+        line = {"color": COLOURS[i % 7], "linestyle": STROKES[i // 7 % 4], "label": run.label}
+        for axes, (name, title) in zip(below, NAMES.items(), strict=True):
+            middle, (low, high) = iqm(measured[name]), band(measured[name])
+            axes.plot(np.array(fine) * dt, middle, **line)
+            axes.fill_between(np.array(fine) * dt, low, high, alpha=0.2, color=line["color"])
+            axes.set(title=title, xlabel="Time [s]", ylim=(0, None))
+        if map_out and i == 0:
+            _save(run, f[:, -1], trial, map_out)
+    legend_below(below[0])
+    return figure, numbers
+
+
+def _panels(rows: int, columns: int) -> tuple[Any, Any, Any]:
+    """A figure with rows x columns panels for maps and a row of four below."""
+    from matplotlib.figure import Figure
+
+    figure: Any = Figure(figsize=(9, 2.2 * rows + 3), layout="constrained")
+    upper, lower = figure.subfigures(2, 1, height_ratios=[2.2 * rows, 3])
+    return figure, upper.subplots(rows, columns, squeeze=False), lower.subplots(1, len(NAMES))
+
+
+def _map(axes: Any, run: Trials, f: np.ndarray, mark: int) -> None:
+    """p, its outline, the true outline, the path and the contacts of the first trial."""
+    world = run.world
+    extent = (world.low[0], world.high[0], world.low[1], world.high[1])
+    belief: Any = run.recorded.run.agent.learners["belief"]
+    p = 1 / (1 + np.exp(-belief.belief.slope * f))
+    axes.imshow(p.T, origin="lower", extent=extent, cmap="Purples", vmin=0, vmax=1)
+    sides = [np.linspace(a, b, len(f)) for a, b in zip(world.low, world.high, strict=True)]
+    axes.contour(*sides, distances(world, grid(world)).T, [0.0], colors="#444444", linewidths=0.8)
+    if p.max() > 0.5:
+        axes.contour(*sides, p.T, [0.5], colors=COLOURS[3], linewidths=0.8)
+    path = np.concatenate([run.start[:1, :2], run.s[0, :mark]])
+    axes.plot(*path.T, color=COLOURS[1], linewidth=0.5)
+    contacts = run.s[0, :mark][run.y[0, :mark] > 0.5]
+    axes.plot(*contacts.T, ".", color="#000000", markersize=1.5)
+    axes.set(xlim=extent[:2], ylim=extent[2:], xticks=[], yticks=[], aspect="equal")
+    axes.grid(False)
+
+
+def _reported(measured: dict[str, np.ndarray]) -> dict[str, Any]:
+    """IQM and band of each measure at each time; the trials that touched every object."""
+    result: dict[str, Any] = {"trials": len(measured["objects"])}
+    for name, values in measured.items():
+        low, high = band(values)
+        median = np.median(values, 0)
+        result[name] = {"iqm": iqm(values), "low": low, "high": high, "median": median}
+    result["objects"]["each"] = measured["objects"]
+    return result
+
+
+def _save(run: Trials, f: np.ndarray, trial: int, out: str) -> None:
+    """Write the map of one trial, f [S, GRID, GRID]."""
+    if trial >= len(f):
+        raise UsageError(f"trial={trial}: the run has trials 0 to {len(f) - 1}")
+    if Path(out).suffix != ".npz":
+        raise UsageError(f"map_out={out}: must end in .npz")
+    belief: Any = run.recorded.run.agent.learners["belief"]
+    learned.save(out, f[trial], run.world.low, run.world.high, belief.belief.slope)
+
+
+def lines(numbers: dict[str, Any]) -> list[str]:
+    """A line per method at the last time."""
+    result = []
+    for label, one in numbers["methods"].items():
+        most = max(max(row) for row in np.asarray(one["objects"]["each"]).tolist())
+        touched = sum(row[-1] == most for row in np.asarray(one["objects"]["each"]).tolist())
+        parts = [
+            f"{NAMES[name]} {one[name]['iqm'][-1]:.2f} "
+            f"[{one[name]['low'][-1]:.2f}, {one[name]['high'][-1]:.2f}]"
+            for name in ("outline", "iou", "cells")
+        ]
+        line = f"{label}, {plural(one['trials'], 'trial')} of {numbers['times'][-1]:g} s: "
+        result.append(f"{line}{most:.0f} objects in {touched}, {', '.join(parts)}")
+    return result

@@ -1,0 +1,35 @@
+"""p(s) ~ H(y | s): how much entropy a measurement at s is expected to remove from a belief.
+
+A controller that goes to its maximum reduces the expected entropy (thesis section 5.3.3).
+"""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.protocols import InformedBelief
+from hybrid_rl.types import Params
+
+FLOOR = 1e-12  # [nat]
+
+
+@dataclass(frozen=True)
+class EntropyReduction:
+    """Proportional to the expected reduction of entropy.
+
+    Raises:
+        ValueError: for a belief that cannot measure it.
+    """
+
+    belief: InformedBelief
+
+    def __post_init__(self) -> None:
+        """Check the belief."""
+        if not hasattr(self.belief, "gain"):
+            kind = type(self.belief).__name__
+            raise ValueError(f"target.belief={kind}: has no entropy of a measurement")
+
+    def log_density(self, params: Params, s: Array) -> Array:
+        """log p [] at s [v], up to a constant."""
+        return jnp.log(jnp.maximum(self.belief.gain(params.belief, s), FLOOR))

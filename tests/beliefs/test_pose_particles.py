@@ -1,0 +1,181 @@
+"""The pose of objects by particles, against a Bayes filter on a grid and against enumeration."""
+
+from dataclasses import replace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.beliefs.pose_particles import PoseParticles
+from hybrid_rl.core.domain import Box
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane
+from hybrid_rl.maps.known import KnownMap
+from hybrid_rl.types import Spec
+
+SPEC = Spec(obs=4, act=2, dt=0.1)
+SHAPES = ((0.35, 0.6, 0.3, 0.2, 0.06, 0.02), (0.62, 0.4, 0.0, 0.05, 0.05, 0.05))
+WORLD = ContactPlane(objects=SHAPES)
+MAP = KnownMap(WORLD, width=0.03, low=0.05, high=0.95)
+BELIEF = PoseParticles(
+    MAP, Box((0, 1), (0.3, 0.3), (0.7, 0.7)), particles=2000, capacity=60, every=5
+)
+TRUE = np.array([0.45, 0.55, 0.9])
+
+
+def chance(theta, s):
+    """p(1 | s [M, 2], theta [N, 3]) [N, M], by NumPy."""
+    apart = s[None] - theta[:, None, :2]
+    sin, cos = np.sin(-theta[:, 2])[:, None], np.cos(-theta[:, 2])[:, None]
+    x, y = cos * apart[..., 0] - sin * apart[..., 1], sin * apart[..., 0] + cos * apart[..., 1]
+    distances = []
+    for cx, cy, a, hx, hy, r in SHAPES:
+        u, v = x + 0.5 - cx, y + 0.5 - cy
+        qx = np.abs(np.cos(a) * u + np.sin(a) * v) - (hx - r)
+        qy = np.abs(np.cos(a) * v - np.sin(a) * u) - (hy - r)
+        inner = np.minimum(np.maximum(qx, qy), 0)
+        distances.append(np.hypot(np.maximum(qx, 0), np.maximum(qy, 0)) + inner - r)
+    logit = (WORLD.radius + 0.03 - np.min(distances, 0)) / 0.03
+    return 0.05 + 0.9 / (1 + np.exp(-logit))
+
+
+def measurements(count=60):
+    """Positions [M, 2] and measurements [M] of the true pose."""
+    rng = np.random.default_rng(3)
+    s = rng.uniform(0.1, 0.9, (count, 2))
+    return s, (rng.random(count) < chance(TRUE[None], s)[0]).astype(float)
+
+
+def filtered(belief, key):
+    """The belief after all measurements."""
+    s, y = (jnp.asarray(a, jnp.float32) for a in measurements())
+    first, adding = jax.random.split(key)
+
+    def one(state, measured):
+        return belief.add(state, *measured), None
+
+    keys = jax.random.split(adding, len(y))
+    return jax.lax.scan(one, belief.init(first, SPEC), (s, y, keys))[0]
+
+
+@pytest.fixture(scope="module")
+def grid():
+    """Mean position, circular mean angle, spread of the position: the exact posterior."""
+    side = 0.3 + 0.4 * (np.arange(41) + 0.5) / 41
+    angle = -np.pi + 2 * np.pi * (np.arange(90) + 0.5) / 90
+    theta = np.stack(np.meshgrid(side, side, angle, indexing="ij"), -1).reshape(-1, 3)
+    s, y = measurements()
+    log_w = sum(
+        np.log(np.where(one == 1, p, 1 - p))
+        for one, p in ((one, chance(theta, at[None])[:, 0]) for at, one in zip(s, y, strict=True))
+    )
+    w = np.exp(log_w - log_w.max())
+    w /= w.sum()
+    mean = w @ theta[:, :2]
+    spread = np.sqrt(w @ ((theta[:, :2] - mean) ** 2).sum(1))
+    return mean, np.angle(w @ np.exp(1j * theta[:, 2])), spread
+
+
+@pytest.mark.parametrize("leaps", [True, False])
+def test_the_posterior_is_that_of_a_grid(grid, leaps) -> None:
+    """Two keys; without leaps the posterior is the same, where it has one mode."""
+    belief = replace(BELIEF, leaps=leaps)
+    states = jax.jit(jax.vmap(lambda key: filtered(belief, key)))(
+        jax.random.split(jax.random.key(0), 2)
+    )
+    report = jax.vmap(belief.report)(states)
+    mean, angle, spread = grid
+    for i in range(2):
+        got = {name: float(value[i]) for name, value in report.items()}
+        assert np.hypot(got["belief/mean_x"] - mean[0], got["belief/mean_y"] - mean[1]) < 0.01
+        assert abs(np.angle(np.exp(1j * (got["belief/mean_angle"] - angle)))) < 0.05
+        assert got["belief/spread_position"] == pytest.approx(spread, rel=0.2)
+        assert 0 < got["belief/accepted"] < 1
+    assert np.hypot(*(mean - TRUE[:2])) < 4 * spread
+
+
+@pytest.fixture(scope="module")
+def few():
+    """A belief of 50 weighted particles after 60 measurements of 2,000."""
+    state = jax.jit(lambda: filtered(BELIEF, jax.random.key(5)))()
+    rng = np.random.default_rng(0)
+    keep = rng.integers(2000, size=50)
+    return replace(BELIEF, particles=50, subset=50), state._replace(
+        theta=state.theta[keep] + jnp.asarray(0.1 * rng.normal(size=(50, 3)), jnp.float32),
+        log_w=jnp.zeros(50),
+        log_like=state.log_like[keep],
+    )
+
+
+def test_information_follows_its_formulas(few) -> None:
+    """Slopes by finite differences of the NumPy map; entropies by enumeration of both outcomes."""
+    belief, state = few
+    theta, s = np.asarray(state.theta, np.float64), np.array([0.42, 0.63])
+    at, h = jnp.asarray(s, jnp.float32), 1e-4
+    p = chance(theta, s[None])[:, 0]
+    steps = h * np.eye(3)
+    g = [(chance(theta + d, s[None]) - chance(theta - d, s[None]))[:, 0] / (2 * h) for d in steps]
+    g = np.stack(g, -1) / [1, 1, 0.3] / np.sqrt(p * (1 - p))[:, None]
+    assert float(belief.information(state, at)) == pytest.approx((g**2).sum(1).mean(), rel=1e-3)
+    det = np.linalg.det(np.mean(g[:, :, None] * g[:, None], 0))
+    got = replace(belief, measure="det").information(state, at)
+    assert float(got) == pytest.approx(det, rel=1e-2)
+
+    def entropy(w):
+        return -np.sum(w * np.log(w))
+
+    gain = np.log(50)
+    for outcome in (p, 1 - p):
+        chance_of_it = outcome.mean()
+        gain -= chance_of_it * entropy(outcome / outcome.sum())
+    assert float(belief.gain(state, at)) == pytest.approx(gain, rel=1e-3)
+    got = replace(belief, measure="mutual").information(state, at)
+    assert float(got) == pytest.approx(gain, rel=1e-3)
+
+
+def test_one_particle_has_a_determinant_of_zero(few) -> None:
+    """The information of one measurement has rank one."""
+    belief, state = few
+    same = state._replace(theta=jnp.tile(state.theta[:1], (50, 1)))
+    det = replace(belief, measure="det").information(same, jnp.array([0.42, 0.63]))
+    trace = belief.information(same, jnp.array([0.42, 0.63]))
+    assert float(det) < 1e-6 * float(trace) ** 3
+    assert float(belief.gain(same, jnp.array([0.42, 0.63]))) < 1e-6
+
+
+def test_a_disc_in_the_middle_does_not_tell_the_angle() -> None:
+    """Its position is found; the angle stays uniform."""
+    disc = KnownMap(ContactPlane(objects=((0.5, 0.5, 0, 0.15, 0.15, 0.15),)), 0.03, 0.05, 0.95)
+    belief = replace(BELIEF, map=disc)
+    s, _ = measurements()
+    y = (np.hypot(*(s - TRUE[:2]).T) < 0.18).astype(np.float32)
+
+    def one(state, measured):
+        return belief.add(state, *measured), None
+
+    first = belief.init(jax.random.key(0), SPEC)
+    data = jnp.asarray(s, jnp.float32), jnp.asarray(y), jax.random.split(jax.random.key(1), len(y))
+    report = belief.report(jax.jit(lambda: jax.lax.scan(one, first, data)[0])())
+    position = [float(report[f"belief/mean_{axis}"]) for axis in "xy"]
+    np.testing.assert_allclose(position, TRUE[:2], atol=0.03)
+    assert float(report["belief/spread_angle"]) > 2  # [rad]; of a uniform angle it is unbounded
+
+
+def test_a_full_memory_takes_no_more_measurements() -> None:
+    belief = replace(BELIEF, particles=20, capacity=2)
+    state = belief.init(jax.random.key(0), SPEC)
+    add = jax.jit(belief.add)
+    for i in range(4):
+        before = state
+        state = add(state, jnp.full(2, 0.3), jnp.float32(i % 2), jax.random.key(i))
+    assert float(belief.report(state)["belief/full"]) == 1
+    for old, new in zip(before[1:6], state[1:6], strict=True):
+        np.testing.assert_array_equal(old, new)
+
+
+@pytest.mark.parametrize(
+    "field", [{"particles": 0}, {"measure": "A"}, {"domain": Box((0,), (0.0,), (1.0,))}]
+)
+def test_bad_fields_are_refused(field) -> None:
+    with pytest.raises(ValueError, match=r"belief|domain"):
+        replace(BELIEF, **field)

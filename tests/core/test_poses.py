@@ -1,0 +1,97 @@
+"""Moves between poses leave distributions invariant."""
+
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.core import poses
+
+OUTLINE = jnp.asarray(np.random.default_rng(0).uniform(0.3, 0.7, (40, 2)), jnp.float32)
+FRAME = poses.Frame(jnp.zeros(2), jnp.array([1.0, 2.0]), jnp.array([0.5, 0.5]), OUTLINE)
+KINDS = {"turn": (1.0, 0.0, 0.0), "walk": (0.0, 1.0, 0.0), "leap": (0.0, 0.0, 1.0)}
+CONTACT = jnp.array([0.4, 0.9])
+
+
+def test_positions_go_to_the_map_and_back() -> None:
+    """As complex numbers: turning is a product."""
+    theta, s = np.array([0.3, -0.2, 2.0]), np.array([0.7, 0.1])
+    got = poses.to_map(jnp.asarray(theta), jnp.asarray(s), FRAME.middle)
+    z = (complex(*s) - complex(*theta[:2])) * np.exp(-2j) + complex(0.5, 0.5)
+    np.testing.assert_allclose(got, [z.real, z.imag], rtol=1e-5)
+    np.testing.assert_allclose(poses.from_map(jnp.asarray(theta), got, FRAME.middle), s, rtol=1e-5)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_moves_keep_a_uniform_distribution(kind) -> None:
+    """4,000 poses from the prior, ten moves each: every tenth of each entry stays a tenth."""
+
+    def one(theta, key):
+        proposing, accepting = jax.random.split(key)
+        new, ratio = poses.move(FRAME, theta, CONTACT, jnp.array(True), KINDS[kind], proposing)
+        good = (jnp.log(jax.random.uniform(accepting)) < ratio) & poses.inside(FRAME, new)
+        return jnp.where(good, new, theta), good
+
+    @jax.jit
+    @jax.vmap
+    def chain(key):
+        first, moving = jax.random.split(key)
+        return jax.lax.scan(one, poses.draw(FRAME, first), jax.random.split(moving, 10))
+
+    theta, good = chain(jax.random.split(jax.random.key(1), 4000))
+    assert good.mean() > 0.01
+    unit = (np.asarray(theta) - [0, 0, -np.pi]) / [1, 2, 2 * np.pi]
+    for entry in unit.T:
+        counts = np.histogram(entry, 10, (0, 1))[0]
+        assert counts.sum() == 4000
+        np.testing.assert_allclose(counts, 400, atol=4 * np.sqrt(400 * 0.9))  # four deviations
+
+
+def test_a_turn_keeps_the_contact() -> None:
+    """The position in the map's frame does not change."""
+    theta = jnp.array([0.3, 1.2, 0.5])
+    move = partial(poses.move, FRAME, theta, CONTACT, jnp.array(True), KINDS["turn"])
+    before = poses.to_map(theta, CONTACT, FRAME.middle)
+    for i in range(5):
+        new, ratio = move(jax.random.key(i))
+        np.testing.assert_allclose(poses.to_map(new, CONTACT, FRAME.middle), before, atol=1e-5)
+        assert float(ratio) == 0
+        assert float(jnp.abs(new - theta).max()) > 1e-3
+
+
+def test_leaps_have_the_density_that_is_reported() -> None:
+    """Shares of 40,000 leaps in balls around some of them."""
+
+    @jax.jit
+    @jax.vmap
+    def leap(key):
+        chances = KINDS["leap"]
+        theta = jnp.array([0.5, 0.5, 0.0])
+        return poses.move(FRAME, theta, CONTACT, jnp.array(True), chances, key)[0]
+
+    drawn = np.asarray(leap(jax.random.split(jax.random.key(2), 40_000)))
+    radius = np.array([0.02, 0.02, 0.2])
+    grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, 9)] * 3), -1).reshape(-1, 3)
+    density = jax.jit(jax.vmap(lambda theta: poses.log_leap(FRAME, theta, CONTACT)))
+    middles = drawn[:6]
+    shares = [(np.abs(drawn - m) < radius).all(1).mean() for m in middles]
+    wanted = [
+        float(jnp.exp(density(jnp.asarray(m + radius * grid))).mean()) * np.prod(2 * radius)
+        for m in middles
+    ]
+    assert np.sum(shares) > 3e-3
+    np.testing.assert_allclose(np.sum(shares), np.sum(wanted), rtol=0.15)
+
+
+def test_without_a_contact_a_move_is_a_walk() -> None:
+    """Whatever the chances."""
+    theta = jnp.array([0.3, 1.2, 0.5])
+    args = (FRAME, theta, CONTACT, jnp.array(False))
+    for i in range(3):
+        walk = poses.move(*args, KINDS["walk"], jax.random.key(i))
+        for chances in (KINDS["leap"], poses.CHANCES):
+            got = poses.move(*args, chances, jax.random.key(i))
+            np.testing.assert_array_equal(got[0], walk[0])
+            assert float(got[1]) == 0

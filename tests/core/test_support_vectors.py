@@ -1,0 +1,130 @@
+"""The support vector machine against scikit-learn's SVC, whose numbers are in svc.json.
+
+`python tests/core/test_support_vectors.py` writes them again, where scikit-learn is installed.
+"""
+
+import json
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.core import support_vectors as svm
+
+LENGTH = 0.08
+FILE = Path(__file__).with_name("svc.json")
+CASES = {  # name -> number of points, share of flipped labels, C
+    "clean, C 1": (200, 0.0, 1.0),
+    "clean, C 10": (200, 0.0, 10.0),
+    "flipped, C 1": (200, 0.05, 1.0),
+    "flipped, C 10": (200, 0.05, 10.0),
+    "weights, C 10": (200, 0.05, 10.0),
+}
+over_cases = pytest.mark.parametrize("name", CASES)
+
+
+def labelled(count: int, flipped: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points [N, 2] in the unit square; labels [N] are 1 inside a disc and a box."""
+    rng = np.random.default_rng(0)
+    s = rng.uniform(0, 1, (count, 2)).astype(np.float32)
+    disc = np.hypot(s[:, 0] - 0.3, s[:, 1] - 0.6) < 0.18
+    box = (np.abs(s[:, 0] - 0.7) < 0.15) & (np.abs(s[:, 1] - 0.3) < 0.1)
+    return s, np.where((disc | box) ^ (rng.random(count) < flipped), 1.0, -1.0)
+
+
+def weights(count: int) -> np.ndarray:
+    """How often each point is measured: every third one twice."""
+    return 1.0 + (np.arange(count) % 3 == 0)
+
+
+def queries() -> np.ndarray:
+    """Points [100, 2] at which f is compared."""
+    return np.random.default_rng(1).uniform(0, 1, (100, 2)).astype(np.float32)
+
+
+def learn(s, label, cost, capacity=256, apart=0.0, iterations=60):
+    """The machine after all points, each followed by `iterations`."""
+
+    def one(machine, point):
+        machine = svm.add(machine, *point, LENGTH, apart)
+        return svm.optimise(machine, iterations, LENGTH, cost), None
+
+    first = svm.begin(capacity, 2)
+    points = jnp.asarray(s), jnp.asarray(label, jnp.float32)
+    return jax.jit(lambda points: jax.lax.scan(one, first, points)[0])(points)
+
+
+def decisions(machine, cost):
+    """f [100] at the queries."""
+    return jax.vmap(lambda s: svm.decision(machine, s, LENGTH, cost))(jnp.asarray(queries()))
+
+
+@over_cases
+def test_f_is_that_of_libsvm(name) -> None:
+    """Clean or not, and with points that are measured twice."""
+    count, flipped, cost = CASES[name]
+    s, label = labelled(count, flipped)
+    if name.startswith("weights"):
+        twice = weights(count) == 2
+        s, label = np.concatenate([s, s[twice]]), np.append(label, label[twice])
+        machine = learn(s, label, cost, apart=1e-5)
+        assert int(machine.count) == count
+    else:
+        machine = learn(s, label, cost)
+    want = np.array(json.loads(FILE.read_text())[name])
+    np.testing.assert_allclose(decisions(machine, cost), want, atol=2e-3)
+    assert want.max() > 0.5
+    assert want.min() < -0.5
+    assert float(svm.gap(machine, cost)) < 1e-2
+
+
+def test_constraints_hold_and_the_order_of_the_points_does_not_matter() -> None:
+    s, label = labelled(150, 0.05)
+    machine = learn(s, label, 10.0)
+    assert float(machine.dual.sum()) == pytest.approx(0, abs=1e-3)
+    signed = np.asarray(machine.dual * machine.label)
+    assert signed.min() >= 0
+    assert signed.max() <= 10
+    other = learn(s[::-1], label[::-1], 10.0)
+    np.testing.assert_allclose(decisions(machine, 10.0), decisions(other, 10.0), atol=1e-2)
+
+
+def test_without_contact_f_is_minus_one_everywhere() -> None:
+    s, _ = labelled(20, 0.0)
+    machine = learn(s, -np.ones(20), 10.0)
+    np.testing.assert_array_equal(decisions(machine, 10.0), -1)
+    np.testing.assert_array_equal(decisions(svm.begin(4, 2), 10.0), 0)
+
+
+def test_a_full_machine_adds_weight_to_the_nearest_point_of_the_same_label() -> None:
+    s = jnp.array([[0.1, 0.1], [0.9, 0.9], [0.2, 0.1], [0.8, 0.8]])
+    machine = learn(s[:2], np.array([1.0, -1.0]), 1.0, capacity=2)
+    machine = svm.add(machine, s[2], jnp.float32(-1), LENGTH, 0.0)
+    np.testing.assert_array_equal(machine.weight, [1, 2])
+    machine = svm.add(machine, s[3], jnp.float32(1), LENGTH, 0.0)
+    np.testing.assert_array_equal(machine.weight, [2, 2])
+    assert int(machine.count) == 2
+    single = learn(s[:1], np.array([-1.0]), 1.0, capacity=1)
+    dropped = svm.add(single, s[1], jnp.float32(1), LENGTH, 0.0)
+    assert [np.asarray(leaf).tolist() for leaf in dropped] == [
+        np.asarray(leaf).tolist() for leaf in single
+    ]
+
+
+def write() -> None:
+    """Write svc.json by scikit-learn."""
+    from sklearn.svm import SVC
+
+    values = {}
+    for name, (count, flipped, cost) in CASES.items():
+        s, label = labelled(count, flipped)
+        each = weights(count) if name.startswith("weights") else None
+        machine = SVC(C=cost, gamma=0.5 / LENGTH**2, tol=1e-7).fit(s, label, each)
+        values[name] = np.round(machine.decision_function(queries()), 5).tolist()
+    FILE.write_text(json.dumps(values) + "\n")
+
+
+if __name__ == "__main__":
+    write()

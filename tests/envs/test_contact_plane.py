@@ -1,0 +1,193 @@
+"""The contact plane against closed forms, MuJoCo C and its own free flight."""
+
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane, rounded_box
+from hybrid_rl.envs.analytic.point_mass import PointMass
+
+WORLD = ContactPlane()
+
+
+@partial(jax.jit, static_argnums=0)
+def follow(env, state, actions):
+    """The states after each of actions [T, 2]."""
+
+    def one(state, u):
+        state = env.step(state, u)
+        return state, state
+
+    return jax.lax.scan(one, state, actions)[1]
+
+
+def at(env, x, pose=None):
+    """The state at x [4], with the objects at `pose` [3]."""
+    state = env.reset(jax.random.key(0))
+    pose = state.data.pose if pose is None else jnp.asarray(pose, jnp.float32)
+    x = jnp.asarray(x, jnp.float32)
+    return state.replace(data=state.data._replace(x=x, pose=pose), obs=x)
+
+
+@pytest.mark.parametrize(
+    ("s", "distance"),
+    [((3.0, 0.0), 1.0), ((0.0, -3.0), 2.0), ((2.0 + 0.3, 1.0 + 0.4), 0.5), ((0.0, 0.0), -1.0)],
+)
+def test_distance_to_a_box(s, distance) -> None:
+    """4 x 2 m, with a rounding so small that its corners are sharp."""
+    got = rounded_box(jnp.array(s), 0.0, 0.0, 0.0, 2.0, 1.0, 1e-4)
+    assert float(got) == pytest.approx(distance, abs=2e-4)
+    turned = jnp.array([5.0 - s[1], 7.0 + s[0]])
+    got = rounded_box(turned, 5.0, 7.0, np.pi / 2, 2.0, 1.0, 1e-4)
+    assert float(got) == pytest.approx(distance, abs=2e-4)
+
+
+def test_a_box_of_equal_halves_and_rounding_is_a_disc() -> None:
+    s = np.random.default_rng(0).uniform(-1, 1, (50, 2))
+    got = jax.vmap(lambda s: rounded_box(s, 0.2, -0.1, 0.7, 0.3, 0.3, 0.3))(jnp.asarray(s))
+    np.testing.assert_allclose(got, np.hypot(s[:, 0] - 0.2, s[:, 1] + 0.1) - 0.3, atol=1e-5)
+
+
+def test_the_pose_moves_all_objects_about_the_middle() -> None:
+    """The point at the pose is the middle of the box in the reference arrangement."""
+    pose = np.array([0.6, 0.4, 0.8])
+    rng = np.random.default_rng(0)
+    for s in rng.uniform(0, 1, (5, 2)):
+        c, d = np.cos(0.8), np.sin(0.8)
+        moved = np.array([[c, -d], [d, c]]) @ (s - 0.5) + pose[:2]
+        want = WORLD.distance(jnp.asarray(s, jnp.float32))
+        got = WORLD.distance(jnp.asarray(moved, jnp.float32), jnp.asarray(pose, jnp.float32))
+        assert float(got) == pytest.approx(float(want), abs=1e-6)
+
+
+@pytest.mark.parametrize("drag", [0.0, 0.5])
+def test_without_contact_it_is_the_point_mass(drag) -> None:
+    """Ten steps of a decision are one of the exact integral, and nothing is felt."""
+    env, free = ContactPlane(objects=(), drag=drag), PointMass(1.0, drag)
+    actions = np.random.default_rng(0).uniform(-1, 1, (30, 2)).astype(np.float32)
+    states = follow(env, at(env, [0.2, 0.3, 0.5, -0.4]), jnp.asarray(actions))
+    x = jnp.array([0.2, 0.3, 0.5, -0.4])
+    for u, after in zip(actions, states.obs, strict=True):
+        x = free.dynamics(x, jnp.asarray(u))
+        np.testing.assert_allclose(after, x, atol=1e-5)
+    assert not states.reward.any()
+
+
+def test_drag_of_the_point_mass_against_its_differential_equation() -> None:
+    """Many small Euler steps."""
+    x, u = np.array([0.1, 0.2, 1.0, -0.5]), np.array([0.3, -0.9])
+    after = PointMass(1.5, 0.7).dynamics(jnp.asarray(x), jnp.asarray(u))
+    for _ in range(100_000):
+        x[:2] += 1e-6 * x[2:]
+        x[2:] += 1e-6 * (1.5 * u - 0.7 * x[2:])
+    np.testing.assert_allclose(after, x, atol=1e-5)
+
+
+def test_the_ball_never_enters_an_object() -> None:
+    """100 pushes towards the objects, at up to 2 m/s, for two seconds."""
+    rng = np.random.default_rng(1)
+    shapes = np.array(WORLD.objects)
+    states = []
+    while len(states) < 100:
+        s = rng.uniform(0, 1, 2).astype(np.float32)
+        if float(WORLD.distance(jnp.asarray(s))) > 0.05:
+            way = shapes[rng.integers(3), :2] - s
+            states.append(at(WORLD, [*s, *(2 * way / np.linalg.norm(way))]))
+    stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *states)
+    actions = np.asarray(stacked.data.x[:, 2:])[:, None].repeat(20, 1) / 2
+    after = jax.vmap(partial(follow, WORLD))(stacked, jnp.asarray(actions))
+    distance = jax.vmap(jax.vmap(WORLD.distance))(after.obs[..., :2])
+    assert float(distance.min()) > WORLD.radius - 1e-3
+    assert after.metrics["touch"].any(1).mean() > 0.9
+
+
+def test_contact_against_mujoco() -> None:
+    """A ball that is pushed against a wall and slides along it, by a sphere of MuJoCo C."""
+    wall = (0.5, 0.8, 0.0, 0.4, 0.1, 0.001)
+    env = ContactPlane(objects=(wall,))
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><option timestep="0.0005" gravity="0 0 0" cone="elliptic"/><worldbody>
+        <geom type="box" pos="0.5 0.8 0" size="0.4 0.1 0.2" condim="1"
+              solref="0.004 1" solimp="0.99 0.999 0.0001"/>
+        <body><joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/>
+        <geom type="sphere" size="0.03" mass="1" condim="1" solref="0.004 1"
+              solimp="0.99 0.999 0.0001"/></body></worldbody></mujoco>"""
+    )
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = (0.3, 0.62), (0.2, 0.3)
+    actions = np.tile(np.array([[0.4, 0.8]], np.float32), (5, 1))
+    states = follow(env, at(env, [0.3, 0.62, 0.2, 0.3]), jnp.asarray(actions))
+    for u, after in zip(actions, states.obs, strict=True):
+        for _ in range(200):
+            data.qfrc_applied[:] = u
+            mujoco.mj_step(model, data)
+        np.testing.assert_allclose(after[:2], data.qpos, atol=5e-3)
+    np.testing.assert_array_equal(states.reward[-3:], 1)
+
+
+def test_the_sensor_errs_as_often_as_its_rates_say() -> None:
+    """Missed contacts at a wall; false ones in free space, in proportion to the action's change."""
+    env = ContactPlane(false_contact=0.2, missed=0.1)
+    alternating = jnp.asarray(np.tile([[0.6, 0.8], [-0.6, -0.8]], (400, 1)), jnp.float32)
+    free = ContactPlane(objects=(), false_contact=0.2)
+    states = follow(free, at(free, [0.5, 0.5, 0, 0]), alternating)
+    assert float(states.reward[1:].mean()) == pytest.approx(0.2, abs=0.045)  # three deviations
+    still = follow(free, at(free, [0.5, 0.5, 0, 0]), jnp.full((200, 2), 0.5))
+    assert not still.reward[1:].any()
+    inside = follow(env, at(env, [0.25, 0.6, 0, 0]), jnp.tile(jnp.array([[0.0, 0.3]]), (800, 1)))
+    touching = np.asarray(inside.metrics["touch"]) == 1
+    assert touching[5:].all()
+    missed = 1 - np.asarray(inside.reward)[touching].mean()
+    assert missed == pytest.approx(0.1, abs=0.035)
+
+
+def test_resets_draw_a_clear_start_and_a_pose() -> None:
+    env = ContactPlane(theta=(0.5, 0.5, 0.0), spread=(0.1, 0.1, 3.1416))
+    states = jax.vmap(env.reset)(jax.random.split(jax.random.key(0), 200))
+    clear = jax.vmap(env.distance)(states.obs[:, :2], states.data.pose)
+    assert float(clear.min()) > env.radius
+    poses = np.asarray(states.data.pose)
+    low, high = poses.min(0), poses.max(0)
+    assert (np.abs(poses - [0.5, 0.5, 0.0]) <= [0.1, 0.1, 3.1416]).all()
+    assert (high - low > [0.18, 0.18, 6]).all()
+
+
+def test_the_scene_has_a_disc_where_the_distance_says() -> None:
+    """A ray of MuJoCo C that comes from above hits an object where the distance is negative."""
+    env = ContactPlane(theta=(0.55, 0.45, 0.5))
+    state = env.reset(jax.random.key(0))
+    model = mujoco.MjModel.from_xml_string(env.scene())
+    data = mujoco.MjData(model)
+    data.qpos[:] = env.pose(state)
+    mujoco.mj_forward(model, data)
+    geom = np.zeros(1, np.int32)
+    hits = 0
+    for s in np.random.default_rng(2).uniform(0.02, 0.98, (300, 2)):
+        distance = float(env.distance(jnp.asarray(s, jnp.float32), state.data.pose))
+        if abs(distance) < 0.005 or np.hypot(*(s - np.asarray(state.obs[:2]))) < 0.04:
+            continue
+        mujoco.mj_ray(model, data, np.array([*s, 1.0]), np.array([0, 0, -1.0]), None, 1, -1, geom)
+        body = model.body(model.geom_bodyid[geom[0]]).name if geom[0] >= 0 else ""
+        assert (body == "objects") == (distance < 0), s
+        hits += distance < 0
+    assert hits > 10
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"objects": ((0.5, 0.5, 0, 0.1, 0.1),)}, "each is x, y, angle"),
+        ({"objects": ((0.5, 0.5, 0, 0.1, 0.1, 0.2),)}, "rounding"),
+        ({"objects": ((1.5, 0.5, 0, 0.1, 0.1, 0.1),)}, "outside of the box"),
+        ({"missed": 1.0}, "missed=1.0"),
+        ({"low": (1.0, 0.0)}, "low="),
+        ({"theta": (0.0, 1.0)}, "three numbers"),
+    ],
+)
+def test_bad_fields_are_refused(fields, words) -> None:
+    with pytest.raises(ValueError, match=words):
+        ContactPlane(**fields)

@@ -1,0 +1,101 @@
+"""The study of contact maps: measures by hand, and both views of small runs."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from tiny import call, only_line
+
+from hybrid_rl import config, figures, train
+from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane
+from hybrid_rl.maps.learned import LearnedMap
+from hybrid_rl.studies import contacts
+
+WORLD = ContactPlane(objects=((0.3, 0.5, 0, 0.1, 0.1, 0.1), (0.75, 0.5, 0, 0.1, 0.1, 0.1)))
+
+
+def trials(s: np.ndarray, y: np.ndarray) -> Any:
+    """Trials with these positions [S, T, 2] and measurements [S, T]."""
+    return SimpleNamespace(world=WORLD, s=s, y=y)
+
+
+def test_measures_of_a_path_around_one_of_two_discs() -> None:
+    """All of its outline, none of the other's; and a map that is the truth, or half of it."""
+    angle = np.linspace(0, 2 * np.pi, 80, endpoint=False)
+    s = np.array([0.3, 0.5]) + 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
+    run, marks = trials(s[None].astype(np.float32), np.ones((1, 80))), [80]
+    truth = -contacts.distances(WORLD, contacts.grid(WORLD)) + WORLD.radius
+    left = np.where(np.arange(contacts.GRID)[:, None] < 64, truth, -1.0)
+    ring = np.where(np.abs(truth) < 0.02, 1.0, -1.0)  # hollow: filled for `iou`
+    for f, iou, raw in ((truth, 1, 1), (left, 0.5, 0.5), (ring, 1.3, 0.5)):
+        measured = contacts.quality(run, f[None, None], marks)
+        assert measured["objects"][0, 0] == 1
+        assert measured["outline"][0, 0] == pytest.approx(0.5, abs=0.06)
+        if iou <= 1:
+            assert measured["iou"][0, 0] == pytest.approx(iou, abs=0.03)
+            assert measured["iou_raw"][0, 0] == pytest.approx(raw, abs=0.03)
+        else:
+            assert measured["iou"][0, 0] > measured["iou_raw"][0, 0] + 0.2
+    middles = (np.arange(10) + 0.5) / 10
+    x, y = np.meshgrid(middles, middles)
+    free = (np.hypot(x - 0.3, y - 0.5) > 0.13) & (np.hypot(x - 0.75, y - 0.5) > 0.13)
+    cells = {tuple(np.floor(10 * at).astype(int)) for at in s}
+    inside = sum(bool(free[j, i]) for i, j in cells)
+    assert measured["cells"][0, 0] == pytest.approx(inside / free.sum())
+
+
+def test_a_pose_is_found_where_it_stays_good() -> None:
+    """A good pose that is lost again does not count."""
+    position = np.array([[0.5, 0.01, 0.5, 0.02, 0.01], [0.5] * 5, [0.01] * 5])
+    angle = np.array([[0.01] * 5, [0.01] * 5, [0.01, 0.2, 0.01, 0.01, 0.01]])
+    good = contacts.good(position, angle)
+    np.testing.assert_array_equal(contacts.found(good), [4, np.nan, 3])
+
+
+def draw(*arguments: str | Path) -> int:
+    """Exit code of the command."""
+    return call(lambda: command.guarded(figures.main), "study=contact_maps", *arguments)
+
+
+SHORT = ["total_steps=12", "episode.steps=12", "num_seeds=2", "compile_cache=null"]
+
+
+def test_maps_of_a_small_run_and_a_map_file(tmp_path: Path) -> None:
+    """Numbers at each time for both trials, and a map file."""
+    small = ("fourier_exploration.samples=50", "belief.capacity=16")
+    line = ["experiment=thesis/fig_5_2", *SHORT, *small, f"run_dir={tmp_path}/run"]
+    train.train(config.load(line))
+    out = tmp_path / "map.png"
+    line = (f"runs={tmp_path}/run", "times=0.5,1.2", f"out={out}", f"map_out={tmp_path}/m.npz")
+    assert draw("view=map", *line) == 0
+    numbers = json.loads(out.with_suffix(".json").read_text())
+    (one,) = numbers["methods"].values()
+    assert numbers["times"][-1] == pytest.approx(1.2)
+    assert one["trials"] == 2
+    assert 0 < one["cells"]["iqm"][-1] < 0.2
+    with np.load(tmp_path / "m.npz") as file:
+        assert file["f"].shape == (contacts.GRID, contacts.GRID)
+        if file["f"].max() < 0:
+            with pytest.raises(ValueError, match="no contact"):
+                LearnedMap(str(tmp_path / "m.npz"))
+
+
+def test_poses_of_a_small_run(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Errors of both trials; a run of poses has no map."""
+    small = ("belief.particles=50", "fourier_exploration.samples=50")
+    line = ["experiment=thesis/fig_5_4", *SHORT, *small, f"run_dir={tmp_path}/run"]
+    train.train(config.load(line))
+    out = tmp_path / "pose.png"
+    assert draw("view=pose", f"runs={tmp_path}/run", f"out={out}") == 0
+    numbers = json.loads(out.with_suffix(".json").read_text())
+    (one,) = numbers["methods"].values()
+    assert all(0 < error < 1.5 for error in one["position"]["median"])
+    capfd.readouterr()
+    assert draw("view=map", f"runs={tmp_path}/run") == 2
+    assert "is no map of contacts" in only_line(capfd)
+    assert draw("view=pose", f"runs={tmp_path}/run", "times=5") == 2
+    assert "times=5: must rise, up to 1.2 s" in only_line(capfd)
