@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from pages.cited import Table, Text
 from pages.values import read
 
 LITERAL = "kle3_imitation, gain 10000, variance 0.01"
