@@ -150,7 +150,11 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
     ("evaluate {trained}", 2, "unknown argument; give key=value"),
     ("demonstrate", 2, "task, run: give one of them"),
-    ("demonstrate task=ant", 2, "task=ant: has no scripted expert; give expert=babble or run=DIR"),
+    (
+        "demonstrate task=hopper",
+        2,
+        "task=hopper: has no scripted expert; give expert=babble or run=DIR",
+    ),
     ("demonstrate task=aunt", 2, "task=aunt: unknown; choose one of"),
     ("demonstrate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
     ("demonstrate run={trained} out=file.csv", 2, "out=file.csv: must end in .npz"),
