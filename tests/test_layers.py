@@ -35,7 +35,7 @@ ALLOWED = {
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
-    "studies": {*SHARED, *CONFIG, "data", "run", "cli", "studies"},
+    "studies": {*SHARED, *CONFIG, "data", "maps", "run", "cli", "studies"},
     "benchmark": {*CONFIG, "run", "cli", "studies", "benchmark"},
 }
 HYDRA = {"command", "config", "overrides", "run", "cli", "studies"}

@@ -6,6 +6,7 @@ from pages.cited import Table, Text
 from pages.values import number, read
 
 FIGURE, THIRTY, ENDS = (read(f"fig_4_1{suffix}") for suffix in ("", "_30_seeds", "_ends"))
+OTHERS, RAIL = (read(f"fig_4_1_{suffix}") for suffix in ("ends_30_seeds", "rail"))
 LABELS = {  # label of the page -> label of the JSON
     "no exploration": "none",
     "noise 0.1": "noise_0.1",
@@ -23,6 +24,7 @@ AREAS = {  # column of the page -> area of the JSON
     "cost, episodes 2 to 10": "cost",
     "cost, decisions 101 to 1,000": "cost",
     "cost, last three": "last_cost",
+    "cost, last three hundred": "last_cost",
     "log10 loss: uniform": "loss_box",
     "log10 loss: swing-ups": "loss_swing_up",
     "loss: uniform": "loss_box",
@@ -149,7 +151,22 @@ CITED = [
         [ms(SLOWEST, "diagonal") / ms(SLOWEST, "probes"), ms(SLOWEST, "probes")],
     ),
 ]
+CITED += [
+    table(
+        "ends, 30 other seeds | cost, decisions 101 to 1,000 | cost, last three hundred"
+        " | loss: uniform | loss: swing-ups | fitted again: uniform | fitted again: swing-ups"
+        " | log det I, first three hundred | log det I",
+        OTHERS,
+    ),
+    Text("weight 1, has a loss of # [#, #] on uniform", RAIL["refit"]["D_weight_1"]["loss_box"]),
+    Text("exploration # [#, #]. It is the", RAIL["refit"]["none"]["loss_box"]),
+]
 # What the page concludes.
+for base in ("none", "noise_0.1"):
+    assert differ("D_weight_0.3", base, "log_det", OTHERS) == 1
+    assert differ("D_weight_0.3", base, "cost", OTHERS) != 1
+    assert not any(differ("D_weight_0.3", base, name, OTHERS) for name in LOSSES)
+    assert not differ("D_weight_0.3", base, "last_cost", OTHERS)
 assert all(max(one["first_cost"]) > 1000 for one in FIGURE["methods"].values())
 for figure in (FIGURE, THIRTY):  # F1
     assert not any(differ(noise, "none", "cost", figure) for noise in BASE[1:])
@@ -174,6 +191,10 @@ for row in read("fisher_ms_gpu")["rows"]:
     size = str(row["weights"])
     assert ms(size, "diagonal", "gpu") < ms(size, "probes", "gpu")
 PLAIN = [
+    "weight 1, has a loss",
+    "With ends, 30 other seeds (10 to 39) and the weight of 0.3",
+    "with noise 0.1, at no higher",
+    "no difference at 30 seeds. The",
     "two layers of 16 sines with 436 weights",
     "Ten episodes of 100 decisions (4 s), seeds 0 to 9",
     "plan 20 decisions ahead",

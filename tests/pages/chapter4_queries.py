@@ -59,9 +59,10 @@ def setting(label: str, column: str) -> list[float]:
     return [one["mean_over_N"], one["standard_error"]]
 
 
-NAMES: dict[str, str] = {
+RESIDUAL = "residual, bandwidth 0.5"
+NAMES = {
     "random (RQ-DAgger)": "random",
-    "residual: difference of the clone to a kernel regression of the labels": "residual, bandwidth 0.5",
+    "residual: difference of the clone to a kernel regression of the labels": RESIDUAL,
     "disagreement of five clones": "disagreement",
     "disagreement times the density of the last 200 states": "disagreement times density",
     "oracle": "oracle",
@@ -156,4 +157,38 @@ CITED = [
         ],
     ),
 ]
-PLAIN: list[str] = []
+PLAIN = [
+    "(2 x 32 ReLU, Adam 0.003, batches of 64)",
+    "one demonstration of 1,000 decisions, on which",
+    "200 steps are taken",
+    "A refit takes 15,000 steps",
+    "Radius: 0.2 standard",
+    "(the thesis: 0.2 in raw",
+    "10 seeds (0 to 9), 10 episodes of 1,000 decisions",
+    "one program of 10 seeds",
+    "[95% band]",
+    "rule reaches 90% of",
+    "any N up to 12",
+    "at N = 1 and",
+    "at N = 2 (`inverse`",
+    "at N = 1, 2, 4",
+    "4 episodes an evaluation, N up to 4",
+    "(seeds 1000 to 1003)",
+    "at N = 12",
+    "still below 90%",
+    "Demonstrations of 100 decisions",
+    "share of 100 flights",
+    "10 seeds, two CPU",
+    "no rule reaches 90% within",
+    "lander, seeds 1000 to 1019",
+    "seeds 0 to 19, radius 0.4",
+    "At radius 0.8 (seeds 0 to 19",
+    "advantage on seeds 1000 to 1019",
+    "80 more seeds (20 to 99, radius 0.4",
+    "on seeds 0 to 19 random queries at 0.4 have",
+    "oracle at 0.2 (seeds 0 to 9)",
+    "`fig_4_2_settings.json`, seeds 1000 to 1019",
+    "kernel regression, 50 candidates",
+    "last 200 states",
+    "(seeds 1000 to 1009): tanh",
+]
