@@ -31,11 +31,14 @@ COUNT = "must be a whole number, 1 or more"
 
 USAGE = [  # overrides of train, words of the line
     ("task=cartpool", "task=cartpool: unknown; choose one of ant, cart_double_pendulum"),
-    ("algo=sacc", "algo=sacc: unknown; choose one of bayesopt, bc, "),
+    ("algo=sacc", "algo=sacc: unknown; choose one of analytic, bayesopt, bc, "),
     ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
     ("env=null", "env=null: must be a group of keys"),
     ("episode=3", "episode=3: must be a group of keys"),
-    ("objective=foo", "objective=foo: unknown; choose one of fourier_ergodic, "),
+    (
+        "objective=foo",
+        "objective=foo: unknown; choose one of disagreement, fisher, fourier_ergodic, ",
+    ),
     ("experiment=foo", "experiment=foo: unknown; choose one of thesis/"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of thesis/"),
     ("task=pendulm", "van_der_pol; did you mean pendulum?"),
