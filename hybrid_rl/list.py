@@ -15,6 +15,7 @@ if __name__ == "__main__":
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import get_args
 
@@ -59,6 +60,7 @@ def about(path: Path) -> str:
     return ""
 
 
+@cache
 def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
     """Group -> name -> what the environment of a task has, or that of a method must have."""
     tasks: dict[str, str] = {}

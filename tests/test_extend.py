@@ -103,7 +103,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (["target=rings"], "target=rings: unknown; choose one of mixture, model_uncertainty, ring"),
+        (["target=rings"], "policy_residual, ring, upper_confidence_bound; did you mean ring?"),
         (["target=ring", "target.radius=far"], "target.radius=far: must be a number"),
         (
             ["target=ring", "target.radios=1"],

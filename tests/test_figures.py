@@ -72,7 +72,8 @@ def runs(folder):
 def test_the_studies_are_listed_without_their_libraries(toy, capsys, arguments):
     assert draw(*arguments) == 0
     lines = capsys.readouterr().out.splitlines()[1:]
-    names = ["bayesian_optimisation", "ergodic_coverage", "koopman", "koopman_settings"]
+    names = ["active_learning", "bayesian_optimisation", "contact_maps", "ergodic_coverage"]
+    names += ["held_out", "imitation", "koopman", "koopman_settings"]
     names += ["learning_curves", "model_learning", "toy"]
     assert [line.split()[0] for line in lines] == names
     assert all(line.endswith(".") for line in lines)
@@ -153,7 +154,7 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["runs=RUNS", "colour=red"], "colour=red: unknown argument"),
         (["runs=RUNS", "view=cost"], "give key=value with study, out, runs, metric, x, group"),
         (["out=a.png"], "runs: not given"),
-        (["study=toys", "--help"], "study=toys: unknown; choose one of bayesian_optimisation, "),
+        (["study=toys", "--help"], "study=toys: unknown; choose one of active_learning, "),
         (["study=toys"], "learning_curves, model_learning, toy (did you mean toy?)"),
         (["study=curves"], "study=curves: unknown"),
         (["study=toy", "runs=RUNS"], "give key=value with study, out, title, points"),

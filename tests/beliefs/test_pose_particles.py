@@ -18,7 +18,7 @@ SHAPES = ((0.35, 0.6, 0.3, 0.2, 0.06, 0.02), (0.62, 0.4, 0.0, 0.05, 0.05, 0.05))
 WORLD = ContactPlane(objects=SHAPES)
 MAP = KnownMap(WORLD, width=0.03, low=0.05, high=0.95)
 BELIEF = PoseParticles(
-    MAP, Box((0, 1), (0.3, 0.3), (0.7, 0.7)), particles=2000, capacity=60, every=5
+    MAP, Box((0, 1), (0.3, 0.3), (0.7, 0.7)), particles=1500, capacity=60, every=5
 )
 TRUE = np.array([0.45, 0.55, 0.9])
 
@@ -96,10 +96,10 @@ def test_the_posterior_is_that_of_a_grid(grid, leaps) -> None:
 
 @pytest.fixture(scope="module")
 def few():
-    """A belief of 50 weighted particles after 60 measurements of 2,000."""
+    """A belief of 50 weighted particles after 60 measurements of 1,500."""
     state = jax.jit(lambda: filtered(BELIEF, jax.random.key(5)))()
     rng = np.random.default_rng(0)
-    keep = rng.integers(2000, size=50)
+    keep = rng.integers(1500, size=50)
     return replace(BELIEF, particles=50, subset=50), state._replace(
         theta=state.theta[keep] + jnp.asarray(0.1 * rng.normal(size=(50, 3)), jnp.float32),
         log_w=jnp.zeros(50),

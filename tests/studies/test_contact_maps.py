@@ -66,7 +66,7 @@ SHORT = ["total_steps=12", "episode.steps=12", "num_seeds=2", "compile_cache=nul
 
 def test_maps_of_a_small_run_and_a_map_file(tmp_path: Path) -> None:
     """Numbers at each time for both trials, and a map file."""
-    small = ("fourier_exploration.samples=50", "belief.capacity=16")
+    small = ("algo=noise_mapping", "belief.capacity=16")
     line = ["experiment=thesis/fig_5_2", *SHORT, *small, f"run_dir={tmp_path}/run"]
     train.train(config.load(line))
     out = tmp_path / "map.png"
@@ -86,7 +86,7 @@ def test_maps_of_a_small_run_and_a_map_file(tmp_path: Path) -> None:
 
 def test_poses_of_a_small_run(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Errors of both trials; a run of poses has no map."""
-    small = ("belief.particles=50", "fourier_exploration.samples=50")
+    small = ("algo=entropy_localisation", "belief.particles=50", "goal.samples=10")
     line = ["experiment=thesis/fig_5_4", *SHORT, *small, f"run_dir={tmp_path}/run"]
     train.train(config.load(line))
     out = tmp_path / "pose.png"

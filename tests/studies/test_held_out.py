@@ -1,5 +1,6 @@
 """Held-out errors of learned models."""
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -40,23 +41,26 @@ def test_the_error_is_that_of_numpy_for_linear_models() -> None:
     np.testing.assert_allclose(errors, [first, 1.0], rtol=1e-4)
 
 
-def test_the_study_compares_runs_at_different_decisions(tmp_path: Path) -> None:
-    """Each seed of each run has an error on both kinds of decisions."""
-    for steps in (60, 120):
-        tiny.run(tmp_path / f"{steps}", "algo=nn_mppi", f"total_steps={steps}", "num_seeds=2")
-    out = tmp_path / "held_out.png"
-    line = ("study=held_out", f"runs={tmp_path}/*0", "decisions=100", f"out={out}")
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of two learners of a model."""
+    folder = tmp_path_factory.mktemp("runs") / "run"
+    tiny.run(folder, "algo=nn_mppi", "total_steps=60", "num_seeds=2")
+    return folder
+
+
+def test_the_study_measures_each_seed_on_both_kinds_of_decisions(folder: Path) -> None:
+    out = folder.with_name("held_out.png")
+    line = ("study=held_out", f"runs={folder}", "decisions=100", f"out={out}")
     assert call(lambda: command.guarded(figures.main), *line) == 0
-    assert out.exists()
-    numbers = out.with_suffix(".json")
-    assert '"step": 60' in numbers.read_text()
-    assert '"step": 120' in numbers.read_text()
+    (one,) = json.loads(out.with_suffix(".json").read_text())["runs"].values()
+    assert (one["step"], one["seeds"]) == (60, [0, 1])
+    assert all(error > 0 for kind in held_out.SETS for error in one[kind]["each"])
 
 
-def test_held_out_decisions_are_transitions_of_the_task(tmp_path: Path) -> None:
+def test_held_out_decisions_are_transitions_of_the_task(folder: Path) -> None:
     """The pendulum's own dynamics lead from each observation to the next one, for both kinds."""
-    tiny.run(tmp_path / "run", "algo=nn_mppi", "total_steps=60", "num_seeds=2")
-    data = held_out.held_out([held_out.restored(tmp_path / "run")], 50)
+    data = held_out.held_out([held_out.restored(folder)], 50)
     assert sorted(data) == sorted(held_out.SETS)
     for obs, action, after in data.values():
         assert obs.shape == (50, 3)
