@@ -10,6 +10,8 @@ from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.config import CONF
 
+pytestmark = pytest.mark.xdist_group("list")  # it composes every method, once in a process
+
 
 def call(monkeypatch, *arguments):
     """Exit code of the command."""
