@@ -30,6 +30,22 @@ SETTINGS = {
 for name, value in SETTINGS.items():
     os.environ.setdefault(name, value)
 
+SLOW = [  # MJX compiles these for up to 40 s each; two robots of other kinds always run under MJX
+    f"{task}-mjx" for task in ("hopper", "ant", "panda_stack", "sawyer_push", "sawyer_torque")
+]
+
+
+def pytest_addoption(parser):
+    parser.addoption("--slow", action="store_true", help="run all robots under MJX, too")
+
+
+def pytest_collection_modifyitems(config, items):
+    if config.getoption("--slow"):
+        return
+    slow = [item for item in items if any(name in item.nodeid for name in SLOW)]
+    config.hook.pytest_deselected(items=slow)
+    items[:] = [item for item in items if item not in slow]
+
 
 @pytest.fixture
 def can_draw():
