@@ -30,7 +30,7 @@ SETTINGS = {
 for name, value in SETTINGS.items():
     os.environ.setdefault(name, value)
 
-SLOW = [  # MJX compiles these for up to 40 s each; two robots of other kinds always run under MJX
+SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
     f"{task}-mjx" for task in ("hopper", "ant", "panda_stack", "sawyer_push", "sawyer_torque")
 ]
 

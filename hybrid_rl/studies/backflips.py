@@ -29,11 +29,9 @@ from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import labels
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run.results import RunFolder
-from hybrid_rl.studies.recorded import Recorded, matching, read
+from hybrid_rl.studies.recorded import learned, matching, read
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import (
     advance,
     begin,
@@ -112,7 +110,7 @@ def of(folder: Path) -> Explored:
         raise UsageError(f"runs={folder}: needs a run of experiment=thesis/fig_6_9")
     recorded = read(folder, "lander")
     learner: Any = recorded.run.agent.learners["policy"]
-    state = _state(recorded)
+    state = learned(recorded.run, folder)[1]["policy"]
     asked = np.asarray(state.queries)
     done = np.arange(learner.most)[None] < asked[:, None]  # [S, Q]
     traced = learner.target is not None and learner.target.criterion == "trace"
@@ -128,15 +126,6 @@ def of(folder: Path) -> Explored:
         np.where(done[..., None], first, np.nan),
         recorded.made.obs,
     )
-
-
-def _state(recorded: Recorded) -> Any:
-    """The learner's state [S, ...] at the end of the run."""
-    run = recorded.run
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, memory=None, key=None)
-    folder = recorded.folder.path / "checkpoints"
-    return checkpoint.restore(folder, like, part=True)[1].learners["policy"]
 
 
 def trained(one: Explored) -> tuple[np.ndarray, np.ndarray]:

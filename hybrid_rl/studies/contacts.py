@@ -86,7 +86,8 @@ def decisions(run: Trials, marks: list[int]) -> np.ndarray:
     Raises:
         UsageError: for a run whose belief is no map.
     """
-    belief = run.recorded.run.agent.learners["belief"].belief  # type: ignore[union-attr]
+    learner: Any = run.recorded.run.agent.learners["belief"]
+    belief = learner.belief
     if not hasattr(belief, "decision"):
         raise UsageError(f"runs={run.recorded.folder.path}: its belief is no map of contacts")
     points = jnp.asarray(grid(run.world).reshape(-1, 2))

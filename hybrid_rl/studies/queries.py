@@ -21,12 +21,10 @@ from omegaconf import OmegaConf
 from hybrid_rl.config import Run, build
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.studies.curves import band, curves, improvement, iqm
-from hybrid_rl.studies.recorded import labels, matching
+from hybrid_rl.studies.recorded import labels, learned, matching
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params
 
@@ -176,9 +174,7 @@ def refitted(row: Row, steps: int, at: Sequence[int], score: str) -> np.ndarray:
     """
     run, first = built(row.config), int(row.config.learners.policy.first)
     learner: Any = run.agent.learners["policy"]
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, memory=None, key=None)
-    state = checkpoint.restore(row.folder / "checkpoints", like, part=True)[1].learners["policy"]
+    state = learned(run, row.folder)[1]["policy"]
     counts = first * (np.array(at) + 1)
     least = min(int(np.asarray(state.labels.count).min()), learner.capacity)
     if counts.max() > least:

@@ -69,6 +69,14 @@ def read(folder: Path, *tasks: str) -> Recorded:
     return Recorded(RunFolder(folder), config, run, memory, decisions)
 
 
+def learned(run: Run, folder: Path) -> tuple[int, dict[str, Any]]:
+    """Decisions of the run in `folder`, and the states [S, ...] of its learners, by name."""
+    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+    like = like.replace(env=None, control=None, memory=None, key=None)
+    step, state, _, _ = checkpoint.restore(folder / "checkpoints", like, part=True)
+    return step, state.learners
+
+
 def one_episode(recorded: Recorded) -> Any:
     """The decisions of a run whose trials are one episode each.
 
