@@ -5,8 +5,8 @@
     L_pi   = mean (alpha log pi(v|x) - min_i Q_i(x, v)),                             v ~ pi(x)
     L_a    = -log(alpha) mean (log pi(v|x) + target),     Q' <- (1 - tau) Q' + tau Q
 
-With a `lookahead` the policy climbs the soft return of several decisions in a model instead. A
-time limit does not terminate the task: `truncated` is not used.
+With a `lookahead` the policy maximises the soft return of several decisions in a model. A time
+limit does not terminate the task: `truncated` is not used.
 """
 
 from dataclasses import dataclass
@@ -56,7 +56,7 @@ class SAC:
     tau: float = 0.005
     batch_size: int = 256
     updates: float = 1  # per decision
-    lookahead: PolicyReturn | None = None  # what the policy climbs; None: the critic
+    lookahead: PolicyReturn | None = None  # what the policy maximises; None: the critic
     max_grad_norm: float | None = None  # of the policy's gradient; None: no limit
 
     data: ClassVar[str] = "uniform"
@@ -117,18 +117,9 @@ class SAC:
             self.critic_learning_rate, grads, state.critic_optimiser, state.critic
         )
 
-        def policy_loss(policy: Any) -> tuple[Array, Array]:
-            known = params._replace(policy=policy, critic=critic)
-            value, log_prob = self._value(known, alpha, batch.obs, noise[1], key)
-            return -value.mean(), log_prob
-
-        (of_policy, log_prob), grads = jax.value_and_grad(policy_loss, has_aux=True)(state.policy)
-        norm = optax.tree.norm(grads)
-        if self.max_grad_norm is not None:
-            shrunk = jnp.minimum(1.0, self.max_grad_norm / jnp.maximum(norm, 1e-12))
-            grads = jax.tree.map(lambda g: g * shrunk, grads)
-        policy, policy_optimiser = _adam(
-            self.policy_learning_rate, grads, state.policy_optimiser, state.policy
+        known = params._replace(critic=critic)
+        policy, policy_optimiser, (of_policy, log_prob, norm) = self._improved(
+            state, known, alpha, batch.obs, noise[1], key
         )
         entropy = -log_prob.mean()
         target_entropy = self.target_entropy
@@ -153,10 +144,29 @@ class SAC:
             policy, critic, target, log_alpha, policy_optimiser, critic_optimiser, alpha_optimiser
         ), metrics
 
+    def _improved(
+        self, state: SACState, params: Params, alpha: Array, x: Array, noise: Array, key: Array
+    ) -> tuple[Any, Any, tuple[Array, Array, Array]]:
+        """Policy, optimiser, and loss [], log pi [B] and the gradient's norm [] at x [B, n]."""
+
+        def loss(policy: Any) -> tuple[Array, Array]:
+            known = params._replace(policy=policy)
+            value, log_prob = self._value(known, alpha, x, noise, key)
+            return -value.mean(), log_prob
+
+        (of_policy, log_prob), grads = jax.value_and_grad(loss, has_aux=True)(state.policy)
+        norm = optax.tree.norm(grads)
+        if self.max_grad_norm is not None:
+            shrunk = jnp.minimum(1.0, self.max_grad_norm / jnp.maximum(norm, 1e-12))
+            grads = jax.tree.map(lambda g: g * shrunk, grads)
+        rate = self.policy_learning_rate
+        policy, optimiser = _adam(rate, grads, state.policy_optimiser, state.policy)
+        return policy, optimiser, (of_policy, log_prob, norm)
+
     def _value(
         self, params: Params, alpha: Array, x: Array, noise: Array, key: Array
     ) -> tuple[Array, Array]:
-        """The soft return [B] that the policy climbs from x [B, n], and log pi [B] there."""
+        """The soft return [B] that the policy maximises from x [B, n], and log pi [B] there."""
         if self.lookahead is not None:
             ahead = jax.random.fold_in(key, 1)
             m = noise.shape[-1]
