@@ -23,6 +23,7 @@ from jax import Array
 from hybrid_rl.core import poses, resampling
 
 SHARE = 4  # one of so many particles is drawn onto the manifold
+IMPOSSIBLE = -1e4  # log-weight of a pose that the prior excludes
 NOISE = (0.01, 0.01, 0.05)  # [m, m, rad] standard deviation of e
 
 
@@ -127,7 +128,7 @@ def manifold(
     p = jax.vmap(evidence.chance, (0, None))(cloud.theta, q)
     before = jax.nn.log_softmax(cloud.log_w - log_chance(p, jnp.ones(()), evidence.trust))
     onto, log_w = _on_manifold(frame, q, cloud.theta, before, len(some), drawing)
-    possible = evidence.touched & jnp.any(jnp.isfinite(log_w))
+    possible = evidence.touched & jnp.any(log_w > IMPOSSIBLE)
     log_w = jax.nn.log_softmax(log_w) + jnp.log(float(len(some)))
     mixed = Cloud(
         plain.theta.at[some].set(onto),
@@ -156,7 +157,7 @@ def _on_manifold(
         apart = (theta - new[None]).at[:, 2].set(poses.wrap(theta[:, 2] - new[2])) / scale[None]
         squares = -0.5 * apart**2
         both = jax.nn.logsumexp(log_w + squares.sum(1)) - jax.nn.logsumexp(log_w + squares[:, 2])
-        return jnp.where(poses.inside(frame, new), both, -jnp.inf)
+        return jnp.where(poses.inside(frame, new), both, IMPOSSIBLE)
 
     return onto, jax.vmap(log_density)(onto)
 

@@ -1,5 +1,6 @@
 """Poses of objects by touch: errors over time, and what the absence of contact tells."""
 
+from dataclasses import replace
 from typing import Any
 
 import jax
@@ -23,7 +24,6 @@ from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.falls import wilson
 from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
 
-CELLS = (31, 31, 60)  # of x, y and the angle, in the Bayes filter
 KINDS = ("all", "contacts", "absences")
 
 
@@ -153,63 +153,64 @@ def _against(one: dict[str, Any]) -> str:
     )
 
 
-def absence(pattern: str) -> tuple[Any, dict[str, Any]]:
-    """Entropy of the pose over time, by which measurements count."""
+def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
+    """Entropy of the pose over time, and the error of its mean, by which measurements count."""
     from matplotlib.figure import Figure
 
     run = trials(pattern, "absence")[0]
-    entropies = np.stack([_entropies(run, kind) for kind in KINDS])
+    errors(run)  # refuses a run without poses
+    dt, length = run.world.spec.dt, run.y.shape[1]
+    at = np.array(marks_of(times, length, dt)) - 1
     figure = Figure(figsize=(5, 3.4), layout="constrained")
     axes = figure.subplots()
-    t = run.world.spec.dt * np.arange(1, entropies.shape[2] + 1)
-    numbers: dict[str, Any] = {"trials": entropies.shape[1], "kinds": {}}
-    for i, (kind, each) in enumerate(zip(KINDS, entropies, strict=True)):
-        low, high = band(each)
-        axes.plot(t, iqm(each), color=COLOURS[i], label=kind)
+    t, kinds = dt * np.arange(1, length + 1), {}
+    for i, kind in enumerate(KINDS):
+        rows = _filtered(run, kind)
+        entropy = rows["belief/entropy"]
+        low, high = band(entropy)
+        axes.plot(t, iqm(entropy), color=COLOURS[i], label=kind)
         axes.fill_between(t, low, high, alpha=0.2, color=COLOURS[i])
-        last = {"iqm": iqm(each)[-1], "low": low[-1], "high": high[-1], "each": each[:, -1]}
-        numbers["kinds"][kind] = last
-    less = entropies[2, :, -1] <= entropies[1, :, -1]
-    numbers["absences_leave_no_more"] = int(less.sum())
+        position, angle = (each[:, at] for each in errors(run._replace(rows=rows)))
+        each = {"each": entropy[:, at], "position": position, "angle": angle}
+        kinds[kind] = {"iqm": iqm(entropy)[at], "low": low[at], "high": high[at], **each}
+    less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
     axes.set(title="entropy of the pose", xlabel="Time [s]", ylabel="[nat]")
     axes.legend()
-    return figure, numbers
+    head = {"times": dt * (at + 1), "trials": len(run.y)}
+    return figure, {**head, "kinds": kinds, "absences_leave_no_more": less}
 
 
-def _entropies(run: Trials, kind: str) -> np.ndarray:
-    """Entropy [S, T] [nat] of the pose on a grid after each measurement of this kind."""
-    belief: Any = run.recorded.run.agent.learners["belief"]
-    part = belief.belief
-    low, high = jnp.array(part.domain.low), jnp.array(part.domain.high)
-    axes = [
-        a + (b - a) * (jnp.arange(n) + 0.5) / n for a, b, n in zip(low, high, CELLS, strict=False)
-    ]
-    angles = -jnp.pi + 2 * jnp.pi * (jnp.arange(CELLS[2]) + 0.5) / CELLS[2]
-    theta = jnp.stack(jnp.meshgrid(*axes, angles), -1).reshape(-1, 3)
-    chance = _chance(part)
-    cell = jnp.log(jnp.prod(high - low) * 2 * jnp.pi / len(theta))
+def _filtered(run: Trials, kind: str) -> dict[str, np.ndarray]:
+    """Reports [S, T] of the run's belief about poses if only measurements of this kind count."""
+    learner: Any = run.recorded.run.agent.learners["belief"]
+    belief = replace(learner.belief, kind="metropolis")
+    names = ("entropy", "mean_x", "mean_y", "mean_angle")
 
-    def one(log_w: jax.Array, measured: Any) -> Any:
-        s, y = measured
-        p = jax.vmap(chance, (0, None))(theta, s)
-        counts = {"all": True, "contacts": y > 0.5, "absences": y < 0.5}[kind]
-        log_w = log_w + jnp.where(counts, jnp.log(jnp.where(y > 0.5, p, 1 - p)), 0.0)
-        log_p = jax.nn.log_softmax(log_w)
-        return log_w, -jnp.sum(jnp.exp(log_p) * log_p) + cell
+    def one(state: Any, measured: Any) -> Any:
+        s, y, key = measured
+        counts = {"all": jnp.array(True), "contacts": y > 0.5, "absences": y < 0.5}[kind]
+        after = belief.add(state, s, y, key)
+        state = jax.tree.map(lambda new, old: jnp.where(counts, new, old), after, state)
+        report = belief.report(state)
+        return state, {f"belief/{name}": report[f"belief/{name}"] for name in names}
 
-    def trial(measured: Any) -> Any:
-        return jax.lax.scan(one, jnp.zeros(len(theta)), measured)[1]
+    def trial(key: jax.Array, s: jax.Array, y: jax.Array) -> Any:
+        first, adding = jax.random.split(key)
+        state = belief.init(first, run.recorded.run.agent.spec)
+        return jax.lax.scan(one, state, (s, y, jax.random.split(adding, len(y))))[1]
 
-    return np.asarray(
-        jax.jit(lambda m: jax.lax.map(trial, m))((jnp.asarray(run.s), jnp.asarray(run.y)))
-    )
+    keys = jax.random.split(jax.random.key(0), len(run.y))
+    rows = jax.jit(jax.vmap(trial))(keys, jnp.asarray(run.s), jnp.asarray(run.y))
+    return {**run.rows, **{name: np.asarray(values) for name, values in rows.items()}}
 
 
 def absence_lines(numbers: dict[str, Any]) -> list[str]:
     """A line per kind, and in how many trials absences leave no more entropy than contacts."""
     result = [
-        f"{kind}: {one['iqm']:.2f} [{one['low']:.2f}, {one['high']:.2f}] nat at the end"
+        f"{kind}: {one['iqm'][-1]:.2f} [{one['low'][-1]:.2f}, {one['high'][-1]:.2f}] nat, "
+        f"{np.median(np.asarray(one['position'])[:, -1]):.3f} m off (median)"
         for kind, one in numbers["kinds"].items()
     ]
-    less = f"{numbers['absences_leave_no_more']} of {plural(numbers['trials'], 'trial')}"
-    return [*result, f"absences alone leave no more entropy than contacts alone in {less}"]
+    less = f"{numbers['absences_leave_no_more'][-1]} of {plural(numbers['trials'], 'trial')}"
+    end = f"after {numbers['times'][-1]:g} s"
+    return [*result, f"{end} absences alone leave no more entropy than contacts alone in {less}"]

@@ -112,6 +112,8 @@ def test_poses_of_a_small_run(tmp_path: Path, capfd: pytest.CaptureFixture[str])
     numbers = json.loads(out.with_suffix(".json").read_text())
     (one,) = numbers["methods"].values()
     assert all(0 < error < 1.5 for error in one["position"]["median"])
+    assert one["first"]["never"] + sum(each is not None for each in one["first"]["each"]) == 2
+    assert len(one["truth_behind"]["each"]) == 2
     capfd.readouterr()
     assert draw("view=map", f"runs={tmp_path}/run") == 2
     assert "is no map of contacts" in only_line(capfd)
