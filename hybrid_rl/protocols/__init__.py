@@ -38,7 +38,13 @@ from hybrid_rl.protocols.learned import (
     Uncertain,
     UnsquashedPolicy,
 )
-from hybrid_rl.protocols.learning import Demonstrations, LatestLearner, Learner, UniformLearner
+from hybrid_rl.protocols.learning import (
+    Demonstrations,
+    LatestLearner,
+    Learner,
+    PolicyReturn,
+    UniformLearner,
+)
 
 __all__ = [
     "AnalyticEnv",
@@ -63,6 +69,7 @@ __all__ = [
     "Model",
     "Objective",
     "Policy",
+    "PolicyReturn",
     "Proposal",
     "Reward",
     "RewardedEnv",
