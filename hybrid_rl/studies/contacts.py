@@ -117,11 +117,9 @@ def decisions(run: Trials, marks: list[int]) -> np.ndarray:
 
 def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarray]:
     """Measures [S, marks] of the maps f [S, marks, GRID, GRID] and of the paths so far."""
-    world, known = run.world, KnownMap(run.world)
+    world = run.world
     inside = distances(world, grid(world)) < world.radius
-    outline = known.outline
-    shapes = [type(world)(**{**vars(world), "objects": (each,)}) for each in world.objects]
-    owner = np.argmin([distances(shape, outline) for shape in shapes], 0)
+    outline, owner = _outline(world)
     result: dict[str, list[list[float]]] = {}
     for trial, maps in enumerate(f):
         row: dict[str, list[float]] = {}
@@ -129,7 +127,7 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
             s, y = run.s[trial, :count], run.y[trial, :count]
             apart = np.linalg.norm(outline[:, None] - s[y > 0.5][None], axis=-1)
             near = apart.min(1, initial=np.inf) < CLOSE
-            touched = [near[owner == i].mean() >= TOUCHED for i in range(len(shapes))]
+            touched = [near[owner == i].mean() >= TOUCHED for i in range(len(world.objects))]
             for name, value in {
                 "objects": float(sum(touched)),
                 "outline": float(near.mean()),
@@ -141,6 +139,27 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
         for name, values in row.items():
             result.setdefault(name, []).append(values)
     return {name: np.array(values) for name, values in result.items()}
+
+
+def touched_all(run: Trials) -> np.ndarray:
+    """Time [S] [s] at which every object was touched; NaN if one never was."""
+    outline, owner = _outline(run.world)
+    result = []
+    for s, y in zip(run.s, run.y, strict=True):
+        when = np.flatnonzero(y > 0.5)
+        near = np.linalg.norm(outline[:, None] - s[when][None], axis=-1) < CLOSE
+        first = np.where(near, when[None] + 1.0, np.inf).min(1, initial=np.inf)  # of each point
+        each = [np.sort(first[owner == i]) for i in range(len(run.world.objects))]
+        last = max(times[int(np.ceil(TOUCHED * len(times))) - 1] for times in each)
+        result.append(last * run.world.spec.dt if np.isfinite(last) else np.nan)
+    return np.array(result)
+
+
+def _outline(world: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Positions of contact [M, 2], and the object [M] that each belongs to."""
+    outline = KnownMap(world).outline
+    shapes = [type(world)(**{**vars(world), "objects": (each,)}) for each in world.objects]
+    return outline, np.argmin([distances(shape, outline) for shape in shapes], 0)
 
 
 def _iou(a: Any, b: Any) -> float:
