@@ -1,4 +1,4 @@
-"""Runs of contact_plane: the trials, and how good their maps and poses are.
+"""Runs in which a robot feels contact: the trials, and how good their maps and poses are.
 
 objects   touched: a twentieth of their outline lies within 5 cm of a contact
 outline   share of the outlines within 5 cm of a contact
@@ -7,6 +7,7 @@ cells     share of 10 x 10 free cells in which the path was
 position  distance [m] of the mean pose; angle: difference [rad]; good: below 3 cm and 0.1 rad
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,7 +21,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.maps.known import KnownMap
 from hybrid_rl.studies.recorded import Recorded, labels, matching, one_episode, read
 
-TASK = "contact_plane"
+TASKS = ("contact_plane", "sprk")
 GRID = 128  # cells a side of a map
 CLOSE, TOUCHED = 0.05, 0.05  # [m] from a contact; share of an object's outline
 CELLS = 10  # a side, of the visited share
@@ -42,7 +43,7 @@ class Trials(NamedTuple):
 def trials(pattern: str, view: str) -> list[Trials]:
     """The trials of all runs that match."""
     folders = matching(pattern, view)
-    return [_of(read(path, TASK), label) for path, label in _named(folders)]
+    return [_of(read(path, *TASKS), label) for path, label in _named(folders)]
 
 
 def _named(folders: list[Path]) -> list[tuple[Path, str]]:
@@ -117,7 +118,7 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
     world, known = run.world, KnownMap(run.world)
     inside = distances(world, grid(world)) < world.radius
     outline = known.outline
-    shapes = [type(world)(**{**vars(world), "objects": (each,)}) for each in world.objects]
+    shapes = [replace(world, objects=(each,)) for each in world.objects]
     owner = np.argmin([distances(shape, outline) for shape in shapes], 0)
     result: dict[str, list[list[float]]] = {}
     for trial, maps in enumerate(f):
