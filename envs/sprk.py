@@ -104,7 +104,7 @@ class Sprk:
         text = mjcf.text(ASSET)
         for word, value in words.items():
             text = text.replace(word, str(value))
-        geoms, pairs = rounded_boxes.mjcf(self.objects, "ball", HALF)
+        geoms, pairs = rounded_boxes.solid(self.objects, "ball", HALF)
         text = text.replace("</body>", f"{geoms}</body>", 1)
         return text[text.index("<mujoco") :].replace("</mujoco>", f"{pairs}</mujoco>")
 

@@ -21,7 +21,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.maps.known import KnownMap
 from hybrid_rl.studies.recorded import Recorded, labels, matching, one_episode, read
 
-TASKS = ("contact_plane", "sprk")
+TASKS = ("contact_plane", "sprk", "sawyer_probe")
 GRID = 128  # cells a side of a map
 CLOSE, TOUCHED = 0.05, 0.05  # [m] from a contact; share of an object's outline
 CELLS = 10  # a side, of the visited share
