@@ -1,0 +1,73 @@
+"""A top view of a belief over a plane: shading, outlines, the path so far, the contacts.
+
+One panel is used for all frames of a video: `show` changes what it has drawn before.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hybrid_rl.studies.style import COLOURS
+
+TRUTH, OUTLINE, PATH = "#444444", COLOURS[2], COLOURS[1]
+
+
+class View(NamedTuple):
+    """What a panel shows at one time."""
+
+    values: np.ndarray | None  # [G, G] shading, first index along x; None: white
+    outlines: list[np.ndarray]  # [k, 2] each: lines of the belief
+    path: np.ndarray  # [t, 2]
+    contacts: np.ndarray  # [n, 2]
+
+
+def level(values: np.ndarray, low: Sequence[float], high: Any, at: float) -> list[np.ndarray]:
+    """Lines [k, 2] on which values [G, G] in the box from low [2] to high [2] are `at`."""
+    from contourpy import contour_generator
+
+    sides = [np.linspace(a, b, n) for a, b, n in zip(low, high, values.shape, strict=True)]
+    return contour_generator(*sides, values.T).lines(at)
+
+
+class Panel:
+    """The top view on `axes`, of the box from low [2] to high [2]."""
+
+    def __init__(
+        self,
+        axes: Any,
+        low: Sequence[float],
+        high: Sequence[float],
+        truth: list[np.ndarray],
+        limits: tuple[float, float] = (0.0, 1.0),
+        thick: float = 1.0,  # factor of line widths
+    ) -> None:
+        from matplotlib.collections import LineCollection
+
+        extent = (low[0], high[0], low[1], high[1])
+        nothing: Any = np.zeros((1, 1))
+        self._shading = axes.imshow(
+            nothing, origin="lower", extent=extent, cmap="Purples", vmin=limits[0], vmax=limits[1]
+        )
+        self._outlines = LineCollection([], colors=OUTLINE, linewidths=0.9 * thick)
+        self._truth = LineCollection(truth, colors=TRUTH, linewidths=0.9 * thick)
+        axes.add_collection(self._truth)
+        axes.add_collection(self._outlines)
+        self._path = axes.plot([], [], color=PATH, linewidth=0.6 * thick)[0]
+        self._contacts = axes.plot([], [], ".", color="#000000", markersize=2.0 * thick)[0]
+        axes.set(xlim=extent[:2], ylim=extent[2:], xticks=[], yticks=[], aspect="equal")
+        axes.grid(False)
+
+    def show(self, view: View) -> None:
+        """Draw `view` instead of what was drawn before."""
+        values: Any = np.zeros((1, 1)) if view.values is None else view.values.T
+        self._shading.set_data(values)
+        self._outlines.set_segments(view.outlines)
+        self._outlines.set_alpha(1.0 if len(view.outlines) < 10 else 0.5)
+        self._path.set_data(*view.path.T)
+        self._contacts.set_data(*view.contacts.T)
+
+    def name(self, names: dict[str, str]) -> None:
+        """Labels for a legend, by artist: truth, outlines, path, contacts."""
+        for artist, label in names.items():
+            getattr(self, f"_{artist}").set_label(label)
