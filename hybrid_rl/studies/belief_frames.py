@@ -13,14 +13,15 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core import poses, resampling
+from hybrid_rl.core import ergodic, poses, resampling
 from hybrid_rl.errors import UsageError
-from hybrid_rl.studies.belief_panel import View, level
+from hybrid_rl.studies.belief_panel import HALF, View, level
 from hybrid_rl.studies.recorded import Recorded
 from hybrid_rl.types import Params
 
 GRID = 64  # cells a side
 PARTICLES, SHADED = 20, 100  # of which outlines and p(y = 1) are drawn
+BRIGHTEST = 5.0  # density, of mean one, at the end of the colour map
 
 
 class Trial(NamedTuple):
@@ -84,21 +85,28 @@ def beliefs(trial: Trial, marks: list[int]) -> Iterator[Any]:
 
 
 def scenes(trial: Trial) -> tuple[np.ndarray, float]:
-    """qpos [T+1, nq] of the replayed world, and how far its observations are from the record."""
+    """qpos [T+1, nq] of the replayed world, and how far it may be from the record.
+
+    A device that rounds differently replays other collisions. A world whose `pose` reads the
+    observation is drawn where it was; otherwise the second number is that of the observations.
+    """
     agent = trial.recorded.run.agent
     episode, world = agent.episode, agent.episode.env
     start = jax.tree.map(lambda a: a[0], jax.jit(agent.init)(jax.random.key(trial.seed)).env)
 
-    def go(start: Any, actions: Array) -> tuple[Array, Array]:
-        def step(state: Any, u: Array) -> tuple[Any, tuple[Array, Array]]:
-            state = episode.step(state, u)
-            return state, (world.pose(state), state.obs)
+    def go(start: Any, made: Any) -> tuple[Array, ...]:
+        def step(state: Any, one: Any) -> tuple[Any, tuple[Array, ...]]:
+            state = episode.step(state, one.action)
+            recorded = world.pose(state.replace(obs=one.next_obs))
+            return state, (recorded, world.pose(state), state.obs)
 
-        _, (qpos, obs) = jax.lax.scan(step, start, actions)
-        return jnp.concatenate([world.pose(start)[None], qpos]), obs
+        _, (recorded, qpos, obs) = jax.lax.scan(step, start, made)
+        first = world.pose(start)[None]
+        return jnp.concatenate([first, recorded]), jnp.concatenate([first, qpos]), obs
 
-    qpos, obs = jax.jit(go)(start, jnp.asarray(trial.made.action))
-    return np.asarray(qpos), float(np.abs(np.asarray(obs) - trial.made.next_obs).max())
+    recorded, qpos, obs = map(np.asarray, jax.jit(go)(start, trial.made))
+    apart = float(np.abs(obs - trial.made.next_obs).max())
+    return recorded, apart if np.array_equal(recorded, qpos) else 0.0
 
 
 def points(low: Any, high: Any, cells: int = GRID) -> np.ndarray:
@@ -128,52 +136,58 @@ class Drawn:
     """What a panel shows of the beliefs of a trial.
 
     shading: "predicted", the mean of the belief's prediction, a probability of contact where it
-    measures information; or "target", the density of the method's target relative to its maximum.
+    measures information; or "target", the density of the method's target, of mean one, over
+    BRIGHTEST.
     """
 
     def __init__(self, trial: Trial, cells: int = GRID, shading: str = "predicted") -> None:
         self.trial, self.belief = trial, trial.learner.belief
         self.low, self.high = trial.learner.domain.low, trial.learner.domain.high
         self.binary = hasattr(self.belief, "informed")
-        self._map = getattr(self.belief, "map", None)
+        self._map: Any = getattr(self.belief, "map", None)
         self._edges = self._outline() if self._map is not None else []
         grid, of = jnp.asarray(points(self.low, self.high, cells)), self._predicted
         if shading == "target":
-            of = self._target(trial.recorded.config)
+            of, share = self._target()
 
         def values(belief: Any) -> Array:
-            if self._map is not None and shading == "predicted":
+            if shading == "target":
+                log_p = jax.lax.map(lambda s: of(belief, s), grid, batch_size=512)
+                return len(log_p) * jnp.exp(ergodic.log_weights(log_p, share)) / BRIGHTEST
+            if self._map is not None:
                 drawn = resampling.systematic(belief.log_w, SHADED, jnp.float32(0.5))
                 belief = belief._replace(theta=belief.theta[drawn], log_w=jnp.zeros(SHADED))
             return jax.lax.map(lambda s: of(belief, s), grid, batch_size=512)
 
         self._values = jax.jit(values)
-        self._cells, self._logarithm = cells, shading == "target"
+        self._cells, self._is_target = cells, shading == "target"
 
     @property
-    def names(self) -> dict[str, str]:
-        """Labels of what is drawn, for a legend."""
-        names = {"path": "path"}
-        if self.binary:
-            outlines = "p(contact) = 1/2" if self._map is None else f"{PARTICLES} particles"
-            names |= {"truth": "contact, truth", "outlines": outlines, "contacts": "measured"}
-        return names
+    def outlines(self) -> str:
+        """What the lines of the belief are; empty without any."""
+        names = HALF if self._map is None else f"{PARTICLES} particles"
+        return names if self.binary else ""
 
     def limits(self, views: list[View]) -> tuple[float, float]:
         """The values at the ends of the colour map: probabilities, or those of all views."""
+        if self.binary or self._is_target:
+            return 0.0, 1.0
         values = [view.values for view in views if view.values is not None]
-        return (0.0, 1.0) if self.binary else (float(np.min(values)), float(np.max(values)))
+        return float(np.min(values)), float(np.max(values))
 
     def _predicted(self, belief: Any, s: Array) -> Array:
         return self.belief.predict(belief, s)[0]
 
-    def _target(self, config: Any) -> Any:
-        """log phi(s) of the target of the run's objective."""
-        controller: Any = self.trial.recorded.run.agent.controller
-        target = _found(controller, "target")
-        if target is None:
-            raise UsageError(f"{config.algo}: has no target, whose density could be drawn")
-        return lambda belief, s: target.log_density(Params(belief=belief), s)
+    def _target(self) -> tuple[Any, float]:
+        """log phi(belief, s) of the method's target, and the share of the uniform density."""
+        recorded = self.trial.recorded
+        part: Any = recorded.run.agent.controller
+        part = getattr(part, "controller", part)  # inside its guard
+        part = getattr(part, "objective", part)
+        if not hasattr(part, "target"):
+            raise UsageError(f"algo={recorded.config.algo}: has no target that could be drawn")
+        density = part.target.log_density
+        return lambda belief, s: density(Params(belief=belief), s), getattr(part, "share", 0.0)
 
     def _outline(self) -> list[np.ndarray]:
         """Lines [k, 2] of p = 1/2 in the frame of the belief's map."""
@@ -186,8 +200,6 @@ class Drawn:
     def view(self, belief: Any, mark: int) -> View:
         """What to draw of the belief after `mark` decisions."""
         values = np.asarray(self._values(belief)).reshape(self._cells, -1)
-        if self._logarithm:
-            values = np.exp(values - values.max())
         trial = self.trial
         first = np.asarray(trial.learner.domain.of(trial.made.obs[:1]))
         path = np.concatenate([first, trial.s[:mark]])
@@ -205,12 +217,3 @@ class Drawn:
             turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
             result += [(edge - middle) @ turn + np.array([x, y]) for edge in self._edges]
         return result
-
-
-def _found(part: Any, name: str) -> Any:
-    """The first attribute `name` of a controller, or of the parts inside of it."""
-    for inner in ("controller", "objective"):
-        if hasattr(part, name):
-            break
-        part = getattr(part, inner, part)
-    return getattr(part, name, None)

@@ -27,7 +27,7 @@ class Film(NamedTuple):
     rate: float  # [1/s] in real time
     decisions: int  # T
     total: float  # undiscounted return
-    apart: float  # of the replayed observations from the recorded ones, at most
+    apart: float  # of the scene from the record, at most, in units of the observation
 
 
 def film(folder: Path, seed: int | None, steps: int, height: int, still: bool) -> Film:
@@ -78,7 +78,7 @@ def _painter(
         canvas = FigureCanvasAgg(Figure(figsize=(side / DPI, side / DPI), dpi=DPI))
         axes: Any = canvas.figure.add_axes((0.04, 0.12, 0.92, 0.8))
         panel = Panel(axes, drawn.low, drawn.high, true, drawn.limits(views), thick=1.5)
-        panel.name(drawn.names)
+        panel.name(drawn.outlines)
         legend_below(axes)
 
     def paint(number: int) -> np.ndarray:

@@ -176,7 +176,7 @@ class Agent:
         return AgentState(env, control, memory, learners, key), metrics
 
     def learn(self, state: AgentState, new: Transition, step: Array) -> AgentState:
-        """`state` after its learners learned from a recorded decision `new` [E, ...], as in `step`."""
+        """`state` after learning from a recorded decision `new` [E, ...], as `step` learns."""
         keys = jax.random.split(state.key, 3 + 2 * self.num_envs)
         params, memory = self.params(state), self.replay.add(state.memory, new)
         learners, _ = self._learn(state.learners, params, memory, new, step, keys[2])
