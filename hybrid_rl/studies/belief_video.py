@@ -15,7 +15,7 @@ from hybrid_rl.studies.recorded import read
 from hybrid_rl.studies.style import STYLE, legend_below
 
 FPS, MOST = 15.0, 200  # [1/s]; pictures of an episode at most
-DPI = 100
+SIDE = 4.8  # [in] of the panel, by which its letters are scaled
 
 
 class Film(NamedTuple):
@@ -75,8 +75,8 @@ def _painter(
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
-        canvas = FigureCanvasAgg(Figure(figsize=(side / DPI, side / DPI), dpi=DPI))
-        axes: Any = canvas.figure.add_axes((0.04, 0.12, 0.92, 0.8))
+        canvas = FigureCanvasAgg(Figure(figsize=(SIDE, SIDE), dpi=(side + 0.5) / SIDE))
+        axes: Any = canvas.figure.add_axes((0.04, 0.13, 0.92, 0.8))
         panel = Panel(axes, drawn.low, drawn.high, true, drawn.limits(views), thick=1.5)
         panel.name(drawn.outlines)
         legend_below(axes)
