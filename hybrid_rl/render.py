@@ -7,9 +7,11 @@
 `out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode.
 
 The episode is the first of the run's own evaluation: same key, no exploration. With task=T it is
-played by the task's expert, which is scripted. mode=training is the first episode of training, of
-a method that learns a belief over two coordinates, such as a map of contacts; at the right it shows
-what the belief had learned by then, and a .png is the picture of the end.
+played by the task's expert, which is scripted.
+
+mode=training is the first episode of training of a method that learns a belief over two
+coordinates, such as a map of contacts. A panel, as wide as the picture is high, shows what the
+belief had learned by then. A .png is the picture at the end.
 """
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """What the belief of one learner was at each time of its first episode of training.
 
-The recorded decisions go once more through the run's own learners, with the run's own keys, so that
-neither the controller nor the world is needed. The world is replayed from the recorded actions,
-for rendering only.
+The recorded decisions go once more through the run's own learners, with the run's own keys, without
+controller and world. Another device than that of the run rounds differently, which may change
+single moves of particles. The world is replayed from the recorded actions, for rendering only.
 """
 
 from collections.abc import Iterator

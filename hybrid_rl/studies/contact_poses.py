@@ -11,7 +11,7 @@ from hybrid_rl.studies.contact_maps_picture import marks_of
 from hybrid_rl.studies.contacts import GOOD, Trials, errors, found, good, trials
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.falls import wilson
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
+from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
 
 CELLS = (31, 31, 60)  # of x, y and the angle, in the Bayes filter
 KINDS = ("all", "contacts", "absences")
@@ -39,12 +39,12 @@ def poses(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
         first = found(is_good)
         right.plot(t, np.mean(first[:, None] <= np.arange(1, length + 1), 0), **line)
         numbers["methods"][run.label] = _reported(position, angle, is_good, first * dt, marks)
-    left.set(title="position error, quartiles", xlabel="Time [s]", yscale="log")
+    left.set(title="position error, median and quartiles", xlabel="Time [s]", yscale="log")
     left.set_ylabel("[m]")
-    middle.set(title="angle error, quartiles", xlabel="Time [s]", yscale="log")
+    middle.set(title="angle error, median and quartiles", xlabel="Time [s]", yscale="log")
     middle.set_ylabel("[rad]")
-    right.set(title=f"found: {GOOD[0]} m, {GOOD[1]} rad", xlabel="Time [s]", ylim=(0, 1))
-    legend_outside(left)
+    right.set(title=f"found to the end: {GOOD[0]} m, {GOOD[1]} rad", xlabel="Time [s]", ylim=(0, 1))
+    legend_below(left)
     return figure, numbers
 
 
