@@ -129,7 +129,7 @@ class SawyerProbe:
         return self._state(data, touch, {**state.info, "command": c})
 
     def _led(self, c: Array, tip: Array) -> Array:
-        """The command [4] in the workspace and near the tip [2], without velocity away from these."""
+        """The command [4] in the workspace, near the tip [2], without velocity away from both."""
         low, high = jnp.array(self.low) - EDGE, jnp.array(self.high) + EDGE
         inside = jnp.clip(c[:2], low, high)
         v = jnp.where(c[:2] == inside, c[2:], 0.0)
