@@ -8,11 +8,13 @@ view=map     figures 5-2, 5-5 a b, 5-6: maps of experiment=thesis/fig_5_2 or fig
              the first trial, and over time how many objects were touched, how much of their
              outlines, and intersection over union; map_out=FILE keeps the map of trial `trial`
 view=pose    figures 5-3, 5-4, 5-5 c d, 5-7: position and angle errors of experiment=thesis/fig_5_4
-             or fig_5_7 over time, and the share of trials within 3 cm and 0.1 rad to the end
+             or fig_5_7 over time, and the share of trials within 3 cm and 0.1 rad to the end; by
+             sign tests the others are compared with the first run, of the same seeds
 view=frames  figures 5-4, 5-6, 5-7: path and belief of trial `trial` of one run at `times`: maps by
              outline and probability, poses by particles and the density of the target
 view=absence claim on the lack of contact: entropy of the pose after all measurements, after the
-             contacts alone and after the others alone, by a Bayes filter on a grid
+             contacts alone and after the others alone, and the error of the mean pose, by the first
+             run's particles with `belief.kind=metropolis`
 
 IQM and 95% band over trials; shares with Wilson's 95% interval.
 """
@@ -46,7 +48,7 @@ def figure(
         "map": lambda: contact_maps_picture.maps(runs, times, trial, map_out),
         "pose": lambda: contact_poses.poses(runs, times),
         "frames": lambda: contact_frames.frames(runs, times, trial),
-        "absence": lambda: contact_poses.absence(runs),
+        "absence": lambda: contact_poses.absence(runs, times),
     }
     with matplotlib.rc_context(STYLE):
         figure, numbers = views[view]()

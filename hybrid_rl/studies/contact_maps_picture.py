@@ -7,8 +7,17 @@ import numpy as np
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.maps import learned
+from hybrid_rl.studies import false_contacts
 from hybrid_rl.studies.belief_panel import HALF, Panel, View, level
-from hybrid_rl.studies.contacts import Trials, decisions, distances, grid, quality, trials
+from hybrid_rl.studies.contacts import (
+    Trials,
+    decisions,
+    distances,
+    grid,
+    quality,
+    touched_all,
+    trials,
+)
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
 
@@ -49,7 +58,11 @@ def maps(pattern: str, times: str, trial: int, map_out: str) -> tuple[Any, dict[
     for i, run in enumerate(runs):
         f = decisions(run, fine)
         measured = quality(run, f, fine)
-        numbers["methods"][run.label] = _reported(measured)
+        numbers["methods"][run.label] = {
+            **_reported(measured),
+            **_speed(run, measured["iou"], np.array(fine) * dt),
+            "false": false_contacts.measures(run, f[:, -1]),
+        }
         for axes, mark in zip(panels[i], marks, strict=True):
             panel = _map(axes, run, f[0, fine.index(mark)], mark)
             axes.set_title(f"{mark * dt:g} s", fontsize=7, loc="left")
@@ -113,6 +126,25 @@ def _reported(measured: dict[str, np.ndarray]) -> dict[str, Any]:
     return result
 
 
+def _speed(run: Trials, iou: np.ndarray, times: np.ndarray) -> dict[str, Any]:
+    """Mean over time of iou [S, times], which is 0 at first; seconds until all are touched."""
+    shown = run.y[:, : round(times[-1] / run.world.spec.dt)]
+    area = np.trapezoid(np.pad(iou, ((0, 0), (1, 0))), np.pad(times, (1, 0)), axis=1)
+    mean = area[:, None] / times[-1]
+    low, high = band(mean)
+    seconds = touched_all(run._replace(s=run.s[:, : shown.shape[1]], y=shown))
+    known = np.where(np.isnan(seconds), np.inf, seconds)
+    median = float(np.median(known))
+    return {
+        "mean_iou": {"iqm": iqm(mean)[0], "low": low[0], "high": high[0], "each": mean[:, 0]},
+        "seconds_to_all": {
+            "median": median if np.isfinite(median) else None,
+            "trials": int(np.isfinite(known).sum()),
+            "each": [float(each) if np.isfinite(each) else None for each in known],
+        },
+    }
+
+
 def _save(run: Trials, f: np.ndarray, trial: int, out: str) -> None:
     """Write the map of one trial, f [S, GRID, GRID]."""
     if trial >= len(f):
@@ -134,6 +166,25 @@ def lines(numbers: dict[str, Any]) -> list[str]:
             f"[{one[name]['low'][-1]:.2f}, {one[name]['high'][-1]:.2f}]"
             for name in ("outline", "iou", "cells")
         ]
+        parts.append(f"its mean over time {one['mean_iou']['iqm']:.2f}")
+        if one["seconds_to_all"]["median"] is not None:
+            parts.append(f"all touched after {one['seconds_to_all']['median']:.0f} s")
         line = f"{label}, {plural(one['trials'], 'trial')} of {numbers['times'][-1]:g} s: "
         result.append(f"{line}{most:.0f} objects in {touched}, {', '.join(parts)}")
+        if one["false"]:
+            result.append(_of_false(label, one["false"]))
     return result
+
+
+def _of_false(label: str, one: dict[str, Any]) -> str:
+    """The line of a method's false contacts."""
+    words = [
+        f"{100 * one['wrong']['iqm']:.1f}% of readings wrong",
+        f"{100 * one['rejected']['iqm']:.0f}% of false contacts below p = 1/2 at the end",
+        *(
+            f"time near {what} {one[name]['iqm']:.2f} of the expected"
+            for name, what in (("returned", "them"), ("elsewhere", "other positions"))
+            if name in one
+        ),
+    ]
+    return f"{label}: {', '.join(words)}"

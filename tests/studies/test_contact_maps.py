@@ -53,7 +53,25 @@ def test_a_pose_is_found_where_it_stays_good() -> None:
     position = np.array([[0.5, 0.01, 0.5, 0.02, 0.01], [0.5] * 5, [0.01] * 5])
     angle = np.array([[0.01] * 5, [0.01] * 5, [0.01, 0.2, 0.01, 0.01, 0.01]])
     good = contacts.good(position, angle)
-    np.testing.assert_array_equal(contacts.found(good), [4, np.nan, 3])
+    np.testing.assert_array_equal(contacts.found(good), [4, np.inf, 3])
+    np.testing.assert_array_equal(contacts.first(good), [2, np.inf, 1])
+
+
+def test_a_robot_is_stuck_in_one_cell() -> None:
+    """The last 10 s of 20: at rest; half of them; fewer; a line through all cells."""
+    rest, line = np.full((200, 2), 0.55), np.linspace([0, 0.55], [2, 0.55], 200)
+    half = np.concatenate([line[:100], rest[:50], line[100:150]])
+    fewer = np.concatenate([line[:100], rest[:49], line[100:151]])
+    s = np.stack([rest, half, fewer, line])
+    np.testing.assert_array_equal(contacts.stuck(s, 0.1), [True, True, False, False])
+
+
+def test_the_sign_test_leaves_ties_out() -> None:
+    """P(0 or 5 of 5 coins) = 2 / 32; never is later than any time, and equal to never."""
+    one = np.array([1.0, 2, 3, 4, 5, np.inf, 7])
+    other = np.array([2.0, 3, 4, 5, np.inf, np.inf, 7])
+    assert contacts.sign_test(one, other) == {"sooner": 5, "later": 0, "p": pytest.approx(2 / 32)}
+    assert contacts.sign_test(other, other)["p"] == 1
 
 
 def draw(*arguments: str | Path) -> int:
@@ -87,6 +105,8 @@ def test_poses_of_a_small_run(
     numbers = json.loads(out.with_suffix(".json").read_text())
     (one,) = numbers["methods"].values()
     assert all(0 < error < 1.5 for error in one["position"]["median"])
+    assert one["first"]["never"] + sum(each is not None for each in one["first"]["each"]) == 2
+    assert len(one["truth_behind"]["each"]) == 2
     capfd.readouterr()
     assert draw("view=map", f"runs={run}") == 2
     assert "is no map of contacts" in only_line(capfd)
