@@ -112,10 +112,12 @@ def test_frames_have_the_errors_of_the_log(
 
 def test_a_film_has_evenly_spaced_pictures_and_the_last(contact_runs: Runs) -> None:
     """Of the panel: as large as the scene is high."""
-    assert belief_video._marks(600, still=False)[-3:] == [594, 597, 600]
-    assert belief_video._marks(7, still=False) == list(range(8))
-    film = belief_video.film(contact_runs["map"], SEED, 5, 64, still=False)
-    assert (film.decisions, len(film.poses), film.rate) == (5, 6, pytest.approx(10))
+    assert belief_video._marks(601, 200)[-3:] == [596, 600, 601]
+    assert belief_video._marks(7, 200) == list(range(8))
+    assert belief_video._marks(7, 1) == [7]
+    film = belief_video.film(contact_runs["map"], SEED, 5, 64, 200)
+    assert (film.decisions, len(film.poses)) == (5, 6)
+    assert film.speed == pytest.approx(0.1 * film.fps)
     pictures = [film.panel(i) for i in (0, 5, 0)]
     assert [picture.shape for picture in pictures] == [(64, 64, 3)] * 3
     assert (pictures[0] == pictures[2]).all()
