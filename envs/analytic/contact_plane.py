@@ -129,12 +129,16 @@ class ContactPlane:
         first = body.x, jnp.zeros((), bool)
         (x, touched), _ = jax.lax.scan(substep, first, None, length=SUBSTEPS)
         noise, drawing = jax.random.split(jax.random.wrap_key_data(body.noise))
-        false = self.false_contact * jnp.linalg.norm(u - body.u) / 2
-        wrong = jax.random.uniform(drawing) < jnp.where(touched, self.missed, false)
         touch = touched.astype(jnp.float32)
-        measured = jnp.where(wrong, 1 - touch, touch)
+        measured = self.measured(touch, u - body.u, drawing)
         measured = jnp.where(jnp.isfinite(x).all(), measured, jnp.nan)  # no contact hides a NaN
         return self._state(Body(x, u, pose, jax.random.key_data(noise)), touch, measured)
+
+    def measured(self, touch: Array, change: Array, key: Array) -> Array:
+        """y [] of the sensor for contact `touch` [], after this change [2] of the action."""
+        false = self.false_contact * jnp.linalg.norm(change) / 2
+        wrong = jax.random.uniform(key) < jnp.where(touch > 0, self.missed, false)
+        return jnp.where(wrong, 1 - touch, touch)
 
     def _pushed_out(self, x: Array, pose: Array) -> tuple[Array, Array]:
         """x [4] outside of the objects, without velocity into them; whether it was in contact."""

@@ -1,4 +1,4 @@
-"""Runs of contact_plane: the trials, and how good their maps and poses are.
+"""Runs in which a robot feels contact: the trials, and how good their maps and poses are.
 
 objects   touched: a twentieth of their outline lies within 5 cm of a contact
 outline   share of the outlines within 5 cm of a contact
@@ -9,6 +9,7 @@ first     time until a pose is good, found: until it stays good to the end
 stuck     half of the last 10 s in one cell of 10 cm
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,7 +23,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.maps.known import KnownMap
 from hybrid_rl.studies.recorded import Recorded, labels, matching, one_episode, read
 
-TASK = "contact_plane"
+TASKS = ("contact_plane", "sprk", "sawyer_probe")
 GRID = 128  # cells a side of a map
 CLOSE, TOUCHED = 0.05, 0.05  # [m] from a contact; share of an object's outline
 CELLS = 10  # a side, of the visited share
@@ -45,7 +46,7 @@ class Trials(NamedTuple):
 def trials(pattern: str, view: str) -> list[Trials]:
     """The trials of all runs that match."""
     folders = matching(pattern, view)
-    return [_of(read(path, TASK), label) for path, label in _named(folders)]
+    return [_of(read(path, *TASKS), label) for path, label in _named(folders)]
 
 
 def _named(folders: list[Path]) -> list[tuple[Path, str]]:
@@ -158,7 +159,7 @@ def touched_all(run: Trials) -> np.ndarray:
 def _outline(world: Any) -> tuple[np.ndarray, np.ndarray]:
     """Positions of contact [M, 2], and the object [M] that each belongs to."""
     outline = KnownMap(world).outline
-    shapes = [type(world)(**{**vars(world), "objects": (each,)}) for each in world.objects]
+    shapes = [replace(world, objects=(each,)) for each in world.objects]
     return outline, np.argmin([distances(shape, outline) for shape in shapes], 0)
 
 
