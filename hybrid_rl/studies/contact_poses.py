@@ -24,7 +24,7 @@ from hybrid_rl.studies.contacts import (
 )
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.falls import wilson
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
+from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
 
 KINDS = ("all", "contacts", "absences")
 AXES = ("x", "y", "angle")
@@ -57,12 +57,12 @@ def poses(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
             if i and run.recorded.run.seeds == runs[0].recorded.run.seeds:
                 one[name]["against_first_run"] = sign_test(each, rival[name])
         numbers["methods"][run.label] = one
-    words = ("position error, median and quartiles", "angle error, median and quartiles")
+    words = ("position error, quartiles", "angle error, quartiles")
     for axes, title, unit in zip(panels, words, ("[m]", "[rad]"), strict=False):
         axes.set(title=title, xlabel="Time [s]", ylabel=unit, yscale="log")
-    title = f"found to the end: {GOOD[0]} m, {GOOD[1]} rad"
+    title = f"share within {GOOD[0]} m, {GOOD[1]} rad"
     panels[2].set(title=title, xlabel="Time [s]", ylim=(0, 1))
-    legend_below(panels[0])
+    legend_outside(panels[0])
     return figure, numbers
 
 
