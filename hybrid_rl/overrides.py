@@ -32,6 +32,12 @@ def parse(texts: Iterable[str]) -> list[Override]:
     return [each for each in parsed if not each.key_or_group.startswith("hydra")]
 
 
+def of_job(hydra: Any) -> list[str]:
+    """The overrides of a job as typed, by Hydra's configuration; `a=${b}` stays as it is."""
+    texts: Any = OmegaConf.to_container(hydra.overrides.task, resolve=False)
+    return texts
+
+
 def given(texts: Iterable[str]) -> dict[str, str]:
     """Overrides as key -> value, as they were typed."""
     pairs = (text.lstrip("+~").partition("=") for text in texts)

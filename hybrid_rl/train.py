@@ -45,7 +45,7 @@ def train(config: DictConfig, given: Mapping[str, str] = launch.NOTHING) -> dict
 
 def _job(config: DictConfig) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds."""
-    given = overrides.given(HydraConfig.get().overrides.task)
+    given = overrides.given(overrides.of_job(HydraConfig.get()))
     summary = train(configuration.resolved(config), given)
     print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
     if summary["signal"] is not None:

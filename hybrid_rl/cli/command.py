@@ -51,7 +51,7 @@ def hydra_main(job: Callable[[DictConfig], Any]) -> None:
     from hydra.types import RunMode
 
     def checked(config: DictConfig) -> None:
-        typed = list(HydraConfig.get().overrides.task)
+        typed = overrides.of_job(HydraConfig.get())
         with as_typed(typed):
             overrides.refuse_new_keys(typed, HydraConfig.get().overrides.hydra)
             overrides.refuse_unused([config], typed, configuration.READ)

@@ -22,7 +22,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, watched
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import refuse_new_keys, refuse_unused
+from hybrid_rl.overrides import of_job, refuse_new_keys, refuse_unused
 from hybrid_rl.run.folder import made
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
@@ -39,7 +39,7 @@ class Task:
     def __call__(self, config: DictConfig) -> Result:
         """Run one job."""
         hydra = HydraConfig.get()
-        number, typed = int(hydra.job.num), list(hydra.overrides.task)
+        number, typed = int(hydra.job.num), of_job(hydra)
         print(f"job {number}: {self.labels[number]}", flush=True)
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result

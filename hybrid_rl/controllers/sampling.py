@@ -4,20 +4,34 @@ Stochastic hybrid learning (thesis Algorithm 3) with proposals from the policy; 
 learned model with proposals from noise. `execute` chooses the action from the weighted
 candidates: `mean` executes sum_k w_k v_k (the thesis); `sample` draws one of them, which keeps the
 policy's exploration in the data.
+
+An objective that is a sum over time weighs each decision of a candidate by the return from that
+decision on; any other objective weighs all of them by J (Williams et al. 2017).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, sampling
-from hybrid_rl.protocols import Model, Policy, Proposal, Staged
+from hybrid_rl.protocols import Model, Objective, Policy, Proposal
 from hybrid_rl.types import Params, Path, Spec
 
 EXECUTE = ("mean", "sample")
+ToGo = Callable[[Path], Array]  # path -> S [T+1], the return from each time on
+
+
+class SamplingState(NamedTuple):
+    """The planner's state between two decisions."""
+
+    plan: Array  # [T, m]
+    carries: Any  # [K, ...] of the proposal
+    u: Array  # [m] the previous action
+    memory: Any  # of the objective
 
 
 @dataclass(frozen=True)
@@ -30,7 +44,7 @@ class SamplingController:
     """
 
     model: Model
-    objective: Staged
+    objective: Objective
     proposal: Proposal
     policy: Policy | None = None  # only for metrics that compare it with the plan
     horizon: int = 5  # T [decisions]
@@ -57,28 +71,29 @@ class SamplingController:
                 "choose proposal=policy or proposal=noise, or false"
             )
 
-    def init(self, spec: Spec) -> tuple[Array, Any]:
-        """The plan [T, m] of `rest`, and the proposal's initial carries [K, ...]."""
+    def init(self, spec: Spec) -> SamplingState:
+        """The plan of `rest`, and the initial carries and memory."""
         quantiles = jnp.arange(self.samples) / self.samples
         carries = jax.vmap(lambda q: self.proposal.init(spec, q))(quantiles)
-        return jnp.full((self.horizon, spec.act), self.rest), carries
+        plan = jnp.full((self.horizon, spec.act), self.rest)
+        return SamplingState(plan, carries, jnp.zeros(spec.act), self.objective.init(spec))
 
     def act(
-        self, params: Params, state: tuple[Array, Any], obs: Array, key: Array
-    ) -> tuple[Array, tuple[Array, Any], dict[str, Array]]:
+        self, params: Params, state: SamplingState, obs: Array, key: Array
+    ) -> tuple[Array, SamplingState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
-        plan, carries = state
         rolling, choosing = jax.random.split(key)
         x = self.model.lift(params.model, obs)
+        to_go, memory, rolling = self._to_go(params, state, x, rolling)
         samples = sampling.imagine(
             lambda x, u: self.model.step(params.model, x, u),
             lambda *a: self.proposal(params, *a),
-            carries,
+            state.carries,
             x,
-            plan,
-            jax.random.normal(rolling, (self.samples, *plan.shape)),
+            state.plan,
+            jax.random.normal(rolling, (self.samples, *state.plan.shape)),
         )
-        returns = jax.vmap(lambda path: self.objective.reward_to_go(params, path))(samples.path)
+        returns = jax.vmap(to_go)(samples.path)
         w = sampling.weights(
             returns[:, :-1],
             self.temperature,
@@ -92,17 +107,33 @@ class SamplingController:
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
             "planner/planned_return": w[:, 0] @ returns[:, 0],
-            "planner/planned_reward": w[:, 0] @ self._rewards(params, samples.path),
-            **self._agreement(params, x, plan),
+            **self._planned_reward(params, w[:, 0], samples.path),
+            **self._agreement(params, x, plan, to_go),
         }
-        return action, (sampling.shift(plan, self.rest), carries), metrics
+        after = state._replace(plan=sampling.shift(plan, self.rest), u=action, memory=memory)
+        return action, after, metrics
 
-    def _rewards(self, params: Params, paths: Path) -> Array:
-        """Rewards [K] of the first decisions of paths x [K, T+1, n], u [K, T, m]."""
+    def _to_go(
+        self, params: Params, state: SamplingState, x: Array, key: Array
+    ) -> tuple[ToGo, Any, Array]:
+        """S of paths from x [n], the objective's memory, and a key for other uses."""
+        objective: Any = self.objective
+        if hasattr(objective, "reward_to_go"):
+            return lambda path: objective.reward_to_go(params, path), state.memory, key
+        key, preparing = jax.random.split(key)
+        value, memory = objective.prepare(params, state.memory, x, state.u, preparing)
+        return lambda path: jnp.full(len(path.x), value(path)), memory, key
+
+    def _planned_reward(self, params: Params, w: Array, paths: Path) -> dict[str, Array]:
+        """The mean reward of the first decisions of paths [K, ...] with weights w [K]."""
+        objective: Any = self.objective
+        if not hasattr(objective, "rewards"):
+            return {}
         first = Path(paths.x[:, :2], paths.u[:, :1])
-        return jax.vmap(lambda path: self.objective.rewards(params, path)[0])(first)
+        each = jax.vmap(lambda path: objective.rewards(params, path)[0])(first)
+        return {"planner/planned_reward": w @ each}
 
-    def _agreement(self, params: Params, x: Array, plan: Array) -> dict[str, Array]:
+    def _agreement(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """Metrics of the difference between the weighted mean and the policy's action.
 
         The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0.
@@ -118,7 +149,7 @@ class SamplingController:
             return policy.mean(params.policy, x)
 
         def value(path: Path) -> Array:
-            return self.objective.reward_to_go(params, path)[0]
+            return to_go(path)[0]
 
         insertion = adjoint.insertion_ahead(step, mean, value, x, plan[0], self.horizon)
         own = jnp.linalg.norm(mean(x))

@@ -42,6 +42,11 @@ class Box:
         return len(self.coordinates)
 
     @property
+    def sides(self) -> Array:
+        """Their lengths [v]."""
+        return jnp.array(self.high) - jnp.array(self.low)
+
+    @property
     def volume(self) -> float:
         """The product of its sides."""
         return prod(b - a for a, b in zip(self.low, self.high, strict=True))

@@ -5,7 +5,8 @@
     L_pi   = mean (alpha log pi(v|x) - min_i Q_i(x, v)),                             v ~ pi(x)
     L_a    = -log(alpha) mean (log pi(v|x) + target),     Q' <- (1 - tau) Q' + tau Q
 
-A time limit does not terminate the task: `truncated` is not used.
+With a `lookahead` the policy maximises the soft return of several decisions in a model. A time
+limit does not terminate the task: `truncated` is not used.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.protocols import Critic, LearnedPolicy, Model
+from hybrid_rl.protocols import Critic, LearnedPolicy, Model, PolicyReturn
 from hybrid_rl.types import Batch, Params, Spec
 
 
@@ -55,6 +56,8 @@ class SAC:
     tau: float = 0.005
     batch_size: int = 256
     updates: float = 1  # per decision
+    lookahead: PolicyReturn | None = None  # what the policy maximises; None: the critic
+    max_grad_norm: float | None = None  # of the policy's gradient; None: no limit
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
@@ -70,6 +73,10 @@ class SAC:
         for name in ("policy_learning_rate", "critic_learning_rate", "alpha"):
             if getattr(self, name) <= 0:
                 raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
+        if self.max_grad_norm is not None and not self.max_grad_norm > 0:
+            raise ValueError(
+                f"policy_learner.max_grad_norm={self.max_grad_norm}: must be above 0, or null"
+            )
 
     def init(self, key: Array, spec: Spec) -> SACState:
         """Initial parameters, optimisers and target. The key is consumed."""
@@ -96,10 +103,10 @@ class SAC:
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
         batch = lifted_batch(self.model, params.model, batch)
-        for_target, for_policy = jax.random.normal(key, (2, *batch.action.shape))
+        noise = jax.random.normal(key, (2, *batch.action.shape))
         alpha = jnp.exp(state.log_alpha)
         state = state.replace(policy=self.policy.observe(state.policy, batch.obs))
-        y = self._target(state, alpha, batch, for_target)
+        y = self._target(state, alpha, batch, noise[0])
 
         def critic_loss(critic: Any) -> tuple[Array, Array]:
             q = self.critic.all(critic, batch.obs, batch.action)
@@ -110,13 +117,9 @@ class SAC:
             self.critic_learning_rate, grads, state.critic_optimiser, state.critic
         )
 
-        def policy_loss(policy: Any) -> tuple[Array, Array]:
-            v, log_prob = self.policy.sample(policy, batch.obs, for_policy)
-            return jnp.mean(alpha * log_prob - self.critic.value(critic, batch.obs, v)), log_prob
-
-        (of_policy, log_prob), grads = jax.value_and_grad(policy_loss, has_aux=True)(state.policy)
-        policy, policy_optimiser = _adam(
-            self.policy_learning_rate, grads, state.policy_optimiser, state.policy
+        known = params._replace(critic=critic)
+        policy, policy_optimiser, (of_policy, log_prob, norm) = self._improved(
+            state, known, alpha, batch.obs, noise[1], key
         )
         entropy = -log_prob.mean()
         target_entropy = self.target_entropy
@@ -135,10 +138,41 @@ class SAC:
             "sac/alpha": alpha,
             "sac/entropy": entropy,
             "sac/q": q,
+            "sac/gradient_norm": norm,
         }
         return SACState(
             policy, critic, target, log_alpha, policy_optimiser, critic_optimiser, alpha_optimiser
         ), metrics
+
+    def _improved(
+        self, state: SACState, params: Params, alpha: Array, x: Array, noise: Array, key: Array
+    ) -> tuple[Any, Any, tuple[Array, Array, Array]]:
+        """Policy, optimiser, and loss [], log pi [B] and the gradient's norm [] at x [B, n]."""
+
+        def loss(policy: Any) -> tuple[Array, Array]:
+            known = params._replace(policy=policy)
+            value, log_prob = self._value(known, alpha, x, noise, key)
+            return -value.mean(), log_prob
+
+        (of_policy, log_prob), grads = jax.value_and_grad(loss, has_aux=True)(state.policy)
+        norm = optax.tree.norm(grads)
+        if self.max_grad_norm is not None:
+            shrunk = jnp.minimum(1.0, self.max_grad_norm / jnp.maximum(norm, 1e-12))
+            grads = jax.tree.map(lambda g: g * shrunk, grads)
+        rate = self.policy_learning_rate
+        policy, optimiser = _adam(rate, grads, state.policy_optimiser, state.policy)
+        return policy, optimiser, (of_policy, log_prob, norm)
+
+    def _value(
+        self, params: Params, alpha: Array, x: Array, noise: Array, key: Array
+    ) -> tuple[Array, Array]:
+        """The soft return [B] that the policy maximises from x [B, n], and log pi [B] there."""
+        if self.lookahead is not None:
+            ahead = jax.random.fold_in(key, 1)
+            m = noise.shape[-1]
+            return self.lookahead.value(params, alpha, self.discount, x, m, ahead)
+        v, log_prob = self.policy.sample(params.policy, x, noise)
+        return self.critic.value(params.critic, x, v) - alpha * log_prob, log_prob
 
     def _target(self, state: SACState, alpha: Array, batch: Batch, noise: Array) -> Array:
         """The target y [B], without gradient."""

@@ -7,6 +7,7 @@ from hybrid_rl.protocols.control import (
     Controller,
     LabelledTarget,
     Objective,
+    PathTarget,
     Proposal,
     Staged,
     Target,
@@ -38,7 +39,13 @@ from hybrid_rl.protocols.learned import (
     Uncertain,
     UnsquashedPolicy,
 )
-from hybrid_rl.protocols.learning import Demonstrations, LatestLearner, Learner, UniformLearner
+from hybrid_rl.protocols.learning import (
+    Demonstrations,
+    LatestLearner,
+    Learner,
+    PolicyReturn,
+    UniformLearner,
+)
 
 __all__ = [
     "AnalyticEnv",
@@ -62,7 +69,9 @@ __all__ = [
     "LinearModel",
     "Model",
     "Objective",
+    "PathTarget",
     "Policy",
+    "PolicyReturn",
     "Proposal",
     "Reward",
     "RewardedEnv",

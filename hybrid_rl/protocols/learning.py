@@ -14,6 +14,18 @@ class Demonstrations(Protocol):
         """All of them [N, ...], in order."""
 
 
+class PolicyReturn(Protocol):
+    """What a policy is improved for."""
+
+    def value(
+        self, params: Params, alpha: Array, discount: float, x: Array, m: int, key: Array
+    ) -> tuple[Array, Array]:
+        """The soft return [B] from x [B, n], and log pi [B] of its first action of size m.
+
+        Differentiable by `params.policy`. alpha [] is the temperature.
+        """
+
+
 class _Learner(Protocol):
     """What both kinds of learners have."""
 

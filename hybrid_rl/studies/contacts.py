@@ -5,6 +5,8 @@ outline   share of the outlines within 5 cm of a contact
 iou       intersection over union of p > 1/2, holes filled, and the positions d < r of contact
 cells     share of 10 x 10 free cells in which the path was
 position  distance [m] of the mean pose; angle: difference [rad]; good: below 3 cm and 0.1 rad
+first     time until a pose is good, found: until it stays good to the end
+stuck     half of the last 10 s in one cell of 10 cm
 """
 
 from dataclasses import replace
@@ -14,7 +16,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from scipy import ndimage
+from scipy import ndimage, stats
 
 from hybrid_rl.core import poses
 from hybrid_rl.errors import UsageError
@@ -26,6 +28,7 @@ GRID = 128  # cells a side of a map
 CLOSE, TOUCHED = 0.05, 0.05  # [m] from a contact; share of an object's outline
 CELLS = 10  # a side, of the visited share
 GOOD = 0.03, 0.1  # [m] and [rad] of a pose that is found
+CELL, LAST = 0.1, 10.0  # [m] of a cell and [s] at the end, of a robot that is stuck
 
 
 class Trials(NamedTuple):
@@ -115,11 +118,9 @@ def decisions(run: Trials, marks: list[int]) -> np.ndarray:
 
 def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarray]:
     """Measures [S, marks] of the maps f [S, marks, GRID, GRID] and of the paths so far."""
-    world, known = run.world, KnownMap(run.world)
+    world = run.world
     inside = distances(world, grid(world)) < world.radius
-    outline = known.outline
-    shapes = [replace(world, objects=(each,)) for each in world.objects]
-    owner = np.argmin([distances(shape, outline) for shape in shapes], 0)
+    outline, owner = _outline(world)
     result: dict[str, list[list[float]]] = {}
     for trial, maps in enumerate(f):
         row: dict[str, list[float]] = {}
@@ -127,7 +128,7 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
             s, y = run.s[trial, :count], run.y[trial, :count]
             apart = np.linalg.norm(outline[:, None] - s[y > 0.5][None], axis=-1)
             near = apart.min(1, initial=np.inf) < CLOSE
-            touched = [near[owner == i].mean() >= TOUCHED for i in range(len(shapes))]
+            touched = [near[owner == i].mean() >= TOUCHED for i in range(len(world.objects))]
             for name, value in {
                 "objects": float(sum(touched)),
                 "outline": float(near.mean()),
@@ -139,6 +140,27 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
         for name, values in row.items():
             result.setdefault(name, []).append(values)
     return {name: np.array(values) for name, values in result.items()}
+
+
+def touched_all(run: Trials) -> np.ndarray:
+    """Time [S] [s] at which every object was touched; NaN if one never was."""
+    outline, owner = _outline(run.world)
+    result = []
+    for s, y in zip(run.s, run.y, strict=True):
+        when = np.flatnonzero(y > 0.5)
+        near = np.linalg.norm(outline[:, None] - s[when][None], axis=-1) < CLOSE
+        first = np.where(near, when[None] + 1.0, np.inf).min(1, initial=np.inf)  # of each point
+        each = [np.sort(first[owner == i]) for i in range(len(run.world.objects))]
+        last = max(times[int(np.ceil(TOUCHED * len(times))) - 1] for times in each)
+        result.append(last * run.world.spec.dt if np.isfinite(last) else np.nan)
+    return np.array(result)
+
+
+def _outline(world: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Positions of contact [M, 2], and the object [M] that each belongs to."""
+    outline = KnownMap(world).outline
+    shapes = [replace(world, objects=(each,)) for each in world.objects]
+    return outline, np.argmin([distances(shape, outline) for shape in shapes], 0)
 
 
 def _iou(a: Any, b: Any) -> float:
@@ -180,8 +202,25 @@ def good(position: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return (position < GOOD[0]) & (angle < GOOD[1])
 
 
+def first(good: np.ndarray) -> np.ndarray:
+    """Decisions [S] until good [S, T] first holds; infinite if never."""
+    return np.where(good.any(1), good.argmax(1) + 1.0, np.inf)
+
+
 def found(good: np.ndarray) -> np.ndarray:
-    """Decisions [S] until good [S, T] first holds for the rest of the trial; NaN if never."""
-    lasting = np.flip(np.cumprod(np.flip(good, 1), 1), 1).astype(bool)
-    first = lasting.argmax(1).astype(float) + 1
-    return np.where(lasting.any(1), first, np.nan)
+    """Decisions [S] until good [S, T] first holds for the rest of the trial; infinite if never."""
+    return first(np.flip(np.cumprod(np.flip(good, 1), 1), 1).astype(bool))
+
+
+def stuck(s: np.ndarray, dt: float) -> np.ndarray:
+    """Whether [S] half of the last positions of paths s [S, T, 2] lie in one cell."""
+    last = np.floor(s[:, -round(LAST / dt) :] / CELL).astype(int)
+    most = [np.unique(path, axis=0, return_counts=True)[1].max() for path in last]
+    return np.array(most) >= last.shape[1] / 2
+
+
+def sign_test(one: np.ndarray, other: np.ndarray) -> dict[str, float]:
+    """Trials [S] in which `one` is sooner or later than `other`, and the p-value of both sides."""
+    sooner, later = int((one < other).sum()), int((one > other).sum())
+    p = stats.binomtest(sooner, sooner + later).pvalue if sooner + later else 1.0
+    return {"sooner": sooner, "later": later, "p": float(p)}

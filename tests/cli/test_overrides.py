@@ -78,3 +78,9 @@ def test_in_a_sweep_one_method_that_uses_a_key_is_enough():
         )
         with pytest.raises(config.UsageError, match="sac, hybrid_stochastic do not use it"):
             overrides.refuse_unused(two, ["adjoint_planner.horizon=7,8"], config.READ)
+
+
+def test_an_override_by_another_key_stays_as_typed():
+    task = ["belief.part=${chosen}", "task=pendulum"]
+    hydra = OmegaConf.create({"chosen": {"a": 1}, "overrides": {"task": task}})
+    assert overrides.of_job(hydra) == task

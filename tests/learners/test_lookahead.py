@@ -1,0 +1,123 @@
+"""The soft return over several decisions, against a loop in NumPy and the adjoint core."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.core import adjoint
+from hybrid_rl.learners.lookahead import Lookahead
+from hybrid_rl.types import Params, Path
+
+A = np.array([[0.9, 0.2], [-0.1, 0.8]], np.float32)
+B = np.array([[0.1], [0.7]], np.float32)
+DISCOUNT, ALPHA = 0.9, 0.2
+
+
+@dataclass(frozen=True)
+class Line:
+    """Linear dynamics and policy, quadratic reward and critic."""
+
+    noise: float = 0.1
+
+    def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """A x + B u and noise."""
+        return x @ A.T + u @ B.T + self.noise * noise
+
+    def outcome(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
+        """Reward, and a chance to end that grows with x[0]."""
+        return -(x @ x) - 0.1 * u @ u, x[0] - 2
+
+    def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
+        """K x and noise."""
+        return x @ params.T + 0.3 * noise, -0.5 * jnp.sum(noise**2, -1) + x[..., 0]
+
+    def value(self, params: Any, x: Array, u: Array) -> Array:
+        """Q."""
+        return -2 * jnp.sum(x**2, -1) - 0.5 * jnp.sum(u**2, -1)
+
+
+PART: Any = Line()
+GAIN = jnp.array([[-0.3, -0.4]])
+PARAMS = Params(model=None, reward=None, critic=None, policy=GAIN)
+X = jax.random.normal(jax.random.key(0), (4, 2))
+KEY = jax.random.key(1)
+
+
+def looped(gain: np.ndarray, steps: int) -> np.ndarray:
+    """R [4] by a loop in float64."""
+    acting, moving, _ = jax.random.split(KEY, 3)
+    for_policy = np.asarray(jax.random.normal(acting, (steps + 1, 4, 1)), np.float64)
+    for_model = np.asarray(jax.random.normal(moving, (steps, 4, 2)), np.float64)
+    x, weight, total = np.asarray(X, np.float64), np.ones(4), np.zeros(4)
+    for t in range(steps + 1):
+        u = x @ gain.T + 0.3 * for_policy[t]
+        log_prob = -0.5 * (for_policy[t] ** 2).sum(-1) + x[:, 0]
+        if t == steps:
+            last = -2 * (x**2).sum(-1) - 0.5 * (u**2).sum(-1)
+            return total + weight * (last - ALPHA * log_prob)
+        total = total + weight * (-(x**2).sum(-1) - 0.1 * (u**2).sum(-1) - ALPHA * log_prob)
+        weight = weight * DISCOUNT / (1 + np.exp(x[:, 0] - 2))
+        x = x @ A.T + u @ B.T + 0.1 * for_model[t]
+    raise AssertionError
+
+
+def returned(gain: Array, steps: int, alpha: float = ALPHA, part: Any = PART) -> Array:
+    """R [4] of the part."""
+    ahead = Lookahead(part, part, part, part, steps=steps)
+    params = PARAMS._replace(policy=gain)
+    return ahead.value(params, jnp.float32(alpha), DISCOUNT, X, 1, KEY)[0]
+
+
+@pytest.mark.parametrize("steps", [1, 3])
+def test_the_return_and_its_slope_are_those_of_a_loop(steps: int) -> None:
+    """R, and its gradient by central differences."""
+    gain = np.asarray(GAIN, np.float64)
+    np.testing.assert_allclose(returned(GAIN, steps), looped(gain, steps), rtol=1e-5)
+    slope = jax.grad(lambda k: returned(k, steps).sum())(GAIN)
+    for i in range(2):
+        h = np.eye(1, 2, i) * 1e-6
+        difference = looped(gain + h, steps).sum() - looped(gain - h, steps).sum()
+        assert float(slope[0, i]) == pytest.approx(difference / 2e-6, rel=1e-4)
+
+
+def test_the_costate_gives_the_same_gradient() -> None:
+    """dR/dK = sum_t g_t x_t' of the adjoint core, without noise, temperature and ends."""
+
+    @dataclass(frozen=True)
+    class Plain(Line):
+        def outcome(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
+            return super().outcome(params, x, u)[0], -jnp.inf
+
+        def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
+            return x @ params.T, jnp.zeros(x.shape[:-1])
+
+    steps, part = 3, Plain(noise=0.0)
+    slope = jax.grad(lambda k: returned(k, steps, 0.0, part).sum())(GAIN)
+    weights = DISCOUNT ** jnp.arange(steps + 1)
+
+    def value(path: Path) -> Array:
+        x, u = path.x[:-1], path.u
+        rewards = -jnp.sum(x**2, -1) - 0.1 * jnp.sum(u**2, -1)
+        last = part.value(None, x[-1], u[-1])
+        return weights[:-1] @ rewards[:-1] + weights[-1] * last
+
+    def step(x: Array, u: Array) -> Array:
+        return A @ x + B @ u
+
+    def gradient(x: Array) -> Array:
+        path = adjoint.roll(step, lambda x: GAIN @ x, x, jnp.zeros((steps + 1, 1)))
+        found = adjoint.adjoint(step, lambda x: GAIN @ x, value, path)
+        return found.gradient.T @ path.x[:-1]
+
+    np.testing.assert_allclose(slope, jax.vmap(gradient)(X).sum(0), rtol=1e-4)
+
+
+def test_steps_must_be_positive() -> None:
+    """Zero is the critic alone: no lookahead."""
+    with pytest.raises(ValueError, match=r"lookahead\.steps=0"):
+        Lookahead(PART, PART, PART, PART, steps=0)
