@@ -4,8 +4,8 @@
     twist = v_c + k (p_c - p)                   of the tip, by damped least squares
     r = y: whether the force between rod and objects was above 0, 0 or 1
 
-o = (p, v) [4]: position [m] and velocity [m/s] of the rod's tip in the plane; height and
-orientation of the rod are held. The command leads the tip by `lead` at most and then loses its
+o = (p, v) [4]: position [m] and velocity [m/s] of the rod's tip in the plane; the rod is held
+upright, at a constant height. The command leads the tip by `lead` at most and then loses its
 velocity away from the tip, so that the arm presses gently; 5 cm outside of the box [low, high] it
 stops. A decision is 0.1 s in ten commands of two physics steps. Objects do not move; they are
 rounded boxes in a pose theta, as in `contact_plane`. Start: at rest, uniform in the box, clear of
@@ -27,7 +27,13 @@ from jax import Array
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
-from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards
+from hybrid_rl.envs.mujoco.kinematics import (
+    Chain,
+    damped_inverse,
+    quat_multiply,
+    rotate,
+    rotate_towards,
+)
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.sawyer_push import HOME
 from hybrid_rl.types import EnvState, Spec
@@ -61,8 +67,8 @@ class SawyerProbe:
     high: tuple[float, ...] = (0.75, 0.25)
     theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
     lead: float = 0.01  # [m] of the command before the tip
-    track: float = 10.0  # [1/s] k
-    hold: float = 5.0  # [1/s] gain on height and orientation
+    track: float = 5.0  # [1/s] k
+    hold: float = 10.0  # [1/s] gain on height and orientation
     posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
     damping: float = 0.02  # of the least squares, for [m] and [rad]
     radius: ClassVar[float] = 0.012  # [m] of the rod
@@ -143,8 +149,8 @@ class SawyerProbe:
         self, qpos: Array, tip: Array, rotation: Array, jacobian: Array, velocity: Array
     ) -> Array:
         """Joint velocities [7] [rad/s] that move the tip by `velocity` [2] [m/s]."""
-        home, upright = TIP.constant_pose(HOME)
-        turn = rotate_towards(rotation, jnp.asarray(upright), self.hold)
+        home, leaning = TIP.constant_pose(HOME)
+        turn = rotate_towards(rotation, _upright(jnp.asarray(leaning)), self.hold)
         rise = self.hold * (jnp.asarray(home[2:]) - tip[2:])
         back = self.posture * (jnp.asarray(HOME, jnp.float32) - qpos)
         twist = jnp.concatenate([velocity, rise, turn])
@@ -180,3 +186,10 @@ class SawyerProbe:
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [7] for rendering, at which the tip is where it was observed."""
         return self._reached(state.obs[:2], state.data.qpos)
+
+
+def _upright(rotation: Array) -> Array:
+    """The rotation [4] of the tip next to `rotation` [4] in which the rod points down."""
+    axis = rotate(rotation, jnp.array([0.0, 0.0, 1.0]))
+    swing = jnp.stack([1 - axis[2], -axis[1], axis[0], jnp.zeros(())])  # axis x down
+    return quat_multiply(swing / jnp.linalg.norm(swing), rotation)

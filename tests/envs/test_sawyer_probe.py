@@ -11,6 +11,7 @@ import pytest
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.kinematics import rotate
 from hybrid_rl.envs.sawyer_probe import HOME, TIP, SawyerProbe
 
 POSE = (0.55, 0.02, 0.4)
@@ -45,7 +46,7 @@ def test_it_starts_where_the_contact_plane_does(paths) -> None:
 
 
 def test_the_tip_moves_as_the_free_point_mass_until_it_touches(paths) -> None:
-    """Each decision within 1 mm and 2 cm/s of the exact integral, while the rod is held upright."""
+    """Each decision within 2 mm and 2 cm/s of the exact integral, while the rod is held upright."""
     first, actions, states = paths
     free = PointMass(WORLD.acceleration, WORLD.drag)
     before = jnp.concatenate([first.obs[:, None], states.obs[:, :-1]], 1)
@@ -55,10 +56,11 @@ def test_the_tip_moves_as_the_free_point_mass_until_it_touches(paths) -> None:
     apart = inside & (np.cumsum(np.asarray(states.reward), 1) == 0)
     assert apart.sum() > 20
     error = np.abs(np.asarray(states.obs - want))[apart]
-    assert (error.max(0) < [1e-3, 1e-3, 2e-2, 2e-2]).all()
+    assert (error.max(0) < [2e-3, 2e-3, 2e-2, 2e-2]).all()
     tip, rotation, _ = jax.vmap(jax.vmap(TIP.pose))(states.data.qpos)
     assert np.ptp(np.asarray(tip[..., 2])) < 5e-3
-    assert np.abs(np.asarray(rotation)[apart] - TIP.constant_pose(HOME)[1][None]).max() < 0.01
+    down = jax.vmap(rotate, (0, None))(rotation[apart], jnp.array([0.0, 0.0, 1.0]))
+    assert float(down[:, 2].max()) < -np.cos(0.02)  # [rad]
 
 
 def test_what_it_feels_is_a_rod_at_an_object(paths) -> None:
@@ -91,7 +93,7 @@ def test_the_objects_of_the_model_are_those_of_the_distance() -> None:
         got = min(mujoco.mj_geomDistance(model, data, rod, i, 9.0, None) for i in parts)
         want = float(WORLD.distance(jnp.asarray(s, jnp.float32), jnp.array(POSE))) - WORLD.radius
         if want > 0:
-            assert got == pytest.approx(want, abs=4e-3)  # the rod leans by up to 3.6 degrees
+            assert got == pytest.approx(want, abs=5e-4)
 
 
 def test_it_is_drawn_where_the_tip_was_observed(paths) -> None:
