@@ -191,6 +191,14 @@ class PoseParticles:
         p = jax.vmap(self._chance, (0, None))(self._subset(state), s)
         return jnp.maximum(_entropy(p.mean()) - _entropy(p).mean(), 0.0)
 
+    def check(self, measurements: int) -> None:
+        """Raise ValueError if so many measurements do not fit into the memory."""
+        if measurements > self.capacity:
+            raise ValueError(
+                f"belief.capacity={self.capacity}: an episode has {measurements} measurements, and "
+                "poses need all of them"
+            )
+
     def informed(self, state: Particles) -> Array:
         """[] bool: whether any measurement was 1."""
         return jnp.any((state.y > 0.5) & (jnp.arange(self.capacity) < state.count))

@@ -7,6 +7,7 @@ cells     share of 10 x 10 free cells in which the path was
 position  distance [m] of the mean pose; angle: difference [rad]; good: below 3 cm and 0.1 rad
 """
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -155,7 +156,7 @@ def touched_all(run: Trials) -> np.ndarray:
 def _outline(world: Any) -> tuple[np.ndarray, np.ndarray]:
     """Positions of contact [M, 2], and the object [M] that each belongs to."""
     outline = KnownMap(world).outline
-    shapes = [type(world)(**{**vars(world), "objects": (each,)}) for each in world.objects]
+    shapes = [replace(world, objects=(each,)) for each in world.objects]
     return outline, np.argmin([distances(shape, outline) for shape in shapes], 0)
 
 
