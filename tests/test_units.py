@@ -76,10 +76,10 @@ def test_particles_in_other_units_are_the_same() -> None:
     y[5] = 1.0
 
     def particles(factor: float) -> tuple[np.ndarray, np.ndarray]:
-        world = ContactPlane(
+        world: Any = ContactPlane(
             scaled(factor), radius=0.03 * factor, low=(0.0, 0.0), high=(1.2 * factor, factor)
         )
-        known = KnownMap(world, width=0.02 * factor)
+        known: Any = KnownMap(world, width=0.02 * factor)
         box = Box((0, 1), world.low, world.high)
         belief = PoseParticles(
             known, box, particles=40, capacity=12, every=6, length=0.3 * factor, subset=8

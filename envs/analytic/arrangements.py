@@ -4,7 +4,7 @@
     half length 0.10 to 0.15 m and half width 0.03 m, with corners of radius 0.01 m, at any angle
 
 An object is drawn again unless it lies more than 0.1 m from the walls and from all others; after
-100 refusals the arrangement begins anew. The rule and its numbers are our choice.
+100 refusals the arrangement begins again. The rule and its numbers are our choice.
 """
 
 import numpy as np

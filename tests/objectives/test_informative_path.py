@@ -96,7 +96,7 @@ def test_it_is_submodular_and_monotone() -> None:
 
 def test_the_sampling_planner_goes_where_the_information_is() -> None:
     """An objective that is no sum over time weighs candidates as a whole."""
-    world = PointMass()
+    world: Any = PointMass()
     controller = SamplingController(
         Exact(world),
         replace(OBJECTIVE, barrier=0.0),

@@ -17,6 +17,8 @@ from hybrid_rl.studies import contact_maps_picture, contacts, false_contacts
 
 WORLD = ContactPlane(objects=((0.3, 0.5, 0, 0.1, 0.1, 0.1), (0.75, 0.5, 0, 0.1, 0.1, 0.1)))
 
+NO_RUN: Any = None
+
 
 def trials(s: np.ndarray, y: np.ndarray) -> Any:
     """Trials with these positions [S, T, 2] and measurements [S, T]."""
@@ -54,7 +56,7 @@ def test_time_to_touch_all_objects_and_mean_over_time() -> None:
     first = np.array([0.3, 0.5]) + 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
     second = np.array([0.75, 0.5]) - 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
     s = np.stack([np.concatenate([first, first, second]), np.concatenate([first] * 3)])
-    run = contacts.Trials("", None, WORLD, s[:, 0], s.astype(np.float32), np.ones((2, 30)), {})
+    run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s.astype(np.float32), np.ones((2, 30)), {})
     seconds = contacts.touched_all(run)
     assert seconds[0] == pytest.approx(2.1, abs=0.15)
     assert np.isnan(seconds[1])
@@ -80,7 +82,7 @@ def test_false_contacts_by_hand() -> None:
     s = np.tile(np.linspace([0.05, 0.05], [0.95, 0.05], 40)[None], (2, 1, 1)).astype(np.float32)
     y, touch = np.zeros((2, 40)), np.zeros((2, 40))
     y[0, 4] = y[0, 35] = touch[1, 7] = 1
-    run = contacts.Trials("", None, WORLD, s[:, 0], s, y, {"world/touch": touch})
+    run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s, y, {"world/touch": touch})
     f = np.full((2, contacts.GRID, contacts.GRID), -1.0)
     f[:, : contacts.GRID // 2] = 1.0
     got = false_contacts.measures(run, f)
