@@ -1,12 +1,17 @@
 """A video of one episode of a trained run, without a display.
 
     python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
+    python -m hybrid_rl.render run=DIR mode=training [seed=] [out=X.mp4]
     python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
 `out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode.
 
 The episode is the first of the run's own evaluation: same key, no exploration. With task=T it is
 played by the task's expert, which is scripted.
+
+mode=training is the first episode of training of a method that learns a belief over two
+coordinates, such as a map of contacts. A panel, as wide as the picture is high, shows what the
+belief had learned by then. A .png is the picture at the end.
 """
 
 if __name__ == "__main__":
@@ -29,13 +34,14 @@ ARGUMENTS = (
     Argument("run", "", "folder of a trained run"),
     Argument("task", "", "instead: a task with a scripted expert"),
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
-    Argument("mode", "", "of run=DIR: full, policy or planner; empty: full"),
+    Argument("mode", "", "of run=DIR: full, policy, planner or training; empty: full"),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
     Argument("episode_steps", 0, "decisions at most; 0: the task's limit", whole()),
     Argument("width", 640, "of the picture, in pixels", whole(even=True)),
     Argument("height", 480, "of the picture, in pixels", whole(even=True)),
 )
 GROUPS = {name: f"with task=T: a key of its {name}" for name in ("env", "episode", "expert")}
+FAR = 0.01  # of an observation in a replayed scene; more is reported
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
 
 
@@ -118,6 +124,23 @@ def _check(check: Callable[..., None], *values: Any) -> None:
         raise UsageError(str(error)) from error
 
 
+def _training(
+    folder: Path, seed: int | None, steps: int, out: Path, width: int, height: int
+) -> None:
+    """Draw the first episode of training, with the belief at the right."""
+    from hybrid_rl.envs.mujoco.offscreen import check_drawable
+    from hybrid_rl.run.drawing import draw
+    from hybrid_rl.studies.belief_video import FPS, film
+
+    shown = film(folder, seed, steps, height, out.suffix == ".png")
+    _check(check_drawable, shown.world)
+    draw(shown.world.scene(), shown.poses, out, FPS, width, height, shown.panel)
+    speed = "" if out.suffix == ".png" else f", {FPS / shown.rate:.2g} times real time"
+    print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
+    if shown.apart > FAR:
+        print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")
+
+
 def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
@@ -141,6 +164,9 @@ def main() -> None:
     offscreen.backend()  # raises before minutes of work
     _check(offscreen.check_size, width, height)
 
+    if given["mode"] == "training":
+        _training(Path(given["run"]), seed, steps, out, width, height)
+        return
     world, by, shown = _shown(given, changes, seed, steps)
     rate = 1 / world.spec.dt
     stride = int(np.ceil(rate / FASTEST))

@@ -31,7 +31,8 @@ for name, value in SETTINGS.items():
     os.environ.setdefault(name, value)
 
 SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
-    f"{task}-mjx" for task in ("hopper", "ant", "panda_stack", "sawyer_push", "sawyer_torque")
+    f"{task}-mjx"
+    for task in ("hopper", "ant", "panda_stack", "sawyer_push", "sawyer_torque", "sprk")
 ]
 
 

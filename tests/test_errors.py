@@ -178,6 +178,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("demonstrate run={trained} out=file.csv", 2, "out=file.csv: must end in .npz"),
     ("render run=nowhere", 2, "run=nowhere: no run folder there"),
     ("render run={trained} out=film.avi", 2, "out=film.avi: must end in .mp4, .gif, .png"),
+    ("render run={trained} mode=training", 2, "learns no belief over two coordinates, which"),
     ("figures runs=nowhere/*", 2, "runs=nowhere/*: no run there"),
     ("figures runs={trained} metric=train/reward", 2, "metric=train/reward: not in these runs"),
     ("figures runs={trained} out=curve.txt", 2, "out=curve.txt: must end in .png"),

@@ -147,12 +147,16 @@ class ContactPlane:
         first = body.x, jnp.zeros((), bool)
         (x, touched), _ = jax.lax.scan(substep, first, None, length=SUBSTEPS)
         noise, drawing = jax.random.split(jax.random.wrap_key_data(body.noise))
-        false = self.false_contact * jnp.linalg.norm(u - body.u) / 2
-        wrong = jax.random.uniform(drawing) < jnp.where(touched, self.missed, false)
         touch = touched.astype(jnp.float32)
-        measured = jnp.where(wrong, 1 - touch, touch)
+        measured = self.measured(touch, u - body.u, drawing)
         measured = jnp.where(jnp.isfinite(x).all(), measured, jnp.nan)  # no contact hides a NaN
         return self._state(Body(x, u, pose, jax.random.key_data(noise)), touch, measured)
+
+    def measured(self, touch: Array, change: Array, key: Array) -> Array:
+        """y [] of the sensor for contact `touch` [], after this change [2] of the action."""
+        false = self.false_contact * jnp.linalg.norm(change) / 2
+        wrong = jax.random.uniform(key) < jnp.where(touch > 0, self.missed, false)
+        return jnp.where(wrong, 1 - touch, touch)
 
     def _pushed_out(self, x: Array, pose: Array) -> tuple[Array, Array]:
         """x [4] outside of the objects, without velocity into them; whether it was in contact."""
@@ -187,7 +191,7 @@ class ContactPlane:
 
     def pose(self, state: EnvState) -> Array:
         """theta and the position of the ball, qpos [5], for rendering."""
-        return jnp.concatenate([state.data.pose, state.data.x[:2]])
+        return jnp.concatenate([state.data.pose, state.obs[:2]])
 
 
 def turned(s: Array, angle: Array) -> Array:
@@ -227,9 +231,16 @@ def _geom(shape: tuple[float, ...], x: float, y: float) -> str:
     """MJCF of a rounded box, 6 cm high, relative to the middle (x, y) of the plane."""
     cx, cy, angle, half_x, half_y, rounding = shape
     parts = [(half_x, half_y - rounding), (half_x - rounding, half_y)]
-    boxes = [(0.0, 0.0, f'type="box" size="{a:g} {b:g} 0.03"') for a, b in parts if min(a, b) > 0]
+    heights = 0.03, 0.0297, 0.0294  # different, since coinciding faces flicker
+    boxes = [
+        (0.0, 0.0, f'type="box" size="{a:g} {b:g} {h:g}"')
+        for (a, b), h in zip(parts, heights, strict=False)
+        if min(a, b) > 0
+    ]
     corners = {(i * (half_x - rounding), j * (half_y - rounding)) for i in (-1, 1) for j in (-1, 1)}
-    discs = [(a, b, f'type="cylinder" size="{rounding:g} 0.03"') for a, b in sorted(corners)]
+    discs = [
+        (a, b, f'type="cylinder" size="{rounding:g} {heights[2]:g}"') for a, b in sorted(corners)
+    ]
     cos, sin = math.cos(angle), math.sin(angle)
     return "".join(
         f'<geom pos="{cx - x + cos * a - sin * b:g} {cy - y + sin * a + cos * b:g} 0.03" '

@@ -1,6 +1,8 @@
-"""MuJoCo models by file name: XML text and compiled model, both cached.
+"""MuJoCo models by name: XML text and compiled model, both cached.
 
+    sawyer_torque.xml                                              a file
     sawyer_torque.xml?joint.j0.damping=10.0?geom.rod.mass=0.55     a file with other values
+    <mujoco> ... </mujoco>                                         MJCF text is its own name
 
 Source: the MJCF reference of MuJoCo, "XML Reference".
 """
@@ -30,7 +32,7 @@ def path(asset: str) -> Path:
 
 @cache
 def text(asset: str) -> str:
-    """The MJCF text of `asset` with its includes expanded."""
+    """The MJCF text of the file `asset` with its includes expanded."""
     plain = path(asset).read_text(encoding="utf-8")
     if "<include" not in plain:
         return plain
@@ -54,12 +56,15 @@ def load(asset: str) -> mujoco.MjModel:
     Raises:
         ValueError: for a model with automatic resets.
     """
-    file, *values = asset.split("?")
-    spec = mujoco.MjSpec.from_file(str(path(file)))
-    for change in values:
-        key, _, value = change.partition("=")
-        _set(spec, key, float(value))
-    model = spec.compile()
+    if asset.startswith("<"):
+        model = mujoco.MjModel.from_xml_string(asset)
+    else:
+        file, *values = asset.split("?")
+        spec = mujoco.MjSpec.from_file(str(path(file)))
+        for change in values:
+            key, _, value = change.partition("=")
+            _set(spec, key, float(value))
+        model = spec.compile()
     if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
         raise ValueError(
             f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '

@@ -83,7 +83,7 @@ def resolve(implementation: str, worlds: int | None = None) -> str:
 class Physics:
     """Steps the model `asset`. Hashable and compared by value; `mjcf` caches the models."""
 
-    asset: str  # file in assets/, or an absolute path
+    asset: str  # file in assets/, an absolute path, or MJCF text
     implementation: str = "auto"
     threads: int = 0  # of native; 0: one per core
 

@@ -2,9 +2,14 @@
 
     log w_i += log p(y | s, theta_i),   p(1 | s, theta) = map(s~),   s~ = R(a)' (s - t) + c
 
-If the effective number falls below N/2, particles are resampled and moved by Metropolis steps that
-compare the likelihood of all measurements, so that the posterior is exact: the objects rest
-(iterated batch importance sampling, Chopin 2002). A measurement at s informs by
+If the effective number falls below N/2, particles are resampled and made to differ by `kind`:
+
+    metropolis  steps against all measurements, among them leaps onto the contact manifold: exact
+    local       the same steps without leaps
+    manifold    the manifold particle filter, after each contact
+    jitter      noise: a plain filter
+
+See core.rejuvenation. A measurement at s informs by
 
     trace   E |dp/dtheta|^2 / (p (1 - p)),  angles in units of 1 / rho
     det     the determinant of E [dp/dtheta dp/dtheta' / (p (1 - p))]
@@ -20,12 +25,13 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import poses, resampling
+from hybrid_rl.core import poses, rejuvenation, resampling
 from hybrid_rl.core.branching import when_any
 from hybrid_rl.core.domain import Box
 from hybrid_rl.protocols import ContactMap
 from hybrid_rl.types import Spec
 
+KINDS = ("metropolis", "local", "manifold", "jitter")
 MEASURES = ("trace", "det", "mutual")
 
 
@@ -38,6 +44,8 @@ class Particles(NamedTuple):
     s: Array  # [C, 2]
     y: Array  # [C]
     count: Array  # [] measurements
+    touched: Array  # [] bool: the last measurement was new, and a contact
+    log_z: Array  # [] log p(all measurements)
     accepted: Array  # [] share of the last moves
 
 
@@ -48,7 +56,8 @@ class PoseParticles:
     A full memory takes no more measurements (`belief/full` is 1).
 
     Raises:
-        ValueError: for numbers out of range, an unknown measure, or a domain that is no plane.
+        ValueError: for numbers out of range, an unknown kind or measure, or a domain that is no
+            plane.
     """
 
     map: ContactMap
@@ -57,18 +66,21 @@ class PoseParticles:
     capacity: int = 400  # C
     moves: int = 4  # Metropolis steps after a resampling
     every: int = 10  # measurements between two looks at the effective number
-    leaps: bool = True  # moves onto the contact manifold
+    kind: str = "metropolis"  # or local, manifold, jitter
+    trust: float = 1.0  # power of the likelihood
     measure: str = "trace"  # or det, mutual
     subset: int = 64  # particles in the information
     length: float = 0.3  # rho [m]
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("particles", "capacity", "moves", "every", "subset", "length"):
+        for name in ("particles", "capacity", "moves", "every", "trust", "subset", "length"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"belief.{name}={getattr(self, name)}: must be above 0")
-        if self.measure not in MEASURES:
-            raise ValueError(f"belief.measure={self.measure}: choose {', '.join(MEASURES)}")
+        for name, choices in (("kind", KINDS), ("measure", MEASURES)):
+            if getattr(self, name) not in choices:
+                words = ", ".join(choices)
+                raise ValueError(f"belief.{name}={getattr(self, name)}: choose {words}")
         if self.domain.size != 2:
             raise ValueError(f"domain.coordinates: poses need a plane, not {self.domain.size}")
 
@@ -85,79 +97,57 @@ class PoseParticles:
         )
         none, empty = jnp.zeros(self.particles), jnp.zeros(self.capacity)
         zero = jnp.zeros(())
-        return Particles(theta, none, none, jnp.zeros((self.capacity, 2)), empty, zero, zero)
+        s, touched = jnp.zeros((self.capacity, 2)), jnp.zeros((), bool)
+        return Particles(theta, none, none, s, empty, zero, touched, zero, zero)
 
     def _chance(self, theta: Array, s: Array) -> Array:
         """p(y = 1) [] at s [2] if the objects are at theta [3]."""
         return self.map.chance(poses.to_map(theta, s, jnp.array(self.map.middle)))
-
-    def _log_like(self, state: Particles, theta: Array) -> Array:
-        """log p(all measurements | theta [3]) []."""
-        p = jax.vmap(self._chance, (None, 0))(theta, state.s)
-        each = jnp.log(jnp.where(state.y > 0.5, p, 1 - p))
-        return jnp.sum(jnp.where(jnp.arange(self.capacity) < state.count, each, 0.0))
 
     def add(self, state: Particles, s: Array, y: Array, key: Array) -> Particles:
         """The belief after y [], 0 or 1, was measured at s [2]. The key is consumed."""
         room = state.count < self.capacity
         slot = jnp.minimum(state.count, self.capacity - 1).astype(jnp.int32)
         p = jax.vmap(self._chance, (0, None))(state.theta, s)
-        each = jnp.where(room, jnp.log(jnp.where(y > 0.5, p, 1 - p)), 0.0)
+        each = jnp.where(room, rejuvenation.log_chance(p, y, self.trust), 0.0)
+        likely = jax.nn.logsumexp(jax.nn.log_softmax(state.log_w) + each)
         state = state._replace(
             log_w=state.log_w + each,
+            log_z=state.log_z + likely,
             log_like=state.log_like + each,
             s=state.s.at[slot].set(jnp.where(room, s, state.s[slot])),
             y=state.y.at[slot].set(jnp.where(room, y, state.y[slot])),
             count=state.count + room,
+            touched=room & (y > 0.5),
         )
         return when_any(self._due, self._renew)(state, key)
 
     def _due(self, state: Particles) -> Array:
         """[] bool: whether to resample."""
         few = resampling.effective(state.log_w) < self.particles / 2
-        return few & (state.count % self.every == 0)
+        due = few & (state.count % self.every == 0)
+        return due | state.touched if self.kind == "manifold" else due
 
     def _renew(self, state: Particles, key: Array) -> Particles:
         """Resampled and moved particles; the same ones where none is due. The key is consumed."""
-        shifting, moving = jax.random.split(key)
-        shift = jax.random.uniform(shifting)
-        drawn = resampling.systematic(state.log_w, self.particles, shift)
-        first = state.theta[drawn], state.log_like[drawn]
-        keys = jax.random.split(moving, self.moves)
-        (theta, log_like), accepted = jax.lax.scan(
-            lambda carry, k: self._moved(state, *carry, k), first, keys
+        before = rejuvenation.Cloud(state.theta, state.log_w, state.log_like)
+        evidence = rejuvenation.Evidence(
+            state.s, state.y, state.count, state.touched, self._chance, self.trust
         )
-        renewed = state._replace(
-            theta=theta,
-            log_w=jnp.zeros(self.particles),
-            log_like=log_like,
-            accepted=accepted.mean(),
-        )
+        cloud, accepted = self._rejuvenate(self._frame, evidence, before, key)
+        renewed = state._replace(**cloud._asdict(), accepted=accepted)
         due = self._due(state)
         return jax.tree.map(lambda new, old: jnp.where(due, new, old), renewed, state)
 
-    def _moved(
-        self, state: Particles, theta: Array, log_like: Array, key: Array
-    ) -> tuple[tuple[Array, Array], Array]:
-        """theta [N, 3] and its log-likelihood [N] after one Metropolis step; share accepted."""
-        frame, filled = self._frame, jnp.arange(self.capacity) < state.count
-        contacts = jnp.log(jnp.where(filled & (state.y > 0.5), 1.0, 0.0))
-        known = jnp.any(jnp.isfinite(contacts))
-        weights = jnp.where(known, contacts, 0.0)
-        chances = poses.CHANCES if self.leaps else poses.NO_LEAPS
-
-        def one(theta: Array, log_like: Array, key: Array) -> tuple[Array, Array, Array]:
-            choosing, proposing, accepting = jax.random.split(key, 3)
-            contact = state.s[jax.random.categorical(choosing, weights)]
-            new, ratio = poses.move(frame, theta, contact, known, chances, proposing)
-            log_new = self._log_like(state, new)
-            ratio = ratio + log_new - log_like
-            good = jnp.log(jax.random.uniform(accepting)) < ratio
-            good = good & poses.inside(frame, new)
-            return jnp.where(good, new, theta), jnp.where(good, log_new, log_like), good
-
-        theta, log_like, good = jax.vmap(one)(theta, log_like, jax.random.split(key, len(theta)))
-        return (theta, log_like), good.mean()
+    @property
+    def _rejuvenate(self) -> rejuvenation.Renewal:
+        """What `kind` does with particles."""
+        return {
+            "metropolis": rejuvenation.markov(poses.CHANCES, self.moves),
+            "local": rejuvenation.markov(poses.NO_LEAPS, self.moves),
+            "manifold": rejuvenation.manifold,
+            "jitter": rejuvenation.jitter,
+        }[self.kind]
 
     def predict(self, state: Particles, s: Array) -> tuple[Array, Array]:
         """p(y = 1) and the standard deviation [] of y at s [2]."""
@@ -189,7 +179,18 @@ class PoseParticles:
     def gain(self, state: Particles, s: Array) -> Array:
         """The mutual information [nat] of the pose and a measurement at s [2]."""
         p = jax.vmap(self._chance, (0, None))(self._subset(state), s)
-        return jnp.maximum(_entropy(p.mean()) - _entropy(p).mean(), 0.0)
+        return jnp.maximum(_binary(p.mean()) - _binary(p).mean(), 0.0)
+
+    def gain_along(self, state: Particles, path: Array) -> Array:
+        """H(w) - H(w | y+) [nat] [], y+ the likelier measurement at each position of path [T, 2].
+
+        It may be negative: the particles that y+ favours can be more.
+        """
+        theta = self._subset(state)
+        p = jax.vmap(jax.vmap(self._chance, (None, 0)), (0, None))(theta, path)
+        expected = (p.mean(0) > 0.5).astype(p.dtype)[None]
+        log_w = jax.nn.log_softmax(rejuvenation.log_chance(p, expected, self.trust).sum(1))
+        return jnp.log(float(self.subset)) + jnp.sum(jnp.exp(log_w) * log_w)
 
     def check(self, measurements: int) -> None:
         """Raise ValueError if so many measurements do not fit into the memory."""
@@ -204,7 +205,7 @@ class PoseParticles:
         return jnp.any((state.y > 0.5) & (jnp.arange(self.capacity) < state.count))
 
     def report(self, state: Particles) -> dict[str, Array]:
-        """The mean pose, its spread, the most likely particle, and the filter's health."""
+        """The mean pose, its spread and entropy, the most likely particle, the filter's health."""
         w = jax.nn.softmax(state.log_w)
         x, y = w @ state.theta[:, :2]
         angle, length = resampling.circular(state.theta[:, 2], w)
@@ -219,12 +220,18 @@ class PoseParticles:
             "belief/best_angle": best[2],
             "belief/spread_position": spread,
             "belief/spread_angle": jnp.sqrt(-2 * jnp.log(jnp.clip(length, 1e-6, 1.0))),
+            "belief/entropy": self._entropy(state, w),
             "belief/effective": resampling.effective(state.log_w),
             "belief/accepted": state.accepted,
             "belief/full": (state.count >= self.capacity).astype(jnp.float32),
         }
 
+    def _entropy(self, state: Particles, w: Array) -> Array:
+        """H(theta) [nat] [] of the posterior density, from log p(theta | y) = log L - log Z + c."""
+        sides = jnp.array(self.domain.high) - jnp.array(self.domain.low)
+        return jnp.log(2 * jnp.pi * jnp.prod(sides)) - w @ state.log_like + state.log_z
 
-def _entropy(p: Array) -> Array:
+
+def _binary(p: Array) -> Array:
     """h [nat] of binary variables with probabilities p [...]."""
     return -p * jnp.log(p) - (1 - p) * jnp.log1p(-p)

@@ -91,6 +91,10 @@ class SupportVectors:
         p = jax.nn.sigmoid(logit)
         return p * jax.nn.softplus(-logit) + (1 - p) * jax.nn.softplus(logit)
 
+    def gain_along(self, state: Machine, path: Array) -> Array:
+        """The entropy [nat] [] of the measurements on path [T, d]: each of them removes its own."""
+        return jnp.sum(jax.vmap(self.gain, (None, 0))(state, path))
+
     def informed(self, state: Machine) -> Array:
         """[] bool: whether any measurement was 1."""
         return jnp.any(state.label > 0)

@@ -5,17 +5,20 @@
 With a stabilizing policy, s* is its goal, and the robot measures at its actual position
 (LQR-Bayesian optimisation). Without one the action is s* itself, scaled to [-1, 1], for an
 environment without dynamics. Source: thesis section 6.3.1 and Algorithm 1.
+
+With `ahead` T > 0 the target instead values the way to s_i: its T positions on a straight line,
+the last one s_i (thesis section 5.3.3).
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.protocols import StabilizingPolicy, Target
+from hybrid_rl.protocols import PathTarget, StabilizingPolicy, Target
 from hybrid_rl.types import Params, Spec
 
 
@@ -31,15 +34,17 @@ class GoalController:
     """Drives to the maximum of a target.
 
     Raises:
-        ValueError: for counts that are not positive.
+        ValueError: for counts that are not positive, or a target that values no ways where `ahead`
+            asks for it.
     """
 
-    target: Target
+    target: Target  # with `ahead` a PathTarget
     domain: Box
     policy: StabilizingPolicy | None = None  # None: the action is the goal
     samples: int = 1000  # N candidates
     every: int = 20  # [decisions]
     near: float | None = None  # distance at which a new goal is chosen; None: only every `every`
+    ahead: int = 0  # T positions on the way to a candidate; 0: the candidate alone
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -47,6 +52,13 @@ class GoalController:
             raise ValueError("goal: samples and every must be 1 or more")
         if self.near is not None and not self.near > 0:
             raise ValueError(f"goal.near={self.near}: must be above 0, or null")
+        if self.ahead < 0:
+            raise ValueError(f"goal.ahead={self.ahead}: must be 0 or more")
+        if self.ahead and not hasattr(self.target, "along"):
+            kind = type(self.target).__name__
+            raise ValueError(
+                f"goal.ahead={self.ahead}: {kind} values no ways; target=entropy_reduction does"
+            )
 
     def init(self, spec: Spec) -> GoalState:
         """No goal yet."""
@@ -57,7 +69,7 @@ class GoalController:
     ) -> tuple[Array, GoalState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
         s = self.domain.sample(self.samples, key)
-        best = s[jnp.argmax(jax.vmap(self.target.log_density, (None, 0))(params, s))]
+        best = s[jnp.argmax(self._values(params, self.domain.of(obs), s))]
         due = state.age == 0
         if self.near is not None:
             due = due | (jnp.linalg.norm(self.domain.of(obs) - state.s) < self.near)
@@ -69,6 +81,15 @@ class GoalController:
         rest = self.policy.world.equilibrium()[0].astype(obs.dtype)
         metrics = {"planner/lyapunov": self.policy.lyapunov(obs)}
         return self.policy.towards(obs, self.domain.put(rest, goal)), after, metrics
+
+    def _values(self, params: Params, start: Array, s: Array) -> Array:
+        """The value [N] of each candidate s [N, v], or of the way to it from `start` [v]."""
+        if not self.ahead:
+            return jax.vmap(self.target.log_density, (None, 0))(params, s)
+        target = cast(PathTarget, self.target)
+        steps = jnp.arange(1, self.ahead + 1)[None, :, None] / self.ahead
+        ways = start[None, None] + steps * (s - start[None])[:, None]
+        return jax.vmap(target.along, (None, 0))(params, ways)
 
     def greedy(self) -> "GoalController":
         """The same controller: it has no exploration noise."""

@@ -40,6 +40,13 @@ class Target(Protocol):
         """log p(s) [] at s [v], up to a constant."""
 
 
+class PathTarget(Target, Protocol):
+    """A target that values ways too."""
+
+    def along(self, params: Params, path: Array) -> Array:
+        """The value [] of measurements on path [T, v]."""
+
+
 class LabelledTarget(Target, Protocol):
     """A target that depends on a teacher's labels so far, in `params.belief.evidence`."""
 

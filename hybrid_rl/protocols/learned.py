@@ -197,6 +197,9 @@ class InformedBelief(Belief, Protocol):
     def gain(self, state: PyTree, s: Array) -> Array:
         """The entropy [nat] that a measurement at s [v] is expected to remove."""
 
+    def gain_along(self, state: PyTree, path: Array) -> Array:
+        """The entropy [nat] that measurements on path [T, v] remove, if each is the likelier."""
+
     def informed(self, state: PyTree) -> Array:
         """[] bool: whether any measurement distinguished one region from another."""
 

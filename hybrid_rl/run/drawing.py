@@ -1,7 +1,7 @@
 """Positions of a MuJoCo scene, drawn without a display: an array, a video, a GIF, a still."""
 
 import contextlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -20,22 +20,28 @@ def draw(
     fps: float,
     width: int = 640,
     height: int = 480,
+    panel: Callable[[int], np.ndarray] | None = None,
 ) -> Path:
     """Writes a video, H.264 for .mp4, endless for .gif; for .png the picture halfway.
 
-    scene: MJCF text. qpos: [frames, nq]. fps: [1/s]. width, height: [pixels], even.
+    scene: MJCF text. qpos: [frames, nq]. fps: [1/s]. width, height: [pixels], even. panel: of the
+    number of a frame, a picture [height, w, 3] (uint8), w even, to the right of it.
     """
     out = Path(out)
     if out.suffix not in SUFFIXES:
         raise ValueError(f"{out}: must end in {', '.join(SUFFIXES)}")
+    shown = range(len(qpos))
     if out.suffix == ".gif" and fps > GIF_FPS:
         stride = int(np.ceil(fps / GIF_FPS))
-        qpos, fps = qpos[::stride], fps / stride
+        shown, fps = shown[::stride], fps / stride
     if out.suffix == ".png":
-        qpos = qpos[len(qpos) // 2][None]
+        shown = range(len(qpos) // 2, len(qpos) // 2 + 1)
     out.parent.mkdir(parents=True, exist_ok=True)
     part = out.with_stem(f".{out.stem}.part")
-    pictures = _counted(frames(scene, qpos, width, height), len(qpos))
+    plain = frames(scene, qpos[list(shown)], width, height)
+    if panel is not None:
+        plain = (np.hstack([one, panel(i)]) for i, one in zip(shown, plain, strict=True))
+    pictures = _counted(plain, len(shown))
     write = {".mp4": _write_mp4, ".gif": _write_gif, ".png": _write_png}[out.suffix]
     try:
         write(part, pictures, fps)

@@ -8,6 +8,7 @@ import numpy as np
 from hybrid_rl.errors import UsageError
 from hybrid_rl.maps import learned
 from hybrid_rl.studies import false_contacts
+from hybrid_rl.studies.belief_panel import HALF, Panel, View, level
 from hybrid_rl.studies.contacts import (
     Trials,
     decisions,
@@ -18,7 +19,7 @@ from hybrid_rl.studies.contacts import (
     trials,
 )
 from hybrid_rl.studies.curves import band, iqm, plural
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
+from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
 
 NAMES = {
     "objects": "objects touched",
@@ -26,6 +27,7 @@ NAMES = {
     "iou": "intersection over union",
     "cells": "free cells visited",
 }
+WIDTH, ABOVE = 9.0, 3  # [in]; runs above each other at most
 
 
 def marks_of(times: str, length: int, dt: float) -> list[int]:
@@ -62,46 +64,55 @@ def maps(pattern: str, times: str, trial: int, map_out: str) -> tuple[Any, dict[
             "false": false_contacts.measures(run, f[:, -1]),
         }
         for axes, mark in zip(panels[i], marks, strict=True):
-            _map(axes, run, f[0, fine.index(mark)], mark)
-            axes.set_title(f"{run.label}, {mark * dt:g} s", fontsize=7)
+            panel = _map(axes, run, f[0, fine.index(mark)], mark)
+            axes.set_title(f"{mark * dt:g} s", fontsize=7, loc="left")
+            if (i, mark) == (0, marks[0]):
+                panel.name(HALF)
+        panels[i][0].set_title(f"{run.label}\n{marks[0] * dt:g} s", fontsize=7, loc="left")
         line = {"color": COLOURS[i % 7], "linestyle": STROKES[i // 7 % 4], "label": run.label}
         for axes, (name, title) in zip(below, NAMES.items(), strict=True):
             middle, (low, high) = iqm(measured[name]), band(measured[name])
             axes.plot(np.array(fine) * dt, middle, **line)
             axes.fill_between(np.array(fine) * dt, low, high, alpha=0.2, color=line["color"])
-            axes.set(title=title, xlabel="Time [s]", ylim=(0, None))
+            axes.set(title=title, xlabel="Time [s]")
         if map_out and i == 0:
             _save(run, f[:, -1], trial, map_out)
-    legend_below(below[0])
+    for axes in below:
+        axes.set_ylim(0, None)
+    legend_outside(panels[0][0])
+    legend_outside(below[0])
     return figure, numbers
 
 
-def _panels(rows: int, columns: int) -> tuple[Any, Any, Any]:
-    """A figure with rows x columns panels for maps and a row of four below."""
+def _panels(runs: int, times: int) -> tuple[Any, Any, Any]:
+    """A figure with panels [runs, times] for maps and a row of four below.
+
+    More than ABOVE runs are in two columns.
+    """
     from matplotlib.figure import Figure
 
-    figure: Any = Figure(figsize=(9, 2.2 * rows + 3), layout="constrained")
-    upper, lower = figure.subfigures(2, 1, height_ratios=[2.2 * rows, 3])
-    return figure, upper.subplots(rows, columns, squeeze=False), lower.subplots(1, len(NAMES))
+    across = 1 if runs <= ABOVE else 2
+    rows, columns = -(-runs // across), across * times
+    height = rows * (min(WIDTH / columns, 2.6) + 0.25) + 0.3
+    figure: Any = Figure(figsize=(WIDTH, height + 3), layout="constrained")
+    upper, lower = figure.subfigures(2, 1, height_ratios=[height, 3])
+    panels = upper.subplots(rows, columns, squeeze=False).reshape(-1, times)
+    for axes in panels[runs:].flat:
+        axes.set_axis_off()
+    return figure, panels, lower.subplots(1, len(NAMES))
 
 
-def _map(axes: Any, run: Trials, f: np.ndarray, mark: int) -> None:
+def _map(axes: Any, run: Trials, f: np.ndarray, mark: int) -> Panel:
     """p, its outline, the true outline, the path and the contacts of the first trial."""
     world = run.world
-    extent = (world.low[0], world.high[0], world.low[1], world.high[1])
     belief: Any = run.recorded.run.agent.learners["belief"]
     p = 1 / (1 + np.exp(-belief.belief.slope * f))
-    axes.imshow(p.T, origin="lower", extent=extent, cmap="Purples", vmin=0, vmax=1)
-    sides = [np.linspace(a, b, len(f)) for a, b in zip(world.low, world.high, strict=True)]
-    axes.contour(*sides, distances(world, grid(world)).T, [0.0], colors="#444444", linewidths=0.8)
-    if p.max() > 0.5:
-        axes.contour(*sides, p.T, [0.5], colors=COLOURS[3], linewidths=0.8)
+    box = world.low, world.high
+    panel = Panel(axes, *box, level(distances(world, grid(world)), *box, world.radius))
     path = np.concatenate([run.start[:1, :2], run.s[0, :mark]])
-    axes.plot(*path.T, color=COLOURS[1], linewidth=0.5)
     contacts = run.s[0, :mark][run.y[0, :mark] > 0.5]
-    axes.plot(*contacts.T, ".", color="#000000", markersize=1.5)
-    axes.set(xlim=extent[:2], ylim=extent[2:], xticks=[], yticks=[], aspect="equal")
-    axes.grid(False)
+    panel.show(View(p, level(p, *box, 0.5), path, contacts))
+    return panel
 
 
 def _reported(measured: dict[str, np.ndarray]) -> dict[str, Any]:

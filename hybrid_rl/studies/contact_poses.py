@@ -1,5 +1,6 @@
 """Poses of objects by touch: errors over time, and what the absence of contact tells."""
 
+from dataclasses import replace
 from typing import Any
 
 import jax
@@ -8,12 +9,21 @@ import numpy as np
 
 from hybrid_rl.core import poses as moves
 from hybrid_rl.studies.contact_maps_picture import marks_of
-from hybrid_rl.studies.contacts import GOOD, Trials, errors, found, good, trials
+from hybrid_rl.studies.contacts import (
+    GOOD,
+    Trials,
+    errors,
+    first,
+    found,
+    good,
+    sign_test,
+    stuck,
+    trials,
+)
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.falls import wilson
 from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
 
-CELLS = (31, 31, 60)  # of x, y and the angle, in the Bayes filter
 KINDS = ("all", "contacts", "absences")
 
 
@@ -25,48 +35,96 @@ def poses(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     dt, length = runs[0].world.spec.dt, min(run.y.shape[1] for run in runs)
     marks = marks_of(times, length, dt)
     figure = Figure(figsize=(9, 3.4), layout="constrained")
-    left, middle, right = figure.subplots(1, 3)
+    panels = figure.subplots(1, 3)
     numbers: dict[str, Any] = {"times": [mark * dt for mark in marks], "methods": {}}
-    t = dt * np.arange(1, length + 1)
+    rival: dict[str, np.ndarray] = {}
     for i, run in enumerate(runs):
         position, angle = (each[:, :length] for each in errors(run))
         is_good = good(position, angle)
-        line = {"color": COLOURS[i % 7], "linestyle": STROKES[i // 7 % 4], "label": run.label}
-        for axes, values in ((left, position), (middle, angle)):
-            axes.plot(t, np.median(values, 0), **line)
-            quarter = np.percentile(values, [25, 75], axis=0)
-            axes.fill_between(t, *quarter, alpha=0.15, color=line["color"])
-        first = found(is_good)
-        right.plot(t, np.mean(first[:, None] <= np.arange(1, length + 1), 0), **line)
-        numbers["methods"][run.label] = _reported(position, angle, is_good, first * dt, marks)
-    left.set(title="position error, median and quartiles", xlabel="Time [s]", yscale="log")
-    left.set_ylabel("[m]")
-    middle.set(title="angle error, median and quartiles", xlabel="Time [s]", yscale="log")
-    middle.set_ylabel("[rad]")
-    right.set(title=f"found to the end: {GOOD[0]} m, {GOOD[1]} rad", xlabel="Time [s]", ylim=(0, 1))
-    legend_below(left)
+        waits = {"first": dt * first(is_good), "found": dt * found(is_good)}
+        style = {"color": COLOURS[i % 7], "linestyle": STROKES[i // 7 % 4], "label": run.label}
+        _draw(panels, dt, (position, angle, waits["found"]), style)
+        one = _reported(run, position, angle, is_good, marks)
+        one["lasting"] = [int((waits["found"] <= (mark + 0.5) * dt).sum()) for mark in marks]
+        rival = rival or waits
+        for name, each in waits.items():
+            one[name] = _wait(each)
+            if i and run.recorded.run.seeds == runs[0].recorded.run.seeds:
+                one[name]["against_first_run"] = sign_test(each, rival[name])
+        numbers["methods"][run.label] = one
+    words = ("position error, median and quartiles", "angle error, median and quartiles")
+    for axes, title, unit in zip(panels, words, ("[m]", "[rad]"), strict=False):
+        axes.set(title=title, xlabel="Time [s]", ylabel=unit, yscale="log")
+    title = f"found to the end: {GOOD[0]} m, {GOOD[1]} rad"
+    panels[2].set(title=title, xlabel="Time [s]", ylim=(0, 1))
+    legend_below(panels[0])
     return figure, numbers
 
 
+def _draw(panels: Any, dt: float, values: tuple[np.ndarray, ...], style: dict[str, Any]) -> None:
+    """Errors [S, T] of position and angle, and the share of trials found [S] by each time."""
+    t = dt * np.arange(1, values[0].shape[1] + 1)
+    for axes, each in zip(panels, values[:2], strict=False):
+        axes.plot(t, np.median(each, 0), **style)
+        axes.fill_between(
+            t, *np.percentile(each, [25, 75], axis=0), alpha=0.15, color=style["color"]
+        )
+    panels[2].plot(t, np.mean(values[2][:, None] <= t + dt / 2, 0), **style)
+
+
 def _reported(
-    position: np.ndarray,
-    angle: np.ndarray,
-    is_good: np.ndarray,
-    first: np.ndarray,
-    marks: list[int],
+    run: Trials, position: np.ndarray, angle: np.ndarray, is_good: np.ndarray, marks: list[int]
 ) -> dict[str, Any]:
     """Numbers of one run at each time, over trials."""
     at = np.array(marks) - 1
-    counts = is_good[:, at].sum(0)
+    counts, still = is_good[:, at].sum(0), stuck(run.s[:, : marks[-1]], run.world.spec.dt)
+    best = [each[:, at] for each in errors(run, "best")]
+    behind = _truth_behind(run, marks[-1])
     return {
         "trials": len(position),
         "position": {"median": np.median(position[:, at], 0), "band": band(position[:, at])},
         "angle": {"median": np.median(angle[:, at], 0), "band": band(angle[:, at])},
+        "best": {"position": np.median(best[0], 0), "angle": np.median(best[1], 0)},
         "good": counts,
         "wilson": [wilson(int(count), len(position)) for count in counts],
-        "found_at": {"median": np.nanmedian(first) if np.isfinite(first).any() else None},
-        "found_each": first,
+        "stuck": int(still.sum()),
+        "truth_behind": {"median": np.median(behind), "each": behind},
+        "each": {"position": position[:, at], "angle": angle[:, at], "stuck": still},
     }
+
+
+def _wait(each: np.ndarray) -> dict[str, Any]:
+    """Median of times [S], and how many trials never got there; they count as infinite."""
+    median = np.median(each)
+    return {
+        "median": median if np.isfinite(median) else None,
+        "never": int(np.isinf(each).sum()),
+        "each": [one if np.isfinite(one) else None for one in each.tolist()],
+    }
+
+
+def _truth_behind(run: Trials, length: int) -> np.ndarray:
+    """log L(best particle) - log L(truth) [S] [nat] of the first `length` measurements."""
+    part: Any = run.recorded.run.agent.learners["belief"]
+    chance = _chance(part.belief)
+
+    def log_like(theta: jax.Array, s: jax.Array, y: jax.Array) -> jax.Array:
+        p = jax.vmap(chance, (None, 0))(theta, s)
+        return jnp.sum(jnp.log(jnp.where(y > 0.5, p, 1 - p)))
+
+    def pose(name: str) -> np.ndarray:
+        columns = [run.rows[f"{name}_{axis}"][:, length - 1] for axis in ("x", "y", "angle")]
+        return np.stack(columns, -1)
+
+    each = jax.jit(jax.vmap(log_like))
+    s, y = run.s[:, :length], run.y[:, :length]
+    return np.asarray(each(pose("belief/best"), s, y) - each(pose("world/pose"), s, y))
+
+
+def _chance(part: Any) -> Any:
+    """p(y = 1) of theta [3] and s [2], of a belief about poses."""
+    middle = jnp.array(part.map.middle)
+    return lambda theta, s: part.map.chance(moves.to_map(theta, s, middle))
 
 
 def lines(numbers: dict[str, Any]) -> list[str]:
@@ -75,72 +133,84 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     for label, one in numbers["methods"].items():
         low, high = one["wilson"][-1]
         share = f"{one['good'][-1]} good [{100 * low:.0f}%, {100 * high:.0f}%]"
-        when = one["found_at"]["median"]
+        when = one["found"]["median"]
         result.append(
             f"{label}, {plural(one['trials'], 'trial')} of {numbers['times'][-1]:g} s: {share}, "
             f"median {one['position']['median'][-1]:.4f} m, {one['angle']['median'][-1]:.4f} rad, "
-            f"found after {'never' if when is None else f'{when:.1f} s'}"
+            f"{'not found' if when is None else f'found after {when:.1f} s'}, "
+            f"stuck {one['stuck']}{_against(one)}"
         )
     return result
 
 
-def absence(pattern: str) -> tuple[Any, dict[str, Any]]:
-    """Entropy of the pose over time, by which measurements count."""
+def _against(one: dict[str, Any]) -> str:
+    """The sign test of the time until found, against the first run."""
+    test = one["found"].get("against_first_run")
+    if test is None:
+        return ""
+    return (
+        f"; sooner than the first in {test['sooner']}, later in {test['later']}, p {test['p']:.3f}"
+    )
+
+
+def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
+    """Entropy of the pose over time, and the error of its mean, by which measurements count."""
     from matplotlib.figure import Figure
 
     run = trials(pattern, "absence")[0]
-    entropies = np.stack([_entropies(run, kind) for kind in KINDS])
+    errors(run)  # refuses a run without poses
+    dt, length = run.world.spec.dt, run.y.shape[1]
+    at = np.array(marks_of(times, length, dt)) - 1
     figure = Figure(figsize=(5, 3.4), layout="constrained")
     axes = figure.subplots()
-    t = run.world.spec.dt * np.arange(1, entropies.shape[2] + 1)
-    numbers: dict[str, Any] = {"trials": entropies.shape[1], "kinds": {}}
-    for i, (kind, each) in enumerate(zip(KINDS, entropies, strict=True)):
-        low, high = band(each)
-        axes.plot(t, iqm(each), color=COLOURS[i], label=kind)
+    t, kinds = dt * np.arange(1, length + 1), {}
+    for i, kind in enumerate(KINDS):
+        rows = _filtered(run, kind)
+        entropy = rows["belief/entropy"]
+        low, high = band(entropy)
+        axes.plot(t, iqm(entropy), color=COLOURS[i], label=kind)
         axes.fill_between(t, low, high, alpha=0.2, color=COLOURS[i])
-        last = {"iqm": iqm(each)[-1], "low": low[-1], "high": high[-1], "each": each[:, -1]}
-        numbers["kinds"][kind] = last
-    less = entropies[2, :, -1] <= entropies[1, :, -1]
-    numbers["absences_leave_no_more"] = int(less.sum())
+        position, angle = (each[:, at] for each in errors(run._replace(rows=rows)))
+        each = {"each": entropy[:, at], "position": position, "angle": angle}
+        kinds[kind] = {"iqm": iqm(entropy)[at], "low": low[at], "high": high[at], **each}
+    less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
     axes.set(title="entropy of the pose", xlabel="Time [s]", ylabel="[nat]")
     axes.legend()
-    return figure, numbers
+    head = {"times": dt * (at + 1), "trials": len(run.y)}
+    return figure, {**head, "kinds": kinds, "absences_leave_no_more": less}
 
 
-def _entropies(run: Trials, kind: str) -> np.ndarray:
-    """Entropy [S, T] [nat] of the pose on a grid after each measurement of this kind."""
-    belief: Any = run.recorded.run.agent.learners["belief"]
-    part = belief.belief
-    low, high = jnp.array(part.domain.low), jnp.array(part.domain.high)
-    axes = [
-        a + (b - a) * (jnp.arange(n) + 0.5) / n for a, b, n in zip(low, high, CELLS, strict=False)
-    ]
-    angles = -jnp.pi + 2 * jnp.pi * (jnp.arange(CELLS[2]) + 0.5) / CELLS[2]
-    theta = jnp.stack(jnp.meshgrid(*axes, angles), -1).reshape(-1, 3)
-    middle = jnp.array(part.map.middle)
-    cell = jnp.log(jnp.prod(high - low) * 2 * jnp.pi / len(theta))
+def _filtered(run: Trials, kind: str) -> dict[str, np.ndarray]:
+    """Reports [S, T] of the run's belief about poses if only measurements of this kind count."""
+    learner: Any = run.recorded.run.agent.learners["belief"]
+    belief = replace(learner.belief, kind="metropolis")
+    names = ("entropy", "mean_x", "mean_y", "mean_angle")
 
-    def one(log_w: jax.Array, measured: Any) -> Any:
-        s, y = measured
-        p = jax.vmap(lambda theta: part.map.chance(moves.to_map(theta, s, middle)))(theta)
-        counts = {"all": True, "contacts": y > 0.5, "absences": y < 0.5}[kind]
-        log_w = log_w + jnp.where(counts, jnp.log(jnp.where(y > 0.5, p, 1 - p)), 0.0)
-        log_p = jax.nn.log_softmax(log_w)
-        return log_w, -jnp.sum(jnp.exp(log_p) * log_p) + cell
+    def one(state: Any, measured: Any) -> Any:
+        s, y, key = measured
+        counts = {"all": jnp.array(True), "contacts": y > 0.5, "absences": y < 0.5}[kind]
+        after = belief.add(state, s, y, key)
+        state = jax.tree.map(lambda new, old: jnp.where(counts, new, old), after, state)
+        report = belief.report(state)
+        return state, {f"belief/{name}": report[f"belief/{name}"] for name in names}
 
-    def trial(measured: Any) -> Any:
-        return jax.lax.scan(one, jnp.zeros(len(theta)), measured)[1]
+    def trial(key: jax.Array, s: jax.Array, y: jax.Array) -> Any:
+        first, adding = jax.random.split(key)
+        state = belief.init(first, run.recorded.run.agent.spec)
+        return jax.lax.scan(one, state, (s, y, jax.random.split(adding, len(y))))[1]
 
-    return np.asarray(
-        jax.jit(lambda m: jax.lax.map(trial, m))((jnp.asarray(run.s), jnp.asarray(run.y)))
-    )
+    keys = jax.random.split(jax.random.key(0), len(run.y))
+    rows = jax.jit(jax.vmap(trial))(keys, jnp.asarray(run.s), jnp.asarray(run.y))
+    return {**run.rows, **{name: np.asarray(values) for name, values in rows.items()}}
 
 
 def absence_lines(numbers: dict[str, Any]) -> list[str]:
     """A line per kind, and in how many trials absences leave no more entropy than contacts."""
     result = [
-        f"{kind}: {one['iqm']:.2f} [{one['low']:.2f}, {one['high']:.2f}] nat at the end"
+        f"{kind}: {one['iqm'][-1]:.2f} [{one['low'][-1]:.2f}, {one['high'][-1]:.2f}] nat, "
+        f"{np.median(np.asarray(one['position'])[:, -1]):.3f} m off (median)"
         for kind, one in numbers["kinds"].items()
     ]
-    less = f"{numbers['absences_leave_no_more']} of {plural(numbers['trials'], 'trial')}"
-    return [*result, f"absences alone leave no more entropy than contacts alone in {less}"]
+    less = f"{numbers['absences_leave_no_more'][-1]} of {plural(numbers['trials'], 'trial')}"
+    end = f"after {numbers['times'][-1]:g} s"
+    return [*result, f"{end} absences alone leave no more entropy than contacts alone in {less}"]

@@ -1,10 +1,12 @@
-"""Runs of contact_plane: the trials, and how good their maps and poses are.
+"""Runs in which a robot feels contact: the trials, and how good their maps and poses are.
 
 objects   touched: a twentieth of their outline lies within 5 cm of a contact
 outline   share of the outlines within 5 cm of a contact
 iou       intersection over union of p > 1/2, holes filled, and the positions d < r of contact
 cells     share of 10 x 10 free cells in which the path was
 position  distance [m] of the mean pose; angle: difference [rad]; good: below 3 cm and 0.1 rad
+first     time until a pose is good, found: until it stays good to the end
+stuck     half of the last 10 s in one cell of 10 cm
 """
 
 from dataclasses import replace
@@ -14,18 +16,19 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from scipy import ndimage
+from scipy import ndimage, stats
 
 from hybrid_rl.core import poses
 from hybrid_rl.errors import UsageError
 from hybrid_rl.maps.known import KnownMap
 from hybrid_rl.studies.recorded import Recorded, labels, matching, one_episode, read
 
-TASK = "contact_plane"
+TASKS = ("contact_plane", "sprk", "sawyer_probe")
 GRID = 128  # cells a side of a map
 CLOSE, TOUCHED = 0.05, 0.05  # [m] from a contact; share of an object's outline
 CELLS = 10  # a side, of the visited share
 GOOD = 0.03, 0.1  # [m] and [rad] of a pose that is found
+CELL, LAST = 0.1, 10.0  # [m] of a cell and [s] at the end, of a robot that is stuck
 
 
 class Trials(NamedTuple):
@@ -43,7 +46,7 @@ class Trials(NamedTuple):
 def trials(pattern: str, view: str) -> list[Trials]:
     """The trials of all runs that match."""
     folders = matching(pattern, view)
-    return [_of(read(path, TASK), label) for path, label in _named(folders)]
+    return [_of(read(path, *TASKS), label) for path, label in _named(folders)]
 
 
 def _named(folders: list[Path]) -> list[tuple[Path, str]]:
@@ -199,8 +202,25 @@ def good(position: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return (position < GOOD[0]) & (angle < GOOD[1])
 
 
+def first(good: np.ndarray) -> np.ndarray:
+    """Decisions [S] until good [S, T] first holds; infinite if never."""
+    return np.where(good.any(1), good.argmax(1) + 1.0, np.inf)
+
+
 def found(good: np.ndarray) -> np.ndarray:
-    """Decisions [S] until good [S, T] first holds for the rest of the trial; NaN if never."""
-    lasting = np.flip(np.cumprod(np.flip(good, 1), 1), 1).astype(bool)
-    first = lasting.argmax(1).astype(float) + 1
-    return np.where(lasting.any(1), first, np.nan)
+    """Decisions [S] until good [S, T] first holds for the rest of the trial; infinite if never."""
+    return first(np.flip(np.cumprod(np.flip(good, 1), 1), 1).astype(bool))
+
+
+def stuck(s: np.ndarray, dt: float) -> np.ndarray:
+    """Whether [S] half of the last positions of paths s [S, T, 2] lie in one cell."""
+    last = np.floor(s[:, -round(LAST / dt) :] / CELL).astype(int)
+    most = [np.unique(path, axis=0, return_counts=True)[1].max() for path in last]
+    return np.array(most) >= last.shape[1] / 2
+
+
+def sign_test(one: np.ndarray, other: np.ndarray) -> dict[str, float]:
+    """Trials [S] in which `one` is sooner or later than `other`, and the p-value of both sides."""
+    sooner, later = int((one < other).sum()), int((one > other).sum())
+    p = stats.binomtest(sooner, sooner + later).pvalue if sooner + later else 1.0
+    return {"sooner": sooner, "later": later, "p": float(p)}

@@ -46,18 +46,20 @@ def matching(pattern: str, view: str) -> list[Path]:
     return folders
 
 
-def read(folder: Path, *tasks: str) -> Recorded:
-    """The run in `folder` and its memory.
+def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
+    """The run in `folder`, which the argument `key` named, and its memory.
 
     Raises:
-        UsageError: unless it is a run of one of the tasks, with a complete memory of one world.
+        UsageError: unless it is a run of one of the tasks, or of any if none is given, with a
+            complete memory of one world.
     """
     if not RunFolder(folder).settings:  # a damaged file raises here, with its name
-        raise UsageError(f"runs={folder}: not a run folder (it has no config.yaml)")
+        raise UsageError(f"{key}={folder}: not a run folder (it has no config.yaml)")
     config: Any = OmegaConf.load(folder / "config.yaml")
-    if config.task not in tasks or config.num_envs != 1 or not config.checkpoint_replay:
-        words = " or ".join(tasks)
-        raise UsageError(f"runs={folder}: needs {words}, num_envs=1, checkpoint_replay=true")
+    fits = config.task in tasks or not tasks
+    if not fits or config.num_envs != 1 or not config.checkpoint_replay:
+        words = f"{' or '.join(tasks)}, " if tasks else ""
+        raise UsageError(f"{key}={folder}: needs {words}num_envs=1, checkpoint_replay=true")
     for learner in config.learners.values():
         if learner is not None and "recorded" in learner:
             learner.recorded = None  # its file is not needed

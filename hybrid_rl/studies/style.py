@@ -18,7 +18,7 @@ COLOURS = (  # Okabe and Ito: distinct for colour-blind readers, too
 )
 STROKES = ("-", "--", "-.", ":")  # when the colours are used up
 ENTRY = 0.15  # [in] height of a line of a legend or of a note
-LEGEND_WIDTH = 55  # [characters] under a panel
+LEGEND_WIDTH, FIGURE_WIDTH = 55, 130  # [characters] under a panel and under a figure of 9 in
 BELOW, BELOW_TICKS = 34, 20  # [pt] from the axes to a legend: below the x label, below the ticks
 NOTE_WIDTH = 78  # [characters] under a panel
 MOST_NOTES = 8
@@ -74,6 +74,15 @@ def legend_below(axes: "Axes") -> None:
         fontsize=8,
         ncols=max(1, min(len(texts), columns)),
     )
+
+
+def legend_outside(axes: "Axes") -> None:
+    """A legend of these axes below all axes of their figure, whose layout is constrained."""
+    handles, labels = axes.get_legend_handles_labels()
+    columns = int(FIGURE_WIDTH / (max(map(len, labels), default=1) + 7))
+    below: Any = "outside lower center"
+    figure: Any = axes.get_figure()
+    figure.legend(handles, labels, loc=below, ncols=max(1, min(len(labels), columns)))
 
 
 def plain_log(axis: Any) -> None:

@@ -26,10 +26,15 @@ class EntropyReduction:
 
     def __post_init__(self) -> None:
         """Check the belief."""
-        if not hasattr(self.belief, "gain"):
-            kind = type(self.belief).__name__
-            raise ValueError(f"target.belief={kind}: has no entropy of a measurement")
+        for name, words in (("gain", "a measurement"), ("gain_along", "measurements on a way")):
+            if not hasattr(self.belief, name):
+                kind = type(self.belief).__name__
+                raise ValueError(f"target.belief={kind}: has no entropy of {words}")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v], up to a constant."""
         return jnp.log(jnp.maximum(self.belief.gain(params.belief, s), FLOOR))
+
+    def along(self, params: Params, path: Array) -> Array:
+        """The entropy [nat] [] that the expected measurements on path [T, v] remove."""
+        return self.belief.gain_along(params.belief, path)

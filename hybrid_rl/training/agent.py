@@ -182,6 +182,13 @@ class Agent:
         }
         return AgentState(env, control, memory, learners, key), metrics
 
+    def learn(self, state: AgentState, new: Transition, step: Array) -> AgentState:
+        """`state` after learning from a recorded decision `new` [E, ...], as `step` learns."""
+        keys = jax.random.split(state.key, 3 + 2 * self.num_envs)
+        params, memory = self.params(state), self.replay.add(state.memory, new)
+        learners, _ = self._learn(state.learners, params, memory, new, step, keys[2])
+        return state.replace(memory=memory, learners=learners, key=keys[0])
+
     def _initial_control(self) -> Any:
         """The controller's initial state in every environment [E, ...]."""
         first = self.controller.init(self.spec)

@@ -53,6 +53,10 @@ def test_predictions_follow_the_decision_function(measured) -> None:
     np.testing.assert_allclose([got, std], [p, np.sqrt(p * (1 - p))], rtol=1e-4)
     entropy = -p * np.log(p) - (1 - p) * np.log(1 - p)
     assert float(BELIEF.gain(state, jnp.asarray(s))) == pytest.approx(entropy, rel=1e-4)
+    way = np.array([[0.5, 0.2], [0.4, 0.3], [0.1, 0.6]], np.float32)
+    each = [1 / (1 + np.exp(-2 * f(one))) for one in way]
+    both = -sum(p * np.log(p) + (1 - p) * np.log(1 - p) for p in each)
+    assert float(BELIEF.gain_along(state, jnp.asarray(way))) == pytest.approx(both, rel=1e-4)
     slope = [(f(s + d) - f(s - d)) / 2e-3 for d in np.eye(2) * 1e-3]
     assert float(BELIEF.information(state, jnp.asarray(s))) == pytest.approx(p * (1 - p), rel=1e-4)
     fisher = replace(BELIEF, measure="fisher")

@@ -172,14 +172,17 @@ def test_the_guard_keeps_the_state_in_its_level_set() -> None:
     assert np.nanmax(follow(free, 300, near)[3]["planner/lyapunov"]) > level
 
 
+@dataclass(frozen=True)
+class Peak:
+    """log p(s) = -|s - 0.4|."""
+
+    def log_density(self, params: Any, s: Array) -> Array:
+        """log p [] at s [1]."""
+        return -jnp.abs(s[0] - 0.4)
+
+
 def test_the_goal_is_the_maximum_of_the_target() -> None:
     """Without a policy the action is the goal; a policy drives there and gets a new one in time."""
-
-    @dataclass(frozen=True)
-    class Peak:
-        def log_density(self, params: Any, s: Array) -> Array:
-            return -jnp.abs(s[0] - 0.4)
-
     there = GoalController(Peak(), Box(low=(-1.0,), high=(3.0,)))
     u, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
     assert float(goal.s[0]) == pytest.approx(0.4, abs=0.02)
@@ -187,6 +190,21 @@ def test_the_goal_is_the_maximum_of_the_target() -> None:
     x, _, state, _ = follow(GoalController(Peak(), Box(), PI, every=50), 1500, 0 * START)
     assert float(x[-1, 0]) == pytest.approx(0.4, abs=0.03)
     assert len(np.unique(state.s)) == 30  # drawn every 50 decisions
+
+
+def test_the_goal_is_the_end_of_the_best_way() -> None:
+    """The mean of 4 positions at quarters of the way is start + 0.625 (s - start)."""
+
+    @dataclass(frozen=True)
+    class Middle:
+        def along(self, params: Any, path: Array) -> Array:
+            return -jnp.abs(path[:, 0].mean() - 0.5)
+
+    there = GoalController(Middle(), Box(low=(-1.0,), high=(3.0,)), ahead=4)
+    _, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
+    assert float(goal.s[0]) == pytest.approx(0.3 + (0.5 - 0.3) / 0.625, abs=0.02)
+    with pytest.raises(ValueError, match=r"goal.ahead=4: .* values no ways"):
+        replace(there, target=Peak())
 
 
 @pytest.mark.parametrize(

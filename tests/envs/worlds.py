@@ -29,6 +29,7 @@ from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 from hybrid_rl.envs.sawyer_torque import SawyerTorque
+from hybrid_rl.envs.sprk import Sprk
 
 DECISIONS = 20
 STATE = {
@@ -60,6 +61,7 @@ TASKS = {
     "sawyer_push": SawyerPush,
     "panda_stack": PandaStack,
     "sawyer_torque": SawyerTorque,
+    "sprk": Sprk,
     **ANALYTIC,
 }
 FIELDS = {
@@ -91,6 +93,7 @@ REFERENCE = {
     "sawyer_push": Reference("sawyer_push.xml", 20, (9,), 30.0),
     "panda_stack": Reference("panda_stack.xml", 20, (11, 18), 30.0),
     "sawyer_torque": Reference("sawyer_torque.xml", 5),
+    "sprk": Reference(Sprk().asset, 30),
 }
 
 
@@ -126,6 +129,8 @@ def observe(task, data, state):
         case "sawyer_torque":
             neutral = np.array([0, -1.18, 0, 2.18, 0, 0.57, 3.3161, *np.zeros(7)])
             return np.concatenate([qpos, qvel, neutral, neutral])
+        case "sprk":
+            return np.concatenate([qpos, qvel])
     return np.concatenate([qpos[1:], np.clip(qvel, -10, 10) if task == "hopper" else qvel])
 
 

@@ -90,6 +90,18 @@ def test_a_png_is_the_picture_halfway(tmp_path, can_draw):
     np.testing.assert_array_equal(iio.imread(out), film[2])
 
 
+def test_a_panel_is_to_the_right_of_its_picture(tmp_path, can_draw):
+    if not can_draw:
+        return
+    grey = lambda i: np.full((48, 10, 3), 40 * i, np.uint8)  # noqa: E731
+    out = drawing.draw(FIXED, positions(5), tmp_path / "a.png", 25, 64, 48, grey)
+    picture = iio.imread(out)
+    np.testing.assert_array_equal(picture[:, 64:], grey(2))
+    np.testing.assert_array_equal(
+        picture[:, :64], next(drawing.frames(FIXED, positions(5)[2:3], 64, 48))
+    )
+
+
 def test_a_canvas_that_is_not_closed_ends_without_noise(can_draw):
     """And another may be drawn on between two of its pictures."""
     code = (

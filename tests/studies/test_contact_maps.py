@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import config, figures, train
+from hybrid_rl import figures
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.maps.learned import LearnedMap
@@ -97,7 +97,25 @@ def test_a_pose_is_found_where_it_stays_good() -> None:
     position = np.array([[0.5, 0.01, 0.5, 0.02, 0.01], [0.5] * 5, [0.01] * 5])
     angle = np.array([[0.01] * 5, [0.01] * 5, [0.01, 0.2, 0.01, 0.01, 0.01]])
     good = contacts.good(position, angle)
-    np.testing.assert_array_equal(contacts.found(good), [4, np.nan, 3])
+    np.testing.assert_array_equal(contacts.found(good), [4, np.inf, 3])
+    np.testing.assert_array_equal(contacts.first(good), [2, np.inf, 1])
+
+
+def test_a_robot_is_stuck_in_one_cell() -> None:
+    """The last 10 s of 20: at rest; half of them; fewer; a line through all cells."""
+    rest, line = np.full((200, 2), 0.55), np.linspace([0, 0.55], [2, 0.55], 200)
+    half = np.concatenate([line[:100], rest[:50], line[100:150]])
+    fewer = np.concatenate([line[:100], rest[:49], line[100:151]])
+    s = np.stack([rest, half, fewer, line])
+    np.testing.assert_array_equal(contacts.stuck(s, 0.1), [True, True, False, False])
+
+
+def test_the_sign_test_leaves_ties_out() -> None:
+    """P(0 or 5 of 5 coins) = 2 / 32; never is later than any time, and equal to never."""
+    one = np.array([1.0, 2, 3, 4, 5, np.inf, 7])
+    other = np.array([2.0, 3, 4, 5, np.inf, np.inf, 7])
+    assert contacts.sign_test(one, other) == {"sooner": 5, "later": 0, "p": pytest.approx(2 / 32)}
+    assert contacts.sign_test(other, other)["p"] == 1
 
 
 def draw(*arguments: str | Path) -> int:
@@ -105,16 +123,10 @@ def draw(*arguments: str | Path) -> int:
     return call(lambda: command.guarded(figures.main), "study=contact_maps", *arguments)
 
 
-SHORT = ["total_steps=12", "episode.steps=12", "num_seeds=2", "compile_cache=null"]
-
-
-def test_maps_of_a_small_run_and_a_map_file(tmp_path: Path) -> None:
+def test_maps_of_a_small_run_and_a_map_file(contact_runs: dict[str, Path], tmp_path: Path) -> None:
     """Numbers at each time for both trials, and a map file."""
-    small = ("algo=noise_mapping", "belief.capacity=16")
-    line = ["experiment=thesis/fig_5_2", *SHORT, *small, f"run_dir={tmp_path}/run"]
-    train.train(config.load(line))
-    out = tmp_path / "map.png"
-    line = (f"runs={tmp_path}/run", "times=0.5,1.2", f"out={out}", f"map_out={tmp_path}/m.npz")
+    out, run = tmp_path / "map.png", contact_runs["map"]
+    line = (f"runs={run}", "times=0.5,1.2", f"out={out}", f"map_out={tmp_path}/m.npz")
     assert draw("view=map", *line) == 0
     numbers = json.loads(out.with_suffix(".json").read_text())
     (one,) = numbers["methods"].values()
@@ -128,18 +140,19 @@ def test_maps_of_a_small_run_and_a_map_file(tmp_path: Path) -> None:
                 LearnedMap(str(tmp_path / "m.npz"))
 
 
-def test_poses_of_a_small_run(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_poses_of_a_small_run(
+    contact_runs: dict[str, Path], tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     """Errors of both trials; a run of poses has no map."""
-    small = ("algo=entropy_localisation", "belief.particles=50", "goal.samples=10")
-    line = ["experiment=thesis/fig_5_4", *SHORT, *small, f"run_dir={tmp_path}/run"]
-    train.train(config.load(line))
-    out = tmp_path / "pose.png"
-    assert draw("view=pose", f"runs={tmp_path}/run", f"out={out}") == 0
+    out, run = tmp_path / "pose.png", contact_runs["pose"]
+    assert draw("view=pose", f"runs={run}", f"out={out}") == 0
     numbers = json.loads(out.with_suffix(".json").read_text())
     (one,) = numbers["methods"].values()
     assert all(0 < error < 1.5 for error in one["position"]["median"])
+    assert one["first"]["never"] + sum(each is not None for each in one["first"]["each"]) == 2
+    assert len(one["truth_behind"]["each"]) == 2
     capfd.readouterr()
-    assert draw("view=map", f"runs={tmp_path}/run") == 2
+    assert draw("view=map", f"runs={run}") == 2
     assert "is no map of contacts" in only_line(capfd)
-    assert draw("view=pose", f"runs={tmp_path}/run", "times=5") == 2
+    assert draw("view=pose", f"runs={run}", "times=5") == 2
     assert "times=5: must rise, up to 1.2 s" in only_line(capfd)

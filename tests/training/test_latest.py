@@ -11,7 +11,7 @@ from jax import Array
 from omegaconf import OmegaConf
 
 from hybrid_rl import config
-from hybrid_rl.data.replay import Replay
+from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Batch, EnvState, Params, Spec
@@ -46,7 +46,7 @@ class Half:
 
 @dataclass(frozen=True)
 class Recorder:
-    """A learner that keeps the batch of every update."""
+    """A learner that keeps the batch of every update, and a number from its key."""
 
     every: int = 1
     data: ClassVar[str] = "latest"
@@ -55,14 +55,16 @@ class Recorder:
     def init(self, key: Array, spec: Spec) -> dict:
         empty = jnp.full((DECISIONS, NUM_ENVS, 1), jnp.nan)
         flags = empty[..., 0]
-        return {"batch": Batch(empty, empty, flags, flags, flags, empty), "count": jnp.int32(0)}
+        batch = Batch(empty, empty, flags, flags, flags, empty)
+        return {"batch": batch, "count": jnp.int32(0), "drawn": jax.random.uniform(key)}
 
     def params(self, state: dict) -> dict:
         return {"belief": state}
 
     def update(self, state: dict, params: Params, batch: Batch, key: Array) -> tuple:
         all_ = jax.tree.map(lambda a, b: a.at[state["count"]].set(b), state["batch"], batch)
-        return {"batch": all_, "count": state["count"] + 1}, {"belief/count": state["count"]}
+        after = {"batch": all_, "count": state["count"] + 1, "drawn": jax.random.uniform(key)}
+        return after, {"belief/count": state["count"]}
 
 
 def agent(every: int = 1) -> Agent:
@@ -111,6 +113,30 @@ def test_every_third_decision_can_be_taken() -> None:
     np.testing.assert_array_equal(batch.obs[:4], before[::3])
     applies = ~np.isnan(np.asarray(metrics["belief/count"]))
     np.testing.assert_array_equal(applies, np.arange(DECISIONS) % 3 == 0)
+
+
+@pytest.mark.parametrize("every", [1, 3])
+def test_recorded_decisions_teach_the_same_again(every: int) -> None:
+    """With the same random numbers, without controller and world."""
+    one = agent(every)
+    after, _, _ = states(one)
+    last = jax.tree.map(lambda each: each[-1], after)
+    made = unpack(last.memory.rows[:DECISIONS], one.spec)
+
+    def again(key: Array) -> Any:
+        def learn(state: Any, given: tuple[Any, Array]) -> tuple[Any, Array]:
+            state = one.learn(state, *given)
+            return state, state.learners["recorder"]["drawn"]
+
+        steps = NUM_ENVS * jnp.arange(DECISIONS)
+        return jax.lax.scan(learn, one.init(key), (made, steps))
+
+    state, drawn = jax.jit(again)(jax.random.key(0))
+    np.testing.assert_array_equal(drawn, after.learners["recorder"]["drawn"])
+    assert len(np.unique(drawn)) == -(-DECISIONS // every)
+    got, kept = (each.learners["recorder"]["batch"] for each in (state, last))
+    jax.tree.map(np.testing.assert_array_equal, got, kept)
+    np.testing.assert_array_equal(state.memory.rows, last.memory.rows)
 
 
 def test_two_learners_of_one_field_are_refused() -> None:

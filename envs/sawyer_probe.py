@@ -1,0 +1,182 @@
+"""Sawyer probes objects on a table with a rod, which feels only that it touches one.
+
+    dp_c/dt = v_c,   dv_c/dt = a u - b v_c      the command, in the plane of the table
+    twist = v_c + k (p_c - p)                   of the tip, by damped least squares
+    r = y: whether the force between rod and objects was above 0, 0 or 1
+
+o = (p, v) [4]: position [m] and velocity [m/s] of the rod's tip in the plane; height and
+orientation of the rod are held. The command leads the tip by `lead` at most and then loses its
+velocity away from the tip, so that the arm presses gently; 5 cm outside of the box [low, high] it
+stops. A decision is 0.1 s in five commands of four physics steps. Objects do not move; they are
+rounded boxes in a pose theta, as in `contact_plane`. Start: at rest, uniform in the box, clear of
+the objects. Never terminates.
+Metrics: touch, which is y; pose_x, pose_y and pose_angle, theta.
+
+Source: thesis section 5.3 (a robot that feels contact); arm and servos are those of `sawyer_push`.
+Objects, box, a, b, k and `lead` are our choice.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs.analytic.contact_plane import ContactPlane
+from hybrid_rl.envs.analytic.point_mass import DT, move
+from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
+from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.sawyer_push import HOME
+from hybrid_rl.types import EnvState, Spec
+
+ASSET = "sawyer_probe.xml"
+COMMANDS, STEPS = 5, 4  # of a decision; physics steps of a command
+EDGE = 0.05  # [m] from the box to the edge of the workspace
+HALF = 0.03  # [m] half height of the objects
+ITERATIONS = 30  # of the inverse kinematics at the start
+TIP = Chain(ASSET, "tip")
+THREE = (  # a disc, a box and a bar, without symmetry
+    (0.64, 0.13, 0.0, 0.045, 0.045, 0.045),
+    (0.62, -0.12, 0.4, 0.04, 0.028, 0.006),
+    (0.45, 0.03, 1.2, 0.055, 0.016, 0.006),
+)
+
+
+@dataclass(frozen=True)
+class SawyerProbe:
+    """Sawyer among fixed objects; `physics` is native, mjx, warp or auto.
+
+    Raises:
+        ValueError: as `ContactPlane`; for an unknown physics, or numbers out of range.
+    """
+
+    physics: str = "auto"
+    objects: tuple[tuple[float, ...], ...] = THREE
+    acceleration: float = 0.3  # [m/s^2] a
+    drag: float = 0.5  # [1/s] b
+    low: tuple[float, ...] = (0.35, -0.25)  # [m] of the box: x, y
+    high: tuple[float, ...] = (0.75, 0.25)
+    theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
+    lead: float = 0.01  # [m] of the command before the tip
+    track: float = 10.0  # [1/s] k
+    hold: float = 5.0  # [1/s] gain on height and orientation
+    posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
+    damping: float = 0.02  # of the least squares, for [m] and [rad]
+    radius: ClassVar[float] = 0.012  # [m] of the rod
+
+    def __post_init__(self) -> None:
+        check(self.physics)
+        for name in ("lead", "track", "hold", "damping"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
+        for name in ("objects", "low", "high", "theta"):
+            object.__setattr__(self, name, getattr(self._plane, name))
+
+    @cached_property
+    def _plane(self) -> ContactPlane:
+        return ContactPlane(
+            self.objects, self.acceleration, self.drag, self.radius, self.low, self.high, self.theta
+        )
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=4, act=2, dt=DT)
+
+    @cached_property
+    def asset(self) -> str:
+        """MJCF text of the arm, the table and the objects at theta."""
+        cx, cy = ((a + b) / 2 for a, b in zip(self.low, self.high, strict=True))
+        x, y, angle = self.theta or (cx, cy, 0.0)
+        centred = tuple((a - cx, b - cy, *shape) for a, b, *shape in self.objects)
+        geoms, pairs = rounded_boxes.solid(centred, "rod", HALF)
+        body, site = 'name="objects" pos="0 0', '<site name="everywhere"'
+        text = mjcf.text(ASSET).replace(body, f'name="objects" euler="0 0 {angle}" pos="{x} {y}')
+        text = text.replace(site, f"{geoms}{rounded_boxes.drawn(centred, HALF)}{site}")
+        return text.replace("</mujoco>", f"{pairs}</mujoco>")
+
+    @property
+    def _body(self) -> Physics:
+        return Physics(self.asset, self.physics)
+
+    def reset(self, key: Array) -> EnvState:
+        """A random position of the tip, that of `contact_plane` for the same key."""
+        x, _, pose, _ = self._plane.reset(key).data
+        data = self._body.reset(self._reached(x[:2]), jnp.zeros(7))
+        tip = TIP.pose(data.qpos)[0][:2]
+        info = {"command": jnp.concatenate([tip, jnp.zeros(2)]), "pose": pose}
+        return self._state(data, jnp.zeros(()), info)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [2] in [-1, 1]."""
+        push, body = self.acceleration * jnp.clip(action, -1.0, 1.0), self._body
+
+        def command(carry: tuple[PhysicsState, Array], _: None) -> tuple:
+            data, c = carry
+            tip, rotation, jacobian = TIP.pose(data.qpos)
+            c = self._led(move(c, push, self.drag, DT / COMMANDS), tip[:2])
+            velocity = c[2:] + self.track * (c[:2] - tip[:2])
+            data = body.step(data, self._rates(data.qpos, tip, rotation, jacobian, velocity), STEPS)
+            return (data, c), body.sensor(data, "touch")[0]
+
+        first = state.data, state.info["command"]
+        (data, c), force = jax.lax.scan(command, first, None, length=COMMANDS)
+        touch = (force > 0).any().astype(jnp.float32)
+        touch = jnp.where(jnp.isfinite(data.qpos).all(), touch, jnp.nan)  # no contact hides a NaN
+        return self._state(data, touch, {**state.info, "command": c})
+
+    def _led(self, c: Array, tip: Array) -> Array:
+        """The command [4] in the workspace, near the tip [2], without velocity away from both."""
+        low, high = jnp.array(self.low) - EDGE, jnp.array(self.high) + EDGE
+        inside = jnp.clip(c[:2], low, high)
+        v = jnp.where(c[:2] == inside, c[2:], 0.0)
+        ahead = inside - tip
+        away = jnp.sqrt((ahead**2).sum() + 1e-12)
+        taut = away > self.lead
+        v = v - jnp.where(taut, jnp.maximum(v @ ahead, 0) / away**2, 0.0) * ahead
+        return jnp.concatenate([jnp.where(taut, tip + self.lead / away * ahead, inside), v])
+
+    def _rates(
+        self, qpos: Array, tip: Array, rotation: Array, jacobian: Array, velocity: Array
+    ) -> Array:
+        """Joint velocities [7] [rad/s] that move the tip by `velocity` [2] [m/s]."""
+        home, upright = TIP.constant_pose(HOME)
+        turn = rotate_towards(rotation, jnp.asarray(upright), self.hold)
+        rise = self.hold * (jnp.asarray(home[2:]) - tip[2:])
+        back = self.posture * (jnp.asarray(HOME, jnp.float32) - qpos)
+        twist = jnp.concatenate([velocity, rise, turn])
+        return damped_inverse(jacobian, twist, self.damping, back)
+
+    def _reached(self, p: Array) -> Array:
+        """Angles [7] that bring the tip to p [2], by Newton's method."""
+
+        def newton(q: Array, _: None) -> tuple[Array, None]:
+            tip, rotation, jacobian = TIP.pose(q)
+            gain = self.hold
+            rates = self._rates(q, tip, rotation, jacobian, gain * (p - tip[:2]))
+            return q + rates / gain, None
+
+        return jax.lax.scan(newton, jnp.array(HOME), None, length=ITERATIONS)[0]
+
+    def _state(self, data: PhysicsState, touch: Array, info: dict[str, Array]) -> EnvState:
+        tip, _, jacobian = TIP.pose(data.qpos)
+        obs = jnp.concatenate([tip[:2], jacobian[:2] @ data.qvel])
+        x, y, angle = info["pose"]
+        metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
+        no = jnp.zeros((), bool)
+        return EnvState(data, obs, touch, no, no, metrics, info)
+
+    def distance(self, s: Array, pose: Array | None = None) -> Array:
+        """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
+        return self._plane.distance(s, pose)
+
+    def scene(self) -> str:
+        """MJCF text of the scene for rendering."""
+        return self.asset
+
+    def pose(self, state: EnvState) -> Array:
+        """Joint positions qpos [7] for rendering."""
+        return state.data.qpos

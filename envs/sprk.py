@@ -1,0 +1,171 @@
+"""SPRK: a hamster ball among solid objects in MuJoCo, which feels that it touches one.
+
+    m dv/dt = m (a w - b v) + contact,   lag dw/dt = u - w,   dp/dt = v
+    r = y, the measured contact, 0 or 1
+
+o = (p, v) [4] in m and m/s. Objects, theta, start, sensor errors and metrics are those of
+`contact_plane`; the contacts are MuJoCo's. The ball is simulated in the frame of the objects,
+where they stand still:
+
+    s~ = R(a)' (s - t) + c,   v~ = R(a)' v,   u~ = R(a)' u,   theta = (t, a)
+
+A decision is 0.1 s, 30 physics steps. y is 1 after a decision in which
+
+    touch           the force between ball and objects is above 0, at any other step
+    accelerometer   |dv/dt - (a u - b v)| > threshold, of means over 1/30 s: a weak contact is
+                    missed, and an action that changes faster than the motor follows is felt as one
+
+Source: thesis sections 5.3 and 5.4 (a SPRK ball; collisions from the inertial sensor, false ones in
+quick movements). Radius and mass as far as remembered of Sphero's SPRK+; a, b, the motor's lag,
+the threshold and the contact's stiffness are our choice.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane, turned
+from hybrid_rl.envs.analytic.point_mass import DT, move
+from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.options import one_of
+from hybrid_rl.types import EnvState, Spec
+
+ASSET = "sprk.xml"
+TIMESTEP = 1 / 300  # [s]
+READINGS, STEPS = 15, 2  # of the touch sensor in a decision; physics steps of a reading
+MEANS = 3  # of the accelerometer in a decision: 30 Hz
+HALF = 0.1  # [m] half height of the objects
+PLANE = (  # fields that contact_plane has, too
+    *("objects", "acceleration", "drag", "radius", "low", "high", "theta", "spread"),
+    *("false_contact", "missed"),
+)
+
+
+@dataclass(frozen=True)
+class Sprk:
+    """A ball among objects; `physics` is native, mjx, warp or auto.
+
+    Raises:
+        ValueError: as `ContactPlane`; for an unknown sensor or physics, or numbers out of range.
+    """
+
+    physics: str = "auto"
+    objects: tuple[tuple[float, ...], ...] = THREE
+    acceleration: float = 1.0  # [m/s^2] a
+    drag: float = 0.0  # [1/s] b
+    radius: float = 0.0365  # [m] of the ball
+    mass: float = 0.18  # [kg] m
+    lag: float = 0.01  # [s] of the motor; 0: none
+    low: tuple[float, ...] = (0.0, 0.0)  # [m]
+    high: tuple[float, ...] = (1.0, 1.0)
+    theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
+    spread: tuple[float, ...] = (0.0, 0.0, 0.0)  # of theta at the reset
+    sensor: str = "touch"  # or accelerometer
+    threshold: float = 0.5  # [m/s^2] of the accelerometer
+    false_contact: float = 0.0  # probability for |u - u_before| = 2, besides the sensor's own
+    missed: float = 0.0  # probability
+
+    def __post_init__(self) -> None:
+        check(self.physics)
+        one_of("sensor", self.sensor, ("touch", "accelerometer"))
+        for name in ("mass", "threshold"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
+        if not self.lag >= 0:
+            raise ValueError(f"lag={self.lag}: must be 0 or more")
+        for name in PLANE:
+            object.__setattr__(self, name, getattr(self._plane, name))
+
+    @cached_property
+    def _plane(self) -> ContactPlane:
+        return ContactPlane(**{name: getattr(self, name) for name in PLANE})
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=4, act=2, dt=DT)
+
+    @cached_property
+    def asset(self) -> str:
+        """MJCF text of the ball and the objects in their reference arrangement."""
+        words = {
+            "TIMESTEP": TIMESTEP,
+            "DYNAMICS": "filterexact" if self.lag else "none",
+            "LAG": self.lag or 1.0,
+            "FORCE": self.mass * self.acceleration,
+            "DAMPING": self.mass * self.drag,
+            "RADIUS": self.radius,
+            "MASS": self.mass,
+        }
+        text = mjcf.text(ASSET)
+        for word, value in words.items():
+            text = text.replace(word, str(value))
+        geoms, pairs = rounded_boxes.solid(self.objects, "ball", HALF)
+        text = text.replace("</body>", f"{geoms}</body>", 1)
+        return text[text.index("<mujoco") :].replace("</mujoco>", f"{pairs}</mujoco>")
+
+    @property
+    def _body(self) -> Physics:
+        return Physics(self.asset, self.physics)
+
+    def reset(self, key: Array) -> EnvState:
+        """A random position and pose, those of `contact_plane` for the same key."""
+        x, u, pose, noise = self._plane.reset(key).data
+        p = turned(x[:2] - pose[:2], -pose[2]) + self._plane.middle
+        info = {"pose": pose, "action": u, "noise": noise}
+        return self._state(self._body.reset(p, jnp.zeros(2)), jnp.zeros(()), jnp.zeros(()), info)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [2] in [-1, 1]."""
+        u, body, info = jnp.clip(action, -1.0, 1.0), self._body, state.info
+        local = turned(u, -info["pose"][2])
+
+        def reading(data: PhysicsState, _: None) -> tuple[PhysicsState, tuple[Array, Array]]:
+            data = body.step(data, local, STEPS)
+            return data, (body.sensor(data, "touch")[0], data.qvel)
+
+        data, (force, v) = jax.lax.scan(reading, state.data, None, length=READINGS)
+        v = jnp.concatenate([state.data.qvel[None], v])[:: READINGS // MEANS]
+        jolts = jax.vmap(self._jolt, (0, 0, None))(v[:-1], v[1:], local)
+        touch, jolt = (
+            each.any().astype(jnp.float32) for each in (force > 0, jolts > self.threshold)
+        )
+        felt = touch if self.sensor == "touch" else jolt
+        noise, drawing = jax.random.split(jax.random.wrap_key_data(info["noise"]))
+        measured = self._plane.measured(felt, u - info["action"], drawing)
+        measured = jnp.where(jnp.isfinite(data.qpos).all(), measured, jnp.nan)
+        info = {**info, "action": u, "noise": jax.random.key_data(noise)}
+        return self._state(data, touch, measured, info)
+
+    def _jolt(self, v: Array, after: Array, u: Array) -> Array:
+        """|mean acceleration - commanded| [m/s^2] from v [2] to `after` [2] at u [2]."""
+        time = DT / MEANS
+        free = move(jnp.concatenate([jnp.zeros(2), v]), self.acceleration * u, self.drag, time)[2:]
+        return jnp.linalg.norm(after - free) / time
+
+    def _state(
+        self, data: PhysicsState, touch: Array, measured: Array, info: dict[str, Array]
+    ) -> EnvState:
+        pose = info["pose"]
+        p = turned(data.qpos - self._plane.middle, pose[2]) + pose[:2]
+        obs = jnp.concatenate([p, turned(data.qvel, pose[2])])
+        no = jnp.zeros((), bool)
+        x, y, angle = pose
+        metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}
+        return EnvState(data, obs, measured, no, no, metrics, info)
+
+    def distance(self, s: Array, pose: Array | None = None) -> Array:
+        """Signed distance [] [m] of s [2] to the nearest surface; `pose` [3] is theta."""
+        return self._plane.distance(s, pose)
+
+    def scene(self) -> str:
+        """MJCF text of the scene for rendering."""
+        return self._plane.scene()
+
+    def pose(self, state: EnvState) -> Array:
+        """theta and the position of the ball, qpos [5], for rendering."""
+        return jnp.concatenate([state.info["pose"], state.obs[:2]])
