@@ -77,14 +77,10 @@ class Agent:
         return self.episode.spec
 
     def check(self, decisions: int) -> None:
-        """Raise ValueError if a part refuses the sizes of the run; no device is used.
-
-        decisions: of the run.
-        """
+        """Raise ValueError if a part refuses a run of so many decisions; no device is used."""
         longest = min(decisions, self.episode.steps * self.num_envs)
         for part in self.learners.values():
-            check: Any = getattr(part, "check", None)
-            if check is not None:
+            if (check := getattr(part, "check", None)) is not None:
                 check(longest)
             jax.eval_shape(lambda init=part.init: init(jax.random.key(0), self.spec))
         jax.eval_shape(lambda: self.controller.init(self.spec))
