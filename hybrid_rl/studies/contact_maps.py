@@ -11,7 +11,8 @@ view=pose    figures 5-3, 5-4, 5-5 c d, 5-7: position and angle errors of experi
              sign tests the others are compared with the first run, of the same seeds
 view=absence claim on the lack of contact: entropy of the pose after all measurements, after the
              contacts alone and after the others alone, and the error of the mean pose, by the first
-             run's particles with `belief.kind=metropolis`
+             run's particles with `belief.kind=metropolis`; the entropy is that of a resolution of
+             3 mm, at least the dashed line
 
 IQM and 95% band over trials; shares with Wilson's 95% interval.
 """

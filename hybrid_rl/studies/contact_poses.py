@@ -29,6 +29,7 @@ from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
 KINDS = ("all", "contacts", "absences")
 AXES = ("x", "y", "angle")
 SOME, NEAREST, RHO = 400, 16, 0.3  # particles of an entropy, neighbours; [m]
+CLOSEST = 0.003  # [m]
 EVERY = 10  # decisions between two entropies
 
 
@@ -180,23 +181,30 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
         each = {"each": entropy, "position": position, "angle": angle}
         kinds[kind] = {"iqm": iqm(entropy), "low": low, "high": high, **each}
     less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
+    least = _entropy_of_balls(np.full(SOME, CLOSEST))
+    axes.axhline(least, color="#444444", linestyle="--", linewidth=0.8)
     axes.set(title="entropy of the pose", xlabel="Time [s]", ylabel="[nat]")
     axes.legend()
-    head = {"times": dt * (at + 1), "trials": len(run.y)}
+    head = {"times": dt * (at + 1), "trials": len(run.y), "least_entropy": least}
     return figure, {**head, "kinds": kinds, "absences_leave_no_more": less}
 
 
 def entropy_of(theta: np.ndarray) -> float:
     """Entropy [nat] of the density of poses theta [M, 3], by their NEAREST neighbours.
 
-    Kozachenko and Leonenko 1987, with angles as lengths, rho = 0.3 m. Neighbours are many, as
-    resampled particles may be equal.
+    Kozachenko and Leonenko 1987, with angles as lengths, rho = 0.3 m. Resampled particles may be
+    equal, so that neighbours are many, and the radius around them is at least CLOSEST.
     """
     apart = theta[:, None] - theta[None]
     apart[..., 2] = RHO * ((apart[..., 2] + np.pi) % (2 * np.pi) - np.pi)
     radius = np.partition(np.linalg.norm(apart, axis=-1), NEAREST, 1)[:, NEAREST]
-    ball = np.log(4 / 3 * np.pi) + 3 * np.log(np.maximum(radius, 1e-6)).mean()
-    return float(digamma(len(theta)) - digamma(NEAREST) + ball - np.log(RHO))
+    return _entropy_of_balls(np.maximum(radius, CLOSEST))
+
+
+def _entropy_of_balls(radius: np.ndarray) -> float:
+    """Entropy [nat] if balls of these radii [M] around M poses hold NEAREST others each."""
+    ball = np.log(4 / 3 * np.pi) + 3 * np.log(radius).mean()
+    return float(digamma(len(radius)) - digamma(NEAREST) + ball - np.log(RHO))
 
 
 def _filtered(run: Trials, kind: str) -> tuple[dict[str, np.ndarray], np.ndarray]:
