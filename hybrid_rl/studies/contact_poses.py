@@ -26,9 +26,14 @@ from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.falls import wilson
 from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
 
-KINDS = ("all", "contacts", "absences")
+KINDS = {  # which measurements y [S, T] count
+    "all": lambda y: y >= 0,
+    "contacts": lambda y: y > 0.5,
+    "absences": lambda y: y < 0.5,
+}
 AXES = ("x", "y", "angle")
 SOME, NEAREST, RHO = 400, 16, 0.3  # particles of an entropy, neighbours; [m]
+CLOSEST = 0.003  # [m]
 EVERY = 10  # decisions between two entropies
 
 
@@ -170,8 +175,9 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     axes = figure.subplots()
     at = np.unique([*range(EVERY - 1, length, EVERY), *at])
     kinds = {}
-    for i, kind in enumerate(KINDS):
-        rows, theta = _filtered(run, kind)
+    filtered = _filter(run)
+    for i, (kind, counts) in enumerate(KINDS.items()):
+        rows, theta = filtered(counts(run.y))
         entropy = np.array([[entropy_of(each[j]) for j in at] for each in theta])
         low, high = band(entropy)
         axes.plot(dt * (at + 1), iqm(entropy), color=COLOURS[i], label=kind)
@@ -180,37 +186,43 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
         each = {"each": entropy, "position": position, "angle": angle}
         kinds[kind] = {"iqm": iqm(entropy), "low": low, "high": high, **each}
     less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
+    least = _entropy_of_balls(np.full(SOME, CLOSEST))
+    axes.axhline(least, color="#444444", linestyle="--", linewidth=0.8)
     axes.set(title="entropy of the pose", xlabel="Time [s]", ylabel="[nat]")
     axes.legend()
-    head = {"times": dt * (at + 1), "trials": len(run.y)}
+    head = {"times": dt * (at + 1), "trials": len(run.y), "least_entropy": least}
     return figure, {**head, "kinds": kinds, "absences_leave_no_more": less}
 
 
 def entropy_of(theta: np.ndarray) -> float:
     """Entropy [nat] of the density of poses theta [M, 3], by their NEAREST neighbours.
 
-    Kozachenko and Leonenko 1987, with angles as lengths, rho = 0.3 m. Neighbours are many, as
-    resampled particles may be equal.
+    Kozachenko and Leonenko 1987, with angles as lengths, rho = 0.3 m. Resampled particles may be
+    equal, so that neighbours are many, and the radius around them is at least CLOSEST.
     """
     apart = theta[:, None] - theta[None]
     apart[..., 2] = RHO * ((apart[..., 2] + np.pi) % (2 * np.pi) - np.pi)
     radius = np.partition(np.linalg.norm(apart, axis=-1), NEAREST, 1)[:, NEAREST]
-    ball = np.log(4 / 3 * np.pi) + 3 * np.log(np.maximum(radius, 1e-6)).mean()
-    return float(digamma(len(theta)) - digamma(NEAREST) + ball - np.log(RHO))
+    return _entropy_of_balls(np.maximum(radius, CLOSEST))
 
 
-def _filtered(run: Trials, kind: str) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """What the run's belief about poses holds if only measurements of this kind count.
+def _entropy_of_balls(radius: np.ndarray) -> float:
+    """Entropy [nat] if balls of these radii [M] around M poses hold NEAREST others each."""
+    ball = np.log(4 / 3 * np.pi) + 3 * np.log(radius).mean()
+    return float(digamma(len(radius)) - digamma(NEAREST) + ball - np.log(RHO))
+
+
+def _filter(run: Trials) -> Any:
+    """What the run's belief about poses holds if only some measurements count, [S, T].
 
     Returns:
-        Its mean [S, T] in rows, and some of its particles [S, T, SOME, 3].
+        A function of which ones: its mean [S, T] in rows, and some particles [S, T, SOME, 3].
     """
     learner: Any = run.recorded.run.agent.learners["belief"]
     belief = replace(learner.belief, kind="metropolis")
 
     def one(state: Any, measured: Any) -> Any:
-        s, y, key = measured
-        counts = {"all": jnp.array(True), "contacts": y > 0.5, "absences": y < 0.5}[kind]
+        s, y, counts, key = measured
         after = belief.add(state, s, y, key)
         state = jax.tree.map(lambda new, old: jnp.where(counts, new, old), after, state)
         report = belief.report(state)
@@ -218,15 +230,20 @@ def _filtered(run: Trials, kind: str) -> tuple[dict[str, np.ndarray], np.ndarray
         drawn = resampling.systematic(state.log_w, SOME, jnp.float32(0.5))
         return state, (mean, state.theta[drawn])
 
-    def trial(key: jax.Array, s: jax.Array, y: jax.Array) -> Any:
+    @jax.jit
+    @jax.vmap
+    def trial(key: jax.Array, s: jax.Array, y: jax.Array, counts: jax.Array) -> Any:
         first, adding = jax.random.split(key)
         state = belief.init(first, run.recorded.run.agent.spec)
-        return jax.lax.scan(one, state, (s, y, jax.random.split(adding, len(y))))[1]
+        return jax.lax.scan(one, state, (s, y, counts, jax.random.split(adding, len(y))))[1]
 
-    keys = jax.random.split(jax.random.key(0), len(run.y))
-    mean, theta = jax.jit(jax.vmap(trial))(keys, jnp.asarray(run.s), jnp.asarray(run.y))
-    means = {f"belief/mean_{axis}": np.asarray(mean[..., i]) for i, axis in enumerate(AXES)}
-    return {**run.rows, **means}, np.asarray(theta)
+    def filtered(counts: np.ndarray) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        keys = jax.random.split(jax.random.key(0), len(run.y))
+        mean, theta = trial(keys, run.s, run.y, counts)
+        means = {f"belief/mean_{axis}": np.asarray(mean[..., i]) for i, axis in enumerate(AXES)}
+        return {**run.rows, **means}, np.asarray(theta)
+
+    return filtered
 
 
 def absence_lines(numbers: dict[str, Any]) -> list[str]:
