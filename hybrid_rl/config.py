@@ -139,7 +139,7 @@ def build(config: DictConfig) -> Run:
             config.random_steps,
             config.pretrain,
         )
-        agent.check()
+        agent.check(rounds * config.num_envs)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
 
 

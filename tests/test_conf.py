@@ -46,10 +46,12 @@ def test_the_yaml_of_a_part_lists_every_field(path: Path) -> None:
 
 OF_TASK = {  # methods that need another task
     **dict.fromkeys(
-        (f"{name}_mapping" for name in ("ergodic", "kle3", "entropy", "noise")), "contact_plane"
+        (f"{name}_mapping" for name in ("ergodic", "kle3", "entropy", "noise", "information")),
+        "contact_plane",
     ),
     **dict.fromkeys(
-        (f"{name}_localisation" for name in ("ergodic", "kle3", "entropy")), "contact_plane"
+        (f"{name}_localisation" for name in ("ergodic", "kle3", "entropy", "information")),
+        "contact_plane",
     ),
     "computed_torque": "sawyer_torque",
     "dagger": "lander",

@@ -135,6 +135,21 @@ USAGE = [  # overrides of train, words of the line
         "task=halfcheetah algo=fisher",
         "task=halfcheetah: fisher needs an environment with a known reward; choose one of cart_",
     ),
+    *(
+        (f"task=contact_plane algo=ergodic_localisation {override}", words)
+        for override, words in (
+            ("map=learned map.file=nowhere.npz", "map.file=nowhere.npz: no such file"),
+            (
+                "episode.steps=60 belief.capacity=50",
+                "belief.capacity=50: an episode has 60 measurements, and poses need all of them",
+            ),
+            (
+                "env.objects=[[0.5,0.5,0,0.45,0.45,0.01]]",
+                "env.objects=[[0.5,0.5,0,0.45,0.45,0.01]]: leave no room to start; 20% of the box",
+            ),
+            ("env.objects=[[1.5,0.5,0,0.1,0.1,0.1]]", "its middle lies outside of the box"),
+        )
+    ),
     ("algo=fisher information.floor=0", "information.floor=0: must be above 0"),
     ("algo=disagreement model=gaussian", "objective.model=Gaussian: needs an ensemble"),
     ("resume=nowhere", "resume=nowhere: no run folder there"),

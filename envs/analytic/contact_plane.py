@@ -25,14 +25,17 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
+from hybrid_rl.envs.analytic import arrangements
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.types import EnvState, Spec
 
 SUBSTEPS, CORNER = 10, 2  # steps of a decision; projections of a step, for corners of two objects
-STARTS, CLEAR = 64, 0.02  # candidates for the start; [m] from the surface
+STARTS, CLEAR = 64, 0.02  # candidates for the start; from a surface, in the box's shorter side
+FREE = 0.2  # share of the box that must be free: all candidates miss it once in a million
 THREE = (  # a disc, a box and a bar, without symmetry
     (0.25, 0.72, 0.0, 0.10, 0.10, 0.10),
     (0.72, 0.68, 0.4, 0.09, 0.06, 0.01),
@@ -54,8 +57,8 @@ class ContactPlane:
     """A ball among objects, with a binary contact sensor.
 
     Raises:
-        ValueError: for objects that are no rounded boxes, that lie outside of the box, or numbers
-            out of range.
+        ValueError: for objects that are no rounded boxes, that lie outside of the box or leave no
+            room to start, or numbers out of range.
     """
 
     objects: tuple[tuple[float, ...], ...] = THREE
@@ -89,6 +92,20 @@ class ContactPlane:
             raise ValueError("theta, spread: each needs three numbers: x, y and the angle")
         for shape in self.objects:
             _check(shape, self.low, self.high)
+        if self._free() < FREE:
+            raise ValueError(
+                f"objects={[list(shape) for shape in self.objects]}: leave no room to start; "
+                f"{FREE:.0%} of the box must be free for a ball of radius {self.radius}"
+            )
+
+    def _free(self) -> float:
+        """Share of the box in which the ball can start, with the objects as listed."""
+        low, high = np.array(self.low), np.array(self.high)
+        sides = [np.linspace(a, b, 41) for a, b in zip(low, high, strict=True)]
+        points = np.stack(np.meshgrid(*sides), -1).reshape(-1, 2)
+        each = [arrangements.distance(points, shape) for shape in self.objects]
+        gap = self.radius + CLEAR * float(np.min(high - low))
+        return float((np.min(each, 0) > gap).mean()) if each else 1.0
 
     @property
     def spec(self) -> Spec:
@@ -107,7 +124,8 @@ class ContactPlane:
         pose = pose + jnp.array(self.spread) * jax.random.uniform(posing, (3,), minval=-1, maxval=1)
         low, high = jnp.array(self.low), jnp.array(self.high)
         starts = jax.random.uniform(starting, (STARTS, 2), minval=low, maxval=high)
-        clear = jax.vmap(lambda s: self.distance(s, pose))(starts) > self.radius + CLEAR
+        gap = self.radius + CLEAR * jnp.min(high - low)
+        clear = jax.vmap(lambda s: self.distance(s, pose))(starts) > gap
         x = jnp.concatenate([starts[jnp.argmax(clear)], jnp.zeros(2)])
         body = Body(x, jnp.zeros(2), pose, jax.random.key_data(noise))
         none = jnp.zeros(())
@@ -188,7 +206,8 @@ def rounded_box(
     """Signed distance [] of s [2] to the surface of a rounded box."""
     local = turned(s - jnp.array([x, y]), jnp.float32(-angle))
     q = jnp.abs(local) - jnp.array([half_x - rounding, half_y - rounding])
-    outside = jnp.sqrt(jnp.sum(jnp.maximum(q, 0) ** 2) + 1e-12)  # with a slope at 0
+    squares = jnp.sum(jnp.maximum(q, 0) ** 2)
+    outside = jnp.where(squares > 0, jnp.sqrt(jnp.where(squares > 0, squares, 1.0)), 0.0)
     return outside + jnp.minimum(jnp.max(q), 0) - rounding
 
 

@@ -189,6 +189,14 @@ class PoseParticles:
         log_w = jax.nn.log_softmax(rejuvenation.log_chance(p, expected, self.trust).sum(1))
         return jnp.log(float(self.subset)) + jnp.sum(jnp.exp(log_w) * log_w)
 
+    def check(self, measurements: int) -> None:
+        """Raise ValueError if so many measurements do not fit into the memory."""
+        if measurements > self.capacity:
+            raise ValueError(
+                f"belief.capacity={self.capacity}: an episode has {measurements} measurements, and "
+                "poses need all of them"
+            )
+
     def informed(self, state: Particles) -> Array:
         """[] bool: whether any measurement was 1."""
         return jnp.any((state.y > 0.5) & (jnp.arange(self.capacity) < state.count))

@@ -72,7 +72,7 @@ class Box:
         return low[None] + (high - low)[None] * points
 
     def outside(self, s: Array) -> Array:
-        """Mean [] over s [M, v] of the squared distance to the box."""
+        """Mean [] over s [M, v] of the squared distance to the box, in units of its sides."""
         over = jnp.maximum(s - jnp.array(self.high)[None], 0)
         under = jnp.maximum(jnp.array(self.low)[None] - s, 0)
-        return jnp.mean(jnp.sum((over + under) ** 2, -1))
+        return jnp.mean(jnp.sum(((over + under) / self.sides[None]) ** 2, -1))

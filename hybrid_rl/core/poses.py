@@ -3,9 +3,10 @@
     s~ = R(a)' (s - t) + c,   s = R(a) (s~ - c) + t
 
 map positions s to the frame of a map whose middle is c, and back. Three moves keep a posterior
-invariant if they are accepted by `log_ratio` and the ratio of posterior densities:
+invariant if they are accepted by `log_ratio` and the ratio of posterior densities; L is the
+shorter side of the box of t:
 
-    walk  t' = t + d e,  a' = a + 4 d e_3,  d log-uniform in [3 mm, 30 cm]
+    walk  t' = t + d L e,  a' = a + 4 d e_3,  d log-uniform in [0.003, 0.3]
     turn  about a contact q: t' = q + R(e) (t - q), a' = a + e; the contact stays one
     leap  onto the contact: a' uniform, b a point of the outline, t' = q - R(a') (b - c) + e
 
@@ -19,9 +20,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-SCALES = (0.003, 0.3)  # [m] of a walk; angles [rad] are four times as large
+SCALES = (0.003, 0.3)  # of a walk, in L; angles [rad] are four times as large
 TURN = 0.5  # [rad] standard deviation
-NEAR = 0.01  # [m] standard deviation of a leap's contact
+NEAR = 0.01  # standard deviation of a leap's contact, in L
 PRIOR = 0.05  # share of leaps that are drawn from the prior
 CHANCES = (0.35, 0.25, 0.4)  # of turn, walk and leap
 NO_LEAPS = (0.6, 0.4, 0.0)
@@ -34,6 +35,11 @@ class Frame(NamedTuple):
     high: Array  # [2]
     middle: Array  # [2] c
     outline: Array  # [M, 2] positions of contact in the map's frame
+
+    @property
+    def side(self) -> Array:
+        """L []."""
+        return jnp.min(self.high - self.low)
 
 
 def rotated(s: Array, angle: Array) -> Array:
@@ -72,9 +78,10 @@ def inside(frame: Frame, theta: Array) -> Array:
 def log_leap(frame: Frame, theta: Array, contact: Array) -> Array:
     """log density [] of theta [3] under a leap onto `contact` [2]."""
     touching = jax.vmap(from_map, (None, 0, None))(theta, frame.outline, frame.middle)
-    squares = jnp.sum((touching - contact[None]) ** 2, -1) / NEAR**2
+    variance = (NEAR * frame.side) ** 2
+    squares = jnp.sum((touching - contact[None]) ** 2, -1) / variance
     count, volume = len(frame.outline), jnp.prod(frame.high - frame.low)
-    near = jax.nn.logsumexp(-0.5 * squares) - jnp.log(2 * jnp.pi * NEAR**2 * count)
+    near = jax.nn.logsumexp(-0.5 * squares) - jnp.log(2 * jnp.pi * variance * count)
     density = jnp.logaddexp(near + jnp.log1p(-PRIOR), jnp.log(PRIOR / volume))
     return density - jnp.log(2 * jnp.pi)
 
@@ -95,7 +102,8 @@ def move(
     choosing, scaling, walking, turning, leaping = jax.random.split(key, 5)
     low, high = jnp.log(SCALES[0]), jnp.log(SCALES[1])
     scale = jnp.exp(jax.random.uniform(scaling, minval=low, maxval=high))
-    walked = theta + scale * jnp.array([1.0, 1.0, 4.0]) * jax.random.normal(walking, (3,))
+    units = jnp.stack([frame.side, frame.side, jnp.float32(4.0)])
+    walked = theta + scale * units * jax.random.normal(walking, (3,))
 
     angle = TURN * jax.random.normal(turning)
     turned = jnp.append(contact + rotated(theta[:2] - contact, angle), theta[2] + angle)
@@ -103,7 +111,8 @@ def move(
     drawing, which, nearby, mixing = jax.random.split(leaping, 4)
     prior = draw(frame, drawing)
     b = frame.outline[jax.random.randint(which, (), 0, len(frame.outline))]
-    t = contact - rotated(b - frame.middle, prior[2]) + NEAR * jax.random.normal(nearby, (2,))
+    error = NEAR * frame.side * jax.random.normal(nearby, (2,))
+    t = contact - rotated(b - frame.middle, prior[2]) + error
     onto = jnp.append(t, prior[2])
     leapt = jnp.where(jax.random.uniform(mixing) < PRIOR, prior, onto)
 

@@ -31,6 +31,12 @@ class BeliefLearner:
         if self.every < 1:
             raise ValueError(f"belief_learner.every={self.every}: must be 1 or more")
 
+    def check(self, decisions: int) -> None:
+        """Raise ValueError if the belief has no room for the measurements of an episode."""
+        check: Any = getattr(self.belief, "check", None)
+        if check is not None:
+            check(decisions // self.every)
+
     def init(self, key: Array, spec: Spec) -> Any:
         """The belief before any measurement. The key is consumed."""
         return self.belief.init(key, spec)

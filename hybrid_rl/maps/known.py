@@ -15,7 +15,7 @@ from jax import Array
 from hybrid_rl.protocols import ContactEnv
 
 OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
-NEWTON = 20  # iterations
+NEWTON, NEAR = 20, 1e-4  # iterations; |d - r| of a solution, in the box's shorter side
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,8 @@ def _outline(world: ContactEnv) -> np.ndarray:
             d, slope = step(s)
             s = s - (d - world.radius)[:, None] * slope
         d = np.asarray(jax.vmap(world.distance)(s))
-        s = np.asarray(s)[np.abs(d - world.radius) < 1e-4]
+        side = min(b - a for a, b in zip(world.low, world.high, strict=True))
+        s = np.asarray(s)[np.abs(d - world.radius) < NEAR * side]
     if not len(s):
         raise ValueError("map.world: has no objects to touch")
     return s[np.random.default_rng(0).choice(len(s), OUTLINE)]

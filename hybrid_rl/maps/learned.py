@@ -55,7 +55,8 @@ class LearnedMap:
             raise ValueError(f"map.low={self.low}: must lie between 0 and map.high={self.high}")
         arrays, prefix = _load(self.file), f"map.file={self.file}:"
         box = [*self.box_low, *self.box_high]
-        if not np.allclose([*arrays["low"], *arrays["high"]], box, atol=1e-5):
+        side = 1e-5 * float(np.min(np.subtract(self.box_high, self.box_low)))
+        if not np.allclose([*arrays["low"], *arrays["high"]], box, atol=side):
             has = [float(value) for value in (*arrays["low"], *arrays["high"])]
             raise ValueError(f"{prefix} is of the box {has}, this task's is {box}")
         if not len(self.outline):

@@ -1,8 +1,9 @@
-"""J = -sum_k Lambda_k (c_k - phi_k)^2 - b outside: the Fourier ergodic metric.
+"""J = -vol sum_k Lambda_k (c_k - phi_k)^2 - b outside: the Fourier ergodic metric.
 
 c_k averages over the path and the earlier states of the episode, of which each decision forgets a
 share 1 - f: f = 0 counts the path alone, as the thesis prints it. phi_k is estimated at the same N
-uniform points as the KL-ergodic measure. See core.fourier.
+uniform points as the KL-ergodic measure. The volume of the domain makes J a pure number. See
+core.fourier.
 """
 
 from dataclasses import dataclass
@@ -37,7 +38,7 @@ class FourierErgodic:
     domain: Box
     samples: int = 1000  # N
     modes: int = 5  # K for each coordinate
-    barrier: float = 0.0  # b, cost of leaving the domain [1/length^2]
+    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
     share: float = 0.0  # of the uniform density in p; 1: coverage
     forget: float = 1.0  # f, the weight that earlier states keep per decision
 
@@ -65,7 +66,8 @@ class FourierErgodic:
 
         def value(path: Path) -> Array:
             apart = fourier.metric(self.average(memory, path), phi, weights)
-            return -apart - self.barrier * self.domain.outside(self.domain.of(path.x))
+            outside = self.domain.outside(self.domain.of(path.x))
+            return -self.domain.volume * apart - self.barrier * outside
 
         now = self.features(self.domain.of(x)[None])[0]
         return value, FourierState(

@@ -36,7 +36,7 @@ class InformativePath:
     samples: int = 1000  # N
     width: float = 0.05  # w, as a share of the domain's sides
     forget: float = 1.0  # f
-    barrier: float = 0.0  # b, cost of leaving the domain, in units of its sides
+    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
     share: float = 0.0  # of the uniform density in g; 1: coverage
 
     def __post_init__(self) -> None:

@@ -42,8 +42,8 @@ class KLErgodic:
     samples: int = 100  # N
     variance: tuple[float, ...] = (0.1,)  # diagonal of Sigma: one for all, or [v]
     memory: int = 0  # M [decisions]
-    floor: float = 0.0  # added to q [1/volume of s]: distant regions attract less
-    barrier: float = 0.0  # b, cost of leaving the domain [1/length^2]
+    floor: float = 0.0  # added to q [uniform density]: distant regions attract less
+    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
     share: float = 0.0  # of the uniform density in p; 1: coverage
 
     def __post_init__(self) -> None:
@@ -94,7 +94,7 @@ class KLErgodic:
             count = jnp.minimum(memory.count, self.memory) + len(x)
             log_q = jnp.logaddexp(log_past, log_path) - jnp.log(count)
             if self.floor:
-                log_q = jnp.logaddexp(log_q, jnp.log(self.floor))
+                log_q = jnp.logaddexp(log_q, jnp.log(self.floor / self.domain.volume))
             apart = ergodic.divergence(points, log_q, self.domain.volume)
             return -apart - self.barrier * self.domain.outside(x)
 

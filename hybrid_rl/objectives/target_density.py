@@ -21,7 +21,7 @@ class TargetDensity:
 
     target: Target
     domain: Box
-    barrier: float = 0.0  # b, cost of leaving the domain [1/length^2]
+    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory."""

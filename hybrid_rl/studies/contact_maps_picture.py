@@ -60,7 +60,7 @@ def maps(pattern: str, times: str, trial: int, map_out: str) -> tuple[Any, dict[
         measured = quality(run, f, fine)
         numbers["methods"][run.label] = {
             **_reported(measured),
-            **_speed(run, measured["iou"], np.array(fine) * dt),
+            **speed(run, measured["iou"], np.array(fine) * dt),
             "false": false_contacts.measures(run, f[:, -1]),
         }
         for axes, mark in zip(panels[i], marks, strict=True):
@@ -126,7 +126,7 @@ def _reported(measured: dict[str, np.ndarray]) -> dict[str, Any]:
     return result
 
 
-def _speed(run: Trials, iou: np.ndarray, times: np.ndarray) -> dict[str, Any]:
+def speed(run: Trials, iou: np.ndarray, times: np.ndarray) -> dict[str, Any]:
     """Mean over time of iou [S, times], which is 0 at first; seconds until all are touched."""
     shown = run.y[:, : round(times[-1] / run.world.spec.dt)]
     area = np.trapezoid(np.pad(iou, ((0, 0), (1, 0))), np.pad(times, (1, 0)), axis=1)

@@ -76,9 +76,12 @@ class Agent:
         """The environment's sizes and time step."""
         return self.episode.spec
 
-    def check(self) -> None:
-        """Raise ValueError if a part refuses the sizes of the environment; no device is used."""
+    def check(self, decisions: int) -> None:
+        """Raise ValueError if a part refuses a run of so many decisions; no device is used."""
+        longest = min(decisions, self.episode.steps * self.num_envs)
         for part in self.learners.values():
+            if (check := getattr(part, "check", None)) is not None:
+                check(longest)
             jax.eval_shape(lambda init=part.init: init(jax.random.key(0), self.spec))
         jax.eval_shape(lambda: self.controller.init(self.spec))
 

@@ -36,9 +36,9 @@ def test_points_of_a_lattice_are_uniform_each_and_even_together() -> None:
 
 
 def test_distance_outside_is_squared_and_averaged() -> None:
-    """0 inside, (1, 2) and (-2, 0) beyond the sides."""
+    """0 inside, (1, 2) and (-2, 0) beyond sides of lengths 2 and 4."""
     s = jnp.array([[0.5, 1.0], [2.0, 6.0], [-3.0, 0.0]])
-    assert float(BOX.outside(s)) == pytest.approx((0 + 1 + 4 + 4) / 3)
+    assert float(BOX.outside(s)) == pytest.approx((0 + 0.25 + 0.25 + 1) / 3)
 
 
 @pytest.mark.parametrize(

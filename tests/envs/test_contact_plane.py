@@ -183,6 +183,7 @@ def test_the_scene_has_a_disc_where_the_distance_says() -> None:
         ({"objects": ((0.5, 0.5, 0, 0.1, 0.1),)}, "each is x, y, angle"),
         ({"objects": ((0.5, 0.5, 0, 0.1, 0.1, 0.2),)}, "rounding"),
         ({"objects": ((1.5, 0.5, 0, 0.1, 0.1, 0.1),)}, "outside of the box"),
+        ({"objects": ((0.5, 0.5, 0, 0.44, 0.44, 0.01),)}, "leave no room to start"),
         ({"missed": 1.0}, "missed=1.0"),
         ({"low": (1.0, 0.0)}, "low="),
         ({"theta": (0.0, 1.0)}, "three numbers"),

@@ -13,9 +13,11 @@ from hybrid_rl import figures
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.maps.learned import LearnedMap
-from hybrid_rl.studies import contact_poses, contacts
+from hybrid_rl.studies import contact_maps_picture, contact_poses, contacts, false_contacts
 
 WORLD = ContactPlane(objects=((0.3, 0.5, 0, 0.1, 0.1, 0.1), (0.75, 0.5, 0, 0.1, 0.1, 0.1)))
+
+NO_RUN: Any = None
 
 
 def trials(s: np.ndarray, y: np.ndarray) -> Any:
@@ -46,6 +48,48 @@ def test_measures_of_a_path_around_one_of_two_discs() -> None:
     cells = {tuple(np.floor(10 * at).astype(int)) for at in s}
     inside = sum(bool(free[j, i]) for i, j in cells)
     assert measured["cells"][0, 0] == pytest.approx(inside / free.sum())
+
+
+def test_time_to_touch_all_objects_and_mean_over_time() -> None:
+    """A path that is at the first disc from the start and at the second after 2 s; or never."""
+    angle = np.linspace(0, 0.6, 10)
+    first = np.array([0.3, 0.5]) + 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
+    second = np.array([0.75, 0.5]) - 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
+    s = np.stack([np.concatenate([first, first, second]), np.concatenate([first] * 3)])
+    run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s.astype(np.float32), np.ones((2, 30)), {})
+    seconds = contacts.touched_all(run)
+    assert seconds[0] == pytest.approx(2.1, abs=0.15)
+    assert np.isnan(seconds[1])
+    iou = np.array([[0.4, 0.8], [0.2, 0.2]])  # after 1.5 s and 3 s
+    speed = contact_maps_picture.speed(run, iou, np.array([1.5, 3.0]))
+    np.testing.assert_allclose(speed["mean_iou"]["each"], [(0.2 + 0.6) / 2, (0.1 + 0.2) / 2])
+    assert speed["seconds_to_all"]["trials"] == 1
+
+
+def test_returns_to_a_position_against_their_expected_time() -> None:
+    """Ten of 100 decisions after it left are near; a disc's area, counted on the map's grid."""
+    s = np.full((111, 2), 0.9, np.float32)
+    s[:11] = s[50:60] = [0.2, 0.2]
+    free = np.ones((contacts.GRID, contacts.GRID), bool)
+    ratio = false_contacts.returned(WORLD, free, s, np.array([3]))
+    assert ratio == pytest.approx(0.1 / (np.pi * contacts.CLOSE**2), rel=0.1)
+    still = np.full((20, 2), 0.2, np.float32)
+    assert np.isnan(false_contacts.returned(WORLD, free, still, np.array([3])))
+
+
+def test_false_contacts_by_hand() -> None:
+    """Two false readings of a trial, one of them where the map has an object."""
+    s = np.tile(np.linspace([0.05, 0.05], [0.95, 0.05], 40)[None], (2, 1, 1)).astype(np.float32)
+    y, touch = np.zeros((2, 40)), np.zeros((2, 40))
+    y[0, 4] = y[0, 35] = touch[1, 7] = 1
+    run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s, y, {"world/touch": touch})
+    f = np.full((2, contacts.GRID, contacts.GRID), -1.0)
+    f[:, : contacts.GRID // 2] = 1.0
+    got = false_contacts.measures(run, f)
+    np.testing.assert_allclose(got["wrong"]["each"], [2 / 40, 1 / 40])
+    np.testing.assert_array_equal(got["count"]["each"], [2, 0])
+    np.testing.assert_array_equal(got["rejected"]["each"], [0.5])
+    assert false_contacts.measures(run._replace(y=touch), f) == {}
 
 
 def test_a_pose_is_found_where_it_stays_good() -> None:
