@@ -4,8 +4,9 @@
     r = y, the measured contact, 0 or 1
 
 o = (p, v) [4] in m and m/s. Objects, theta, start, sensor errors and metrics are those of
-`contact_plane`; the contacts are MuJoCo's. The ball is simulated in the frame of the objects,
-where they stand still:
+`contact_plane`; the contacts are MuJoCo's. With `rolling` a shell, I = 2/3 m r^2, rolls on a floor,
+driven by the torque (m + I / r^2) a r w. The ball is simulated in the frame of the objects, where
+they stand still:
 
     s~ = R(a)' (s - t) + c,   v~ = R(a)' v,   u~ = R(a)' u,   theta = (t, a)
 
@@ -34,7 +35,8 @@ from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.options import one_of
 from hybrid_rl.types import EnvState, Spec
 
-ASSET = "sprk.xml"
+SLIDING, ROLLING = "sprk.xml", "sprk_rolling.xml"
+SHELL = 2 / 3  # moment of inertia of a shell / (m r^2)
 TIMESTEP = 1 / 300  # [s]
 READINGS, STEPS = 15, 2  # of the touch sensor in a decision; physics steps of a reading
 MEANS = 3  # of the accelerometer in a decision: 30 Hz
@@ -60,6 +62,7 @@ class Sprk:
     radius: float = 0.0365  # [m] of the ball
     mass: float = 0.18  # [kg] m
     lag: float = 0.01  # [s] of the motor; 0: none
+    rolling: bool = False  # driven by torques on a floor, which it rolls on; else pushed
     low: tuple[float, ...] = (0.0, 0.0)  # [m]
     high: tuple[float, ...] = (1.0, 1.0)
     theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
@@ -92,16 +95,18 @@ class Sprk:
     @cached_property
     def asset(self) -> str:
         """MJCF text of the ball and the objects in their reference arrangement."""
+        accelerated = self.mass * (1 + SHELL if self.rolling else 1)
         words = {
             "TIMESTEP": TIMESTEP,
             "DYNAMICS": "filterexact" if self.lag else "none",
             "LAG": self.lag or 1.0,
-            "FORCE": self.mass * self.acceleration,
-            "DAMPING": self.mass * self.drag,
+            "FORCE": accelerated * self.acceleration,
+            "DAMPING": accelerated * self.drag,
             "RADIUS": self.radius,
             "MASS": self.mass,
+            "INERTIA": SHELL * self.mass * self.radius**2,
         }
-        text = mjcf.text(ASSET)
+        text = mjcf.text(ROLLING if self.rolling else SLIDING)
         for word, value in words.items():
             text = text.replace(word, str(value))
         geoms, pairs = rounded_boxes.solid(self.objects, "ball", HALF)
@@ -116,8 +121,17 @@ class Sprk:
         """A random position and pose, those of `contact_plane` for the same key."""
         x, u, pose, noise = self._plane.reset(key).data
         p = turned(x[:2] - pose[:2], -pose[2]) + self._plane.middle
+        data = self._at(p, jnp.zeros(2))
         info = {"pose": pose, "action": u, "noise": noise}
-        return self._state(self._body.reset(p, jnp.zeros(2)), jnp.zeros(()), jnp.zeros(()), info)
+        return self._state(data, jnp.zeros(()), jnp.zeros(()), info)
+
+    def _at(self, p: Array, v: Array) -> PhysicsState:
+        """The ball at p [2] with velocity v [2], in the frame of the objects."""
+        if not self.rolling:
+            return self._body.reset(p, v)
+        spin = jnp.array([-v[1], v[0], 0.0]) / self.radius
+        qpos = jnp.concatenate([p, jnp.array([0.0, 1.0, 0.0, 0.0, 0.0])])
+        return self._body.reset(qpos, jnp.concatenate([v, jnp.zeros(1), spin]))
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [2] in [-1, 1]."""
@@ -126,10 +140,10 @@ class Sprk:
 
         def reading(data: PhysicsState, _: None) -> tuple[PhysicsState, tuple[Array, Array]]:
             data = body.step(data, local, STEPS)
-            return data, (body.sensor(data, "touch")[0], data.qvel)
+            return data, (body.sensor(data, "touch")[0], data.qvel[:2])
 
         data, (force, v) = jax.lax.scan(reading, state.data, None, length=READINGS)
-        v = jnp.concatenate([state.data.qvel[None], v])[:: READINGS // MEANS]
+        v = jnp.concatenate([state.data.qvel[None, :2], v])[:: READINGS // MEANS]
         jolts = jax.vmap(self._jolt, (0, 0, None))(v[:-1], v[1:], local)
         touch, jolt = (
             each.any().astype(jnp.float32) for each in (force > 0, jolts > self.threshold)
@@ -151,8 +165,8 @@ class Sprk:
         self, data: PhysicsState, touch: Array, measured: Array, info: dict[str, Array]
     ) -> EnvState:
         pose = info["pose"]
-        p = turned(data.qpos - self._plane.middle, pose[2]) + pose[:2]
-        obs = jnp.concatenate([p, turned(data.qvel, pose[2])])
+        p = turned(data.qpos[:2] - self._plane.middle, pose[2]) + pose[:2]
+        obs = jnp.concatenate([p, turned(data.qvel[:2], pose[2])])
         no = jnp.zeros((), bool)
         x, y, angle = pose
         metrics = {"touch": touch, "pose_x": x, "pose_y": y, "pose_angle": angle}

@@ -25,7 +25,7 @@ from hybrid_rl.envs.mujoco import mjcf
 # native, 4e-4 mjx; hopper 4e-6, 5e-6; cart and pole 2e-6, 2e-6 (no contact); ant 2e-5, 3e-4;
 # quadcopter 8e-7, 9e-7 (no contact); Sawyer, in 0.1 m, 3e-6, 9e-3; Panda 3e-6, 1e-2 [N], 3e-5 [m];
 # Sawyer under torque control 1e-6, 2e-5 (no contact, rates up to 35 rad/s);
-# ball 1e-6, 1e-6 (no contact).
+# ball 5e-6, 2e-6 (no contact).
 TOUCHING_BOUND = {
     ("halfcheetah", "native"): 1e-4,
     ("halfcheetah", "mjx"): 3e-3,
@@ -43,8 +43,8 @@ TOUCHING_BOUND = {
     ("panda_stack", "mjx"): 1e-1,
     ("sawyer_torque", "native"): 1e-5,
     ("sawyer_torque", "mjx"): 2e-4,
-    ("sprk", "native"): 1e-5,
-    ("sprk", "mjx"): 1e-5,
+    ("sprk", "native"): 1e-4,
+    ("sprk", "mjx"): 1e-4,
 }
 TOUCH = {  # geoms in contact
     "halfcheetah": ("floor",),

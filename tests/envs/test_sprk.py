@@ -7,6 +7,7 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
+from hydra.utils import instantiate
 
 from hybrid_rl import config
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
@@ -33,13 +34,18 @@ def follow(env, state, actions):
 def at(env, x):
     """The state at x [4], with the objects in their reference arrangement."""
     state, x = env.reset(jax.random.key(0)), jnp.asarray(x, jnp.float32)
-    return state.replace(data=env._body.reset(x[:2], x[2:]), obs=x)
+    return state.replace(data=env._at(x[:2], x[2:]), obs=x)
 
 
-def test_free_flight_is_the_point_mass_but_for_eulers_steps() -> None:
-    """Velocities are off by h b |v| at the most, positions by h |v| and what that adds up to."""
+@pytest.mark.parametrize("rolling", [False, True])
+def test_free_flight_is_the_point_mass_but_for_eulers_steps(rolling) -> None:
+    """Velocities are off by h b |v| at the most, positions by h |v| and what that adds up to.
+
+    A ball that rolls does not slip.
+    """
     drag, start = 0.5, np.array([0.2, 0.3, 0.5, -0.4])
-    env, free = Sprk("native", objects=(), drag=drag, lag=0.0), PointMass(1.0, drag)
+    env = Sprk("native", objects=(), drag=drag, lag=0.0, rolling=rolling)
+    free = PointMass(1.0, drag)
     actions = np.random.default_rng(0).uniform(-1, 1, (30, 2)).astype(np.float32)
     states = follow(env, at(env, start), jnp.asarray(actions))
     x, path = jnp.asarray(start, jnp.float32), []
@@ -51,6 +57,10 @@ def test_free_flight_is_the_point_mass_but_for_eulers_steps() -> None:
     assert (error[2:] < step * drag).all()
     assert (error[:2] < step * (1 + drag * 3.0)).all()  # [s] in all
     assert not states.reward.any()
+    if rolling:
+        speed = np.linalg.norm(states.obs[:, 2:], axis=1)
+        spin = np.linalg.norm(states.data.qvel[:, 3:], axis=1)
+        np.testing.assert_allclose(env.radius * spin, speed, rtol=0.02)
 
 
 def test_the_motor_follows_with_a_lag() -> None:
@@ -146,7 +156,7 @@ def test_mjx_agrees_with_mujoco_c() -> None:
 def test_experiments_of_the_contact_plane_run_on_it(experiment) -> None:
     """With the same objects, box and pose."""
     plane, ball = (
-        config.build(config.load([f"experiment=thesis/{experiment}", *more])).agent.episode.env
+        instantiate(config.load([f"experiment=thesis/{experiment}", *more]).env, _convert_="all")
         for more in ([], ["task=sprk"])
     )
     assert isinstance(ball, Sprk)
