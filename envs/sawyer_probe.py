@@ -4,10 +4,10 @@
     twist = v_c + k (p_c - p)                   of the tip, by damped least squares
     r = y: whether the force between rod and objects was above 0, 0 or 1
 
-o = (p, v) [4]: position [m] and velocity [m/s] of the rod's tip in the plane; height and
-orientation of the rod are held. The command leads the tip by `lead` at most and then loses its
+o = (p, v) [4]: position [m] and velocity [m/s] of the rod's tip in the plane; the rod is held
+upright, at a constant height. The command leads the tip by `lead` at most and then loses its
 velocity away from the tip, so that the arm presses gently; 5 cm outside of the box [low, high] it
-stops. A decision is 0.1 s in five commands of four physics steps. Objects do not move; they are
+stops. A decision is 0.1 s in ten commands of two physics steps. Objects do not move; they are
 rounded boxes in a pose theta, as in `contact_plane`. Start: at rest, uniform in the box, clear of
 the objects. Never terminates.
 Metrics: touch, which is y; pose_x, pose_y and pose_angle, theta.
@@ -27,13 +27,19 @@ from jax import Array
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
-from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards
+from hybrid_rl.envs.mujoco.kinematics import (
+    Chain,
+    damped_inverse,
+    quat_multiply,
+    rotate,
+    rotate_towards,
+)
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.sawyer_push import HOME
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "sawyer_probe.xml"
-COMMANDS, STEPS = 5, 4  # of a decision; physics steps of a command
+COMMANDS, STEPS = 10, 2  # of a decision; physics steps of a command
 EDGE = 0.05  # [m] from the box to the edge of the workspace
 HALF = 0.03  # [m] half height of the objects
 ITERATIONS = 30  # of the inverse kinematics at the start
@@ -61,8 +67,8 @@ class SawyerProbe:
     high: tuple[float, ...] = (0.75, 0.25)
     theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
     lead: float = 0.01  # [m] of the command before the tip
-    track: float = 10.0  # [1/s] k
-    hold: float = 5.0  # [1/s] gain on height and orientation
+    track: float = 5.0  # [1/s] k
+    hold: float = 10.0  # [1/s] gain on height and orientation
     posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
     damping: float = 0.02  # of the least squares, for [m] and [rad]
     radius: ClassVar[float] = 0.012  # [m] of the rod
@@ -105,7 +111,7 @@ class SawyerProbe:
     def reset(self, key: Array) -> EnvState:
         """A random position of the tip, that of `contact_plane` for the same key."""
         x, _, pose, _ = self._plane.reset(key).data
-        data = self._body.reset(self._reached(x[:2]), jnp.zeros(7))
+        data = self._body.reset(self._reached(x[:2], jnp.array(HOME)), jnp.zeros(7))
         tip = TIP.pose(data.qpos)[0][:2]
         info = {"command": jnp.concatenate([tip, jnp.zeros(2)]), "pose": pose}
         return self._state(data, jnp.zeros(()), info)
@@ -129,7 +135,7 @@ class SawyerProbe:
         return self._state(data, touch, {**state.info, "command": c})
 
     def _led(self, c: Array, tip: Array) -> Array:
-        """The command [4] in the workspace, near the tip [2], without velocity away from both."""
+        """The command [4] in the workspace and near the tip [2], without velocity out of these."""
         low, high = jnp.array(self.low) - EDGE, jnp.array(self.high) + EDGE
         inside = jnp.clip(c[:2], low, high)
         v = jnp.where(c[:2] == inside, c[2:], 0.0)
@@ -143,15 +149,15 @@ class SawyerProbe:
         self, qpos: Array, tip: Array, rotation: Array, jacobian: Array, velocity: Array
     ) -> Array:
         """Joint velocities [7] [rad/s] that move the tip by `velocity` [2] [m/s]."""
-        home, upright = TIP.constant_pose(HOME)
-        turn = rotate_towards(rotation, jnp.asarray(upright), self.hold)
+        home, leaning = TIP.constant_pose(HOME)
+        turn = rotate_towards(rotation, _upright(jnp.asarray(leaning)), self.hold)
         rise = self.hold * (jnp.asarray(home[2:]) - tip[2:])
         back = self.posture * (jnp.asarray(HOME, jnp.float32) - qpos)
         twist = jnp.concatenate([velocity, rise, turn])
         return damped_inverse(jacobian, twist, self.damping, back)
 
-    def _reached(self, p: Array) -> Array:
-        """Angles [7] that bring the tip to p [2], by Newton's method."""
+    def _reached(self, p: Array, q: Array) -> Array:
+        """Angles [7] that bring the tip to p [2], by Newton's method from q [7]."""
 
         def newton(q: Array, _: None) -> tuple[Array, None]:
             tip, rotation, jacobian = TIP.pose(q)
@@ -159,7 +165,7 @@ class SawyerProbe:
             rates = self._rates(q, tip, rotation, jacobian, gain * (p - tip[:2]))
             return q + rates / gain, None
 
-        return jax.lax.scan(newton, jnp.array(HOME), None, length=ITERATIONS)[0]
+        return jax.lax.scan(newton, q, None, length=ITERATIONS)[0]
 
     def _state(self, data: PhysicsState, touch: Array, info: dict[str, Array]) -> EnvState:
         tip, _, jacobian = TIP.pose(data.qpos)
@@ -178,5 +184,12 @@ class SawyerProbe:
         return self.asset
 
     def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [7] for rendering."""
-        return state.data.qpos
+        """Joint positions qpos [7] for rendering, at which the tip is where it was observed."""
+        return self._reached(state.obs[:2], state.data.qpos)
+
+
+def _upright(rotation: Array) -> Array:
+    """The rotation [4] of the tip next to `rotation` [4] in which the rod points down."""
+    axis = rotate(rotation, jnp.array([0.0, 0.0, 1.0]))
+    swing = jnp.stack([1 - axis[2], -axis[1], axis[0], jnp.zeros(())])  # axis x down
+    return quat_multiply(swing / jnp.linalg.norm(swing), rotation)

@@ -130,12 +130,12 @@ def _training(
     """Draw the first episode of training, with the belief at the right."""
     from hybrid_rl.envs.mujoco.offscreen import check_drawable
     from hybrid_rl.run.drawing import draw
-    from hybrid_rl.studies.belief_video import FPS, film
+    from hybrid_rl.studies.belief_video import MOST, film
 
-    shown = film(folder, seed, steps, height, out.suffix == ".png")
+    shown = film(folder, seed, steps, height, MOST[out.suffix])
     _check(check_drawable, shown.world)
-    draw(shown.world.scene(), shown.poses, out, FPS, width, height, shown.panel)
-    speed = "" if out.suffix == ".png" else f", {FPS / shown.rate:.2g} times real time"
+    draw(shown.world.scene(), shown.poses, out, shown.fps, width, height, shown.panel)
+    speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
     print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
     if shown.apart > FAR:
         print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")

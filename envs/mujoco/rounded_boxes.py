@@ -7,7 +7,7 @@ high: a robot at half height meets its straight part.
 import math
 
 Shape = tuple[float, ...]  # x, y, angle, half width, half height, rounding [m, rad]
-LEAST = 1e-4  # [m] least half width of a box
+LEAST = 1e-4  # [m] least half width of a box, and difference of heights
 
 
 def solid(objects: tuple[Shape, ...], robot: str, height: float) -> tuple[str, str]:
@@ -35,10 +35,10 @@ def _parts(shape: Shape, height: float, disc: str) -> list[str]:
     inner_x, inner_y = half_x - rounding, half_y - rounding
     sizes = [(half_x, inner_y), (inner_x, half_y)]
     parts = [
-        f'type="box" size="{a:.9g} {b:.9g} {height:g}" pos="{x:.9g} {y:.9g} 0" '
+        f'type="box" size="{a:.9g} {b:.9g} {height - i * LEAST:g}" pos="{x:.9g} {y:.9g} 0" '
         f'euler="0 0 {angle:.9g}" contype="0" conaffinity="0"'
-        for a, b in sizes
-        if min(a, b) > LEAST
+        for i, (a, b) in enumerate(sizes)
+        if min(a, b) > LEAST  # one lower than the other, or their tops would flicker
     ]
     cos, sin = math.cos(angle), math.sin(angle)
     for a, b in sorted({(i * inner_x, j * inner_y) for i in (-1, 1) for j in (-1, 1)}):

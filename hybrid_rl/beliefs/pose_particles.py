@@ -45,7 +45,6 @@ class Particles(NamedTuple):
     y: Array  # [C]
     count: Array  # [] measurements
     touched: Array  # [] bool: the last measurement was new, and a contact
-    log_z: Array  # [] log p(all measurements)
     accepted: Array  # [] share of the last moves
 
 
@@ -98,7 +97,7 @@ class PoseParticles:
         none, empty = jnp.zeros(self.particles), jnp.zeros(self.capacity)
         zero = jnp.zeros(())
         s, touched = jnp.zeros((self.capacity, 2)), jnp.zeros((), bool)
-        return Particles(theta, none, none, s, empty, zero, touched, zero, zero)
+        return Particles(theta, none, none, s, empty, zero, touched, zero)
 
     def _chance(self, theta: Array, s: Array) -> Array:
         """p(y = 1) [] at s [2] if the objects are at theta [3]."""
@@ -110,10 +109,8 @@ class PoseParticles:
         slot = jnp.minimum(state.count, self.capacity - 1).astype(jnp.int32)
         p = jax.vmap(self._chance, (0, None))(state.theta, s)
         each = jnp.where(room, rejuvenation.log_chance(p, y, self.trust), 0.0)
-        likely = jax.nn.logsumexp(jax.nn.log_softmax(state.log_w) + each)
         state = state._replace(
             log_w=state.log_w + each,
-            log_z=state.log_z + likely,
             log_like=state.log_like + each,
             s=state.s.at[slot].set(jnp.where(room, s, state.s[slot])),
             y=state.y.at[slot].set(jnp.where(room, y, state.y[slot])),
@@ -179,7 +176,7 @@ class PoseParticles:
     def gain(self, state: Particles, s: Array) -> Array:
         """The mutual information [nat] of the pose and a measurement at s [2]."""
         p = jax.vmap(self._chance, (0, None))(self._subset(state), s)
-        return jnp.maximum(_binary(p.mean()) - _binary(p).mean(), 0.0)
+        return jnp.maximum(_entropy(p.mean()) - _entropy(p).mean(), 0.0)
 
     def gain_along(self, state: Particles, path: Array) -> Array:
         """H(w) - H(w | y+) [nat] [], y+ the likelier measurement at each position of path [T, 2].
@@ -205,7 +202,7 @@ class PoseParticles:
         return jnp.any((state.y > 0.5) & (jnp.arange(self.capacity) < state.count))
 
     def report(self, state: Particles) -> dict[str, Array]:
-        """The mean pose, its spread and entropy, the most likely particle, the filter's health."""
+        """The mean pose, its spread, the most likely particle, and the filter's health."""
         w = jax.nn.softmax(state.log_w)
         x, y = w @ state.theta[:, :2]
         angle, length = resampling.circular(state.theta[:, 2], w)
@@ -220,18 +217,12 @@ class PoseParticles:
             "belief/best_angle": best[2],
             "belief/spread_position": spread,
             "belief/spread_angle": jnp.sqrt(-2 * jnp.log(jnp.clip(length, 1e-6, 1.0))),
-            "belief/entropy": self._entropy(state, w),
             "belief/effective": resampling.effective(state.log_w),
             "belief/accepted": state.accepted,
             "belief/full": (state.count >= self.capacity).astype(jnp.float32),
         }
 
-    def _entropy(self, state: Particles, w: Array) -> Array:
-        """H(theta) [nat] [] of the posterior density, from log p(theta | y) = log L - log Z + c."""
-        sides = jnp.array(self.domain.high) - jnp.array(self.domain.low)
-        return jnp.log(2 * jnp.pi * jnp.prod(sides)) - w @ state.log_like + state.log_z
 
-
-def _binary(p: Array) -> Array:
+def _entropy(p: Array) -> Array:
     """h [nat] of binary variables with probabilities p [...]."""
     return -p * jnp.log(p) - (1 - p) * jnp.log1p(-p)

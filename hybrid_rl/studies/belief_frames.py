@@ -91,20 +91,21 @@ def scenes(trial: Trial) -> tuple[np.ndarray, float]:
     observation is drawn where it was; otherwise the second number is that of the observations.
     """
     agent = trial.recorded.run.agent
-    episode, world = agent.episode, agent.episode.env
-    start = jax.tree.map(lambda a: a[0], jax.jit(agent.init)(jax.random.key(trial.seed)).env)
+    pose = jax.vmap(agent.episode.env.pose)
 
-    def go(start: Any, made: Any) -> tuple[Array, ...]:
+    def go(key: Array, made: Any) -> tuple[Array, ...]:
+        start = agent.init(key).env  # [1, ...]: rounding depends on `vmap`, too
+
         def step(state: Any, one: Any) -> tuple[Any, tuple[Array, ...]]:
-            state = episode.step(state, one.action)
-            recorded = world.pose(state.replace(obs=one.next_obs))
-            return state, (recorded, world.pose(state), state.obs)
+            state = jax.vmap(agent.episode.step)(state, one.action[None])
+            recorded = pose(state.replace(obs=one.next_obs[None]))
+            return state, (recorded[0], pose(state)[0], state.obs[0])
 
         _, (recorded, qpos, obs) = jax.lax.scan(step, start, made)
-        first = world.pose(start)[None]
-        return jnp.concatenate([first, recorded]), jnp.concatenate([first, qpos]), obs
+        return *(jnp.concatenate([pose(start), each]) for each in (recorded, qpos)), obs
 
-    recorded, qpos, obs = map(np.asarray, jax.jit(go)(start, trial.made))
+    replayed = jax.jit(go)(jax.random.key(trial.seed), trial.made)
+    recorded, qpos, obs = map(np.asarray, replayed)
     apart = float(np.abs(obs - trial.made.next_obs).max())
     return recorded, apart if np.array_equal(recorded, qpos) else 0.0
 

@@ -14,7 +14,8 @@ from hybrid_rl.studies.belief_panel import Panel, View
 from hybrid_rl.studies.recorded import read
 from hybrid_rl.studies.style import STYLE, legend_below
 
-FPS, MOST = 15.0, 200  # [1/s]; pictures of an episode at most
+LENGTH = 13.5  # [s] of a video of an episode, at most about
+MOST = {".mp4": 200, ".gif": 100, ".png": 1}  # pictures of an episode
 SIDE = 4.8  # [in] of the panel, by which its letters are scaled
 
 
@@ -24,17 +25,18 @@ class Film(NamedTuple):
     world: Any
     poses: np.ndarray  # [F, nq]
     panel: Callable[[int], np.ndarray]  # number of a picture -> [height, height, 3]
-    rate: float  # [1/s] in real time
+    fps: float  # [1/s]
+    speed: float  # times real time
     decisions: int  # T
     total: float  # undiscounted return
     apart: float  # of the scene from the record, at most, in units of the observation
 
 
-def film(folder: Path, seed: int | None, steps: int, height: int, still: bool) -> Film:
+def film(folder: Path, seed: int | None, steps: int, height: int, most: int) -> Film:
     """The first episode of training of one learner.
 
     seed: None is the first. steps: at most this many decisions; 0: all. height: [pixels], even.
-    still: its end alone.
+    most: pictures at most, but for the last one; 1: the end alone.
 
     Raises:
         UsageError: for a run without a record of it, or without a belief that can be drawn.
@@ -43,7 +45,7 @@ def film(folder: Path, seed: int | None, steps: int, height: int, still: bool) -
     recorded = read(folder, key="run")
     trial = trial_of(recorded, recorded.run.seeds[0] if seed is None else seed, "run")
     length = min(steps or len(trial.s), len(trial.s))
-    marks = _marks(length, still)
+    marks = _marks(length, most)
     drawn, views = Drawn(trial), []
     with Progress(len(marks), label="learning again", unit="pictures") as progress:
         for belief, mark in zip(beliefs(trial, marks), marks, strict=True):
@@ -51,19 +53,19 @@ def film(folder: Path, seed: int | None, steps: int, height: int, still: bool) -
             progress.update(len(views), {})
     poses, apart = scenes(trial)
     times = recorded.run.agent.spec.dt * np.array(marks)
-    rate = 1.0 if still else 1 / float(times[1] - times[0])
+    fps = most / LENGTH
+    speed = fps * float(times[-1] - times[0]) / max(len(times) - 1, 1)
     total = float(trial.made.reward[:length].sum())
     panel = _painter(drawn, truth(trial), views, times, height)
     world = recorded.run.agent.episode.env
-    return Film(world, poses[marks], panel, rate, length, total, apart)
+    return Film(world, poses[marks], panel, fps, speed, length, total, apart)
 
 
-def _marks(length: int, still: bool) -> list[int]:
+def _marks(length: int, most: int) -> list[int]:
     """The decisions after which there is a picture: evenly spaced, and the last."""
-    if still:
+    if most == 1:
         return [length]
-    stride = int(np.ceil(length / MOST))
-    return sorted({*range(0, length, stride), length})
+    return sorted({*range(0, length, -(-length // most)), length})
 
 
 def _painter(

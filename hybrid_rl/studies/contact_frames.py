@@ -45,11 +45,11 @@ def frames(pattern: str, times: str, trial: int) -> tuple[Any, dict[str, Any]]:
 
 
 def _picture(drawn: Drawn, views: list[Any], seconds: list[float], rows: int) -> Any:
-    """Blocks of `rows` panels above each other, COLUMNS side by side."""
+    """Blocks of `rows` panels above each other, at most COLUMNS side by side."""
     from matplotlib.figure import Figure
 
-    columns, true = min(len(views), COLUMNS), truth(drawn.trial)
-    blocks = -(-len(views) // columns)
+    blocks, true = -(-len(views) // COLUMNS), truth(drawn.trial)
+    columns = -(-len(views) // blocks)
     (a, b), (c, d) = drawn.low, drawn.high
     side = SIDE if columns > 4 else 1.5 * SIDE
     size = side * columns, side * (d - b) / (c - a) * rows * blocks + 0.25 * blocks + 0.4

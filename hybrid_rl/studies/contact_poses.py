@@ -6,8 +6,10 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from scipy.special import digamma
 
 from hybrid_rl.core import poses as moves
+from hybrid_rl.core import resampling
 from hybrid_rl.studies.contact_maps_picture import marks_of
 from hybrid_rl.studies.contacts import (
     GOOD,
@@ -22,9 +24,12 @@ from hybrid_rl.studies.contacts import (
 )
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.falls import wilson
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
+from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
 
 KINDS = ("all", "contacts", "absences")
+AXES = ("x", "y", "angle")
+SOME, NEAREST, RHO = 400, 16, 0.3  # particles of an entropy, neighbours; [m]
+EVERY = 10  # decisions between two entropies
 
 
 def poses(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
@@ -52,12 +57,12 @@ def poses(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
             if i and run.recorded.run.seeds == runs[0].recorded.run.seeds:
                 one[name]["against_first_run"] = sign_test(each, rival[name])
         numbers["methods"][run.label] = one
-    words = ("position error, median and quartiles", "angle error, median and quartiles")
+    words = ("position error, quartiles", "angle error, quartiles")
     for axes, title, unit in zip(panels, words, ("[m]", "[rad]"), strict=False):
         axes.set(title=title, xlabel="Time [s]", ylabel=unit, yscale="log")
-    title = f"found to the end: {GOOD[0]} m, {GOOD[1]} rad"
+    title = f"share within {GOOD[0]} m, {GOOD[1]} rad"
     panels[2].set(title=title, xlabel="Time [s]", ylim=(0, 1))
-    legend_below(panels[0])
+    legend_outside(panels[0])
     return figure, numbers
 
 
@@ -113,7 +118,7 @@ def _truth_behind(run: Trials, length: int) -> np.ndarray:
         return jnp.sum(jnp.log(jnp.where(y > 0.5, p, 1 - p)))
 
     def pose(name: str) -> np.ndarray:
-        columns = [run.rows[f"{name}_{axis}"][:, length - 1] for axis in ("x", "y", "angle")]
+        columns = [run.rows[f"{name}_{axis}"][:, length - 1] for axis in AXES]
         return np.stack(columns, -1)
 
     each = jax.jit(jax.vmap(log_like))
@@ -163,16 +168,17 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     at = np.array(marks_of(times, length, dt)) - 1
     figure = Figure(figsize=(5, 3.4), layout="constrained")
     axes = figure.subplots()
-    t, kinds = dt * np.arange(1, length + 1), {}
+    at = np.unique([*range(EVERY - 1, length, EVERY), *at])
+    kinds = {}
     for i, kind in enumerate(KINDS):
-        rows = _filtered(run, kind)
-        entropy = rows["belief/entropy"]
+        rows, theta = _filtered(run, kind)
+        entropy = np.array([[entropy_of(each[j]) for j in at] for each in theta])
         low, high = band(entropy)
-        axes.plot(t, iqm(entropy), color=COLOURS[i], label=kind)
-        axes.fill_between(t, low, high, alpha=0.2, color=COLOURS[i])
+        axes.plot(dt * (at + 1), iqm(entropy), color=COLOURS[i], label=kind)
+        axes.fill_between(dt * (at + 1), low, high, alpha=0.2, color=COLOURS[i])
         position, angle = (each[:, at] for each in errors(run._replace(rows=rows)))
-        each = {"each": entropy[:, at], "position": position, "angle": angle}
-        kinds[kind] = {"iqm": iqm(entropy)[at], "low": low[at], "high": high[at], **each}
+        each = {"each": entropy, "position": position, "angle": angle}
+        kinds[kind] = {"iqm": iqm(entropy), "low": low, "high": high, **each}
     less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
     axes.set(title="entropy of the pose", xlabel="Time [s]", ylabel="[nat]")
     axes.legend()
@@ -180,11 +186,27 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     return figure, {**head, "kinds": kinds, "absences_leave_no_more": less}
 
 
-def _filtered(run: Trials, kind: str) -> dict[str, np.ndarray]:
-    """Reports [S, T] of the run's belief about poses if only measurements of this kind count."""
+def entropy_of(theta: np.ndarray) -> float:
+    """Entropy [nat] of the density of poses theta [M, 3], by their NEAREST neighbours.
+
+    Kozachenko and Leonenko 1987, with angles as lengths, rho = 0.3 m. Neighbours are many, as
+    resampled particles may be equal.
+    """
+    apart = theta[:, None] - theta[None]
+    apart[..., 2] = RHO * ((apart[..., 2] + np.pi) % (2 * np.pi) - np.pi)
+    radius = np.partition(np.linalg.norm(apart, axis=-1), NEAREST, 1)[:, NEAREST]
+    ball = np.log(4 / 3 * np.pi) + 3 * np.log(np.maximum(radius, 1e-6)).mean()
+    return float(digamma(len(theta)) - digamma(NEAREST) + ball - np.log(RHO))
+
+
+def _filtered(run: Trials, kind: str) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """What the run's belief about poses holds if only measurements of this kind count.
+
+    Returns:
+        Its mean [S, T] in rows, and some of its particles [S, T, SOME, 3].
+    """
     learner: Any = run.recorded.run.agent.learners["belief"]
     belief = replace(learner.belief, kind="metropolis")
-    names = ("entropy", "mean_x", "mean_y", "mean_angle")
 
     def one(state: Any, measured: Any) -> Any:
         s, y, key = measured
@@ -192,7 +214,9 @@ def _filtered(run: Trials, kind: str) -> dict[str, np.ndarray]:
         after = belief.add(state, s, y, key)
         state = jax.tree.map(lambda new, old: jnp.where(counts, new, old), after, state)
         report = belief.report(state)
-        return state, {f"belief/{name}": report[f"belief/{name}"] for name in names}
+        mean = jnp.stack([report[f"belief/mean_{axis}"] for axis in AXES])
+        drawn = resampling.systematic(state.log_w, SOME, jnp.float32(0.5))
+        return state, (mean, state.theta[drawn])
 
     def trial(key: jax.Array, s: jax.Array, y: jax.Array) -> Any:
         first, adding = jax.random.split(key)
@@ -200,8 +224,9 @@ def _filtered(run: Trials, kind: str) -> dict[str, np.ndarray]:
         return jax.lax.scan(one, state, (s, y, jax.random.split(adding, len(y))))[1]
 
     keys = jax.random.split(jax.random.key(0), len(run.y))
-    rows = jax.jit(jax.vmap(trial))(keys, jnp.asarray(run.s), jnp.asarray(run.y))
-    return {**run.rows, **{name: np.asarray(values) for name, values in rows.items()}}
+    mean, theta = jax.jit(jax.vmap(trial))(keys, jnp.asarray(run.s), jnp.asarray(run.y))
+    means = {f"belief/mean_{axis}": np.asarray(mean[..., i]) for i, axis in enumerate(AXES)}
+    return {**run.rows, **means}, np.asarray(theta)
 
 
 def absence_lines(numbers: dict[str, Any]) -> list[str]:

@@ -74,7 +74,7 @@ def filtered(belief, key, made):
 
 
 def posterior(made, trust=1.0, width=0.03):
-    """Mean position and angle, spread of the position, entropy [nat]: exact, on a grid."""
+    """Mean position, circular mean angle, spread of the position: exact, on a grid."""
     side = 0.3 + 0.4 * (np.arange(41) + 0.5) / 41
     angle = -np.pi + 2 * np.pi * (np.arange(90) + 0.5) / 90
     theta = np.stack(np.meshgrid(side, side, angle, indexing="ij"), -1).reshape(-1, 3)
@@ -86,9 +86,7 @@ def posterior(made, trust=1.0, width=0.03):
     w /= w.sum()
     mean = w @ theta[:, :2]
     spread = np.sqrt(w @ ((theta[:, :2] - mean) ** 2).sum(1))
-    cell = 0.4**2 * 2 * np.pi / len(theta)
-    entropy = -np.sum(w * np.log(np.maximum(w, 1e-300) / cell))
-    return mean, np.angle(w @ np.exp(1j * theta[:, 2])), spread, entropy
+    return mean, np.angle(w @ np.exp(1j * theta[:, 2])), spread
 
 
 def estimated(belief, made):
@@ -107,14 +105,12 @@ def apart(got, mean, angle):
 @pytest.mark.parametrize(("kind", "trust"), [("metropolis", 1.0), ("local", 0.5)])
 def test_the_posterior_is_that_of_a_grid(kind, trust) -> None:
     """Two keys; without leaps too, where it has one mode; and with a power of the likelihood."""
-    mean, angle, spread, entropy = posterior(measurements(), trust)
+    mean, angle, spread = posterior(measurements(), trust)
     for got in estimated(replace(BELIEF, kind=kind, trust=trust), measurements()):
         position, turn = apart(got, mean, angle)
         assert position < 0.01
         assert turn < 0.05
         assert got["belief/spread_position"] == pytest.approx(spread, rel=0.2)
-        # of twelve keys the mean was 0.03 nat off, the standard deviation 0.2
-        assert got["belief/entropy"] == pytest.approx(entropy, abs=0.6)
         assert 0 < got["belief/accepted"] < 1
     assert np.hypot(*(mean - TRUE[:2])) < 4 * spread
 
@@ -123,7 +119,7 @@ def test_the_posterior_is_that_of_a_grid(kind, trust) -> None:
 def test_filters_that_are_not_exact_come_close(kind) -> None:
     """Within 3 cm and 0.15 rad of the grid's mean, where contacts are on the outline."""
     narrow = KnownMap(WORLD, width=0.01, low=0.05, high=0.95)
-    mean, angle, *_ = posterior(felt(), width=0.01)
+    mean, angle, _ = posterior(felt(), width=0.01)
     for got in estimated(replace(BELIEF, kind=kind, particles=1000, map=narrow), felt()):
         position, turn = apart(got, mean, angle)
         assert position < 0.03
@@ -184,14 +180,16 @@ def test_the_gain_along_a_way_is_that_of_its_expected_measurements(few, trust) -
     assert float(got) == pytest.approx(np.log(50) + np.sum(w * np.log(w)), rel=1e-3)
 
 
-def test_one_particle_has_a_determinant_of_zero(few) -> None:
-    """The information of one measurement has rank one."""
+def test_one_or_two_particles_have_a_determinant_of_zero(few) -> None:
+    """The information of one measurement has rank one; one pose has no entropy to lose."""
     belief, state = few
-    same = state._replace(theta=jnp.tile(state.theta[:1], (50, 1)))
-    det = replace(belief, measure="det").information(same, jnp.array([0.42, 0.63]))
-    trace = belief.information(same, jnp.array([0.42, 0.63]))
-    assert float(det) < 1e-6 * float(trace) ** 3
-    assert float(belief.gain(same, jnp.array([0.42, 0.63]))) < 1e-6
+    at = jnp.array([0.42, 0.63])
+    for count in (1, 2):
+        same = state._replace(theta=jnp.tile(state.theta[:count], (50 // count, 1)))
+        det = replace(belief, measure="det").information(same, at)
+        assert float(det) < 1e-6 * float(belief.information(same, at)) ** 3
+    one = state._replace(theta=jnp.tile(state.theta[:1], (50, 1)))
+    assert float(belief.gain(one, at)) < 1e-6
 
 
 def test_a_disc_in_the_middle_does_not_tell_the_angle() -> None:
@@ -220,7 +218,7 @@ def test_a_full_memory_takes_no_more_measurements() -> None:
         before = state
         state = add(state, jnp.full(2, 0.3), jnp.float32(i % 2), jax.random.key(i))
     assert float(belief.report(state)["belief/full"]) == 1
-    for old, new in zip(before[1:8], state[1:8], strict=True):
+    for old, new in zip(before[1:7], state[1:7], strict=True):
         np.testing.assert_array_equal(old, new)
 
 

@@ -13,7 +13,7 @@ from hybrid_rl import figures
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.maps.learned import LearnedMap
-from hybrid_rl.studies import contact_maps_picture, contacts, false_contacts
+from hybrid_rl.studies import contact_maps_picture, contact_poses, contacts, false_contacts
 
 WORLD = ContactPlane(objects=((0.3, 0.5, 0, 0.1, 0.1, 0.1), (0.75, 0.5, 0, 0.1, 0.1, 0.1)))
 
@@ -118,6 +118,16 @@ def test_the_sign_test_leaves_ties_out() -> None:
     assert contacts.sign_test(other, other)["p"] == 1
 
 
+@pytest.mark.parametrize("copies", [1, 3])
+def test_the_entropy_of_poses_is_that_of_their_density(copies) -> None:
+    """A Gaussian around the angle pi, of 400 particles, and of 134 in three copies."""
+    rng, std = np.random.default_rng(0), np.array([0.02, 0.05, 0.1])
+    theta = [0.5, 0.5, np.pi] + std * rng.normal(size=(402 // copies, 3))
+    theta[:, 2] = (theta[:, 2] + np.pi) % (2 * np.pi) - np.pi
+    wanted = 1.5 * np.log(2 * np.pi * np.e) + np.log(std).sum()
+    assert contact_poses.entropy_of(np.repeat(theta, copies, 0)) == pytest.approx(wanted, abs=0.3)
+
+
 def draw(*arguments: str | Path) -> int:
     """Exit code of the command."""
     return call(lambda: command.guarded(figures.main), "study=contact_maps", *arguments)
@@ -151,6 +161,9 @@ def test_poses_of_a_small_run(
     assert all(0 < error < 1.5 for error in one["position"]["median"])
     assert one["first"]["never"] + sum(each is not None for each in one["first"]["each"]) == 2
     assert len(one["truth_behind"]["each"]) == 2
+    assert draw("view=absence", f"runs={tmp_path}/run", f"out={out}") == 0
+    numbers = json.loads(out.with_suffix(".json").read_text())
+    assert [len(one["each"]) for one in numbers["kinds"].values()] == [2, 2, 2]
     capfd.readouterr()
     assert draw("view=map", f"runs={run}") == 2
     assert "is no map of contacts" in only_line(capfd)
