@@ -69,6 +69,16 @@ def test_a_mapping_robot_in_other_units_takes_the_same_path(algo: str, factor: f
     assert np.abs(s - s[0]).max() > 0.3
 
 
+def test_robots_in_other_units_start_at_the_same_positions() -> None:
+    """Also where the first candidates are in an object."""
+    starts = []
+    for factor in (1.0, 1e-3):
+        world = ContactPlane(scaled(factor), radius=0.03 * factor, high=(1.2 * factor, factor))
+        keys = jax.random.split(jax.random.key(0), 64)
+        starts.append(np.asarray(jax.jit(jax.vmap(world.reset))(keys).obs) / factor)
+    np.testing.assert_allclose(*starts, rtol=1e-5)
+
+
 def test_particles_in_other_units_are_the_same() -> None:
     """The posterior after measurements with a contact, with moves and leaps."""
     rng = np.random.default_rng(0)
