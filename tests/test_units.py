@@ -87,9 +87,12 @@ def test_moves_of_poses_do_not_depend_on_units() -> None:
         known = KnownMap(world)
         frame = poses.Frame(*map(jnp.array, (world.low, high, known.middle, known.outline)))
         theta, contact = jnp.asarray(units) * jnp.array([0.5, 0.6, 2.0]), 0.4 * units[:2]
-        move: Any = jax.vmap(lambda key, *at: poses.move(*at, poses.CHANCES, key), (0, *[None] * 4))
+
+        def move(key: Any, frame: Any = frame, theta: Any = theta, contact: Any = contact) -> Any:
+            return poses.move(frame, theta, contact, jnp.array(True), poses.CHANCES, key)
+
         keys = jax.random.split(jax.random.key(0), 64)
-        proposals, ratio = jax.jit(move)(keys, frame, theta, contact, jnp.array(True))
+        proposals, ratio = jax.jit(jax.vmap(move))(keys)
         moved.append(np.asarray(proposals) / units)
         ratios.append(np.asarray(ratio))
     np.testing.assert_allclose(*moved, atol=1e-4)
