@@ -161,7 +161,7 @@ def test_poses_of_a_small_run(
     assert all(0 < error < 1.5 for error in one["position"]["median"])
     assert one["first"]["never"] + sum(each is not None for each in one["first"]["each"]) == 2
     assert len(one["truth_behind"]["each"]) == 2
-    assert draw("view=absence", f"runs={tmp_path}/run", f"out={out}") == 0
+    assert draw("view=absence", f"runs={run}", f"out={out}") == 0
     numbers = json.loads(out.with_suffix(".json").read_text())
     assert [len(one["each"]) for one in numbers["kinds"].values()] == [2, 2, 2]
     capfd.readouterr()
