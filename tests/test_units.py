@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 
 from hybrid_rl import config
-from hybrid_rl.beliefs.pose_particles import PoseParticles
-from hybrid_rl.core.domain import Box
+from hybrid_rl.core import poses
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.maps.known import KnownMap
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.types import Spec
 
 OBJECTS = ((0.3, 0.6, 0.0, 0.12, 0.12, 0.12), (0.7, 0.4, 0.4, 0.1, 0.08, 0.02))
 PLANNER = ["explorer.horizon=3", "explorer.iterations=1", "belief.iterations=10"]
@@ -69,37 +67,34 @@ def test_a_mapping_robot_in_other_units_takes_the_same_path(algo: str, factor: f
     assert np.abs(s - s[0]).max() > 0.3
 
 
-def test_particles_in_other_units_are_the_same() -> None:
-    """The posterior after measurements with a contact, with moves and leaps."""
-    rng = np.random.default_rng(0)
-    s, y = rng.uniform(0.1, 0.9, (12, 2)), np.zeros(12)
-    y[5] = 1.0
+def test_robots_in_other_units_start_at_the_same_positions() -> None:
+    """Also where the first candidates are in an object."""
+    starts = []
+    for factor in (1.0, 1e-3):
+        world = ContactPlane(scaled(factor), radius=0.03 * factor, high=(1.2 * factor, factor))
+        keys = jax.random.split(jax.random.key(0), 64)
+        starts.append(np.asarray(jax.jit(jax.vmap(world.reset))(keys).obs) / factor)
+    np.testing.assert_allclose(*starts, rtol=1e-5)
 
-    def particles(factor: float) -> tuple[np.ndarray, np.ndarray]:
-        world: Any = ContactPlane(
-            scaled(factor), radius=0.03 * factor, low=(0.0, 0.0), high=(1.2 * factor, factor)
-        )
-        known: Any = KnownMap(world, width=0.02 * factor)
-        box = Box((0, 1), world.low, world.high)
-        belief = PoseParticles(
-            known, box, particles=40, capacity=12, every=6, length=0.3 * factor, subset=8
-        )
 
-        def one(state: Any, measured: Any) -> tuple[Any, None]:
-            return belief.add(state, *measured), None
+def test_moves_of_poses_do_not_depend_on_units() -> None:
+    """The outline of the map, and walks, turns and leaps with their densities."""
+    moved, ratios = [], []
+    for factor in (1.0, 1024.0):  # rounds as 1 does
+        units = np.array([factor, factor, 1.0], np.float32)
+        high = (1.2 * factor, factor)
+        world: Any = ContactPlane(scaled(factor), radius=0.03 * factor, high=high)
+        known = KnownMap(world)
+        frame = poses.Frame(*map(jnp.array, (world.low, high, known.middle, known.outline)))
+        theta, contact = jnp.asarray(units) * jnp.array([0.5, 0.6, 2.0]), 0.4 * units[:2]
 
-        @jax.jit
-        def learn() -> Any:
-            first = belief.init(jax.random.key(1), Spec(4, 2, 0.1))
-            keys = jax.random.split(jax.random.key(2), len(s))
-            points = jnp.asarray(factor * s, jnp.float32), jnp.asarray(y, jnp.float32), keys
-            return jax.lax.scan(one, first, points)[0]
+        def move(key: Any, frame: Any = frame, theta: Any = theta, contact: Any = contact) -> Any:
+            return poses.move(frame, theta, contact, jnp.array(True), poses.CHANCES, key)
 
-        state = learn()
-        theta = np.asarray(state.theta) / [factor, factor, 1.0]
-        return theta, np.asarray(state.log_w)
-
-    theta, log_w = particles(1.0)
-    other, weights = particles(1024.0)  # rounds as 1 does
-    np.testing.assert_allclose(other, theta, atol=1e-3)
-    np.testing.assert_allclose(weights, log_w, atol=1e-2)
+        keys = jax.random.split(jax.random.key(0), 64)
+        proposals, ratio = jax.jit(jax.vmap(move))(keys)
+        moved.append(np.asarray(proposals) / units)
+        ratios.append(np.asarray(ratio))
+    np.testing.assert_allclose(*moved, atol=1e-4)
+    np.testing.assert_allclose(*ratios, atol=1e-3)
+    assert (ratios[0] != 0).any()
