@@ -40,14 +40,15 @@ def figure(
     runs: Annotated[str, "run folders; a pattern in quotes"] = "",
     times: Annotated[str, "of the maps and of the numbers [s], with commas between"] = "",
     trial: Annotated[int, "of map_out and of view=frames", whole(0)] = 0,
+    names: Annotated[str, "of runs: method or folder", one_of("method", "folder")] = "method",
     map_out: Annotated[str, "of view=map: file for a learned map, .npz; empty: none"] = "",
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers of one view."""
     import matplotlib
 
     views = {
-        "map": lambda: contact_maps_picture.maps(runs, times, trial, map_out),
-        "pose": lambda: contact_poses.poses(runs, times),
+        "map": lambda: contact_maps_picture.maps(runs, names, times, trial, map_out),
+        "pose": lambda: contact_poses.poses(runs, names, times),
         "frames": lambda: contact_frames.frames(runs, times, trial),
         "absence": lambda: contact_poses.absence(runs, times),
     }

@@ -37,11 +37,11 @@ CLOSEST = 0.003  # [m]
 EVERY = 10  # decisions between two entropies
 
 
-def poses(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
+def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
     """Errors of the mean pose over time, and the share of trials in which it is found."""
     from matplotlib.figure import Figure
 
-    runs = trials(pattern, "pose")
+    runs = trials(pattern, "pose", names)
     dt, length = runs[0].world.spec.dt, min(run.y.shape[1] for run in runs)
     marks = marks_of(times, length, dt)
     figure = Figure(figsize=(9, 3.4), layout="constrained")

@@ -9,8 +9,8 @@ first     time until a pose is good, found: until it stays good to the end
 stuck     half of the last 10 s in one cell of 10 cm
 """
 
+import re
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import jax
@@ -43,14 +43,14 @@ class Trials(NamedTuple):
     rows: dict[str, np.ndarray]  # metric -> [S, T] of metrics.jsonl
 
 
-def trials(pattern: str, view: str) -> list[Trials]:
-    """The trials of all runs that match."""
+def trials(pattern: str, view: str, names: str = "method") -> list[Trials]:
+    """The trials of all runs that match, named by method or by folder, without its number."""
     folders = matching(pattern, view)
-    return [_of(read(path, *TASKS), label) for path, label in _named(folders)]
-
-
-def _named(folders: list[Path]) -> list[tuple[Path, str]]:
-    return list(zip(folders, labels(folders), strict=True))
+    if names == "folder":
+        words = [re.sub(r"^\d+_", "", path.name) for path in folders]
+    else:
+        words = labels(folders)
+    return [_of(read(path, *TASKS), word) for path, word in zip(folders, words, strict=True)]
 
 
 def _of(recorded: Recorded, label: str) -> Trials:
