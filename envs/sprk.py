@@ -17,7 +17,7 @@ A decision is 0.1 s, 30 physics steps. y is 1 after a decision in which
                     missed, and an action that changes faster than the motor follows is felt as one
 
 Source: thesis sections 5.3 and 5.4 (a SPRK ball; collisions from the inertial sensor, false ones in
-quick movements). Radius and mass as far as remembered of Sphero's SPRK+; a, b, the motor's lag,
+quick movements). Radius and mass: those of Sphero's SPRK+, not verified; a, b, the motor's lag,
 the threshold and the contact's stiffness are our choice.
 """
 

@@ -23,6 +23,7 @@ PAGES = [
     "results",
     "chapter3",
     "chapter4",
+    "chapter5",
     "chapter6",
     "chapter7",
     "robots",

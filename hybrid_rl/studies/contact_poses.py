@@ -35,6 +35,7 @@ AXES = ("x", "y", "angle")
 SOME, NEAREST, RHO = 400, 16, 0.3  # particles of an entropy, neighbours; [m]
 CLOSEST = 0.003  # [m]
 EVERY = 10  # decisions between two entropies
+BANDS = 5  # runs at most of which the quartiles are drawn
 
 
 def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
@@ -53,7 +54,7 @@ def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
         is_good = good(position, angle)
         waits = {"first": dt * first(is_good), "found": dt * found(is_good)}
         style = {"color": COLOURS[i % 7], "linestyle": STROKES[i // 7 % 4], "label": run.label}
-        _draw(panels, dt, (position, angle, waits["found"]), style)
+        _draw(panels, dt, (position, angle, waits["found"]), style, len(runs) <= BANDS)
         one = _reported(run, position, angle, is_good, marks)
         one["lasting"] = [int((waits["found"] <= (mark + 0.5) * dt).sum()) for mark in marks]
         rival = rival or waits
@@ -62,7 +63,8 @@ def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
             if i and run.recorded.run.seeds == runs[0].recorded.run.seeds:
                 one[name]["against_first_run"] = sign_test(each, rival[name])
         numbers["methods"][run.label] = one
-    words = ("position error, quartiles", "angle error, quartiles")
+    shown = "median and quartiles" if len(runs) <= BANDS else "median"
+    words = (f"position error, {shown}", f"angle error, {shown}")
     for axes, title, unit in zip(panels, words, ("[m]", "[rad]"), strict=False):
         axes.set(title=title, xlabel="Time [s]", ylabel=unit, yscale="log")
     title = f"share within {GOOD[0]} m, {GOOD[1]} rad"
@@ -71,14 +73,16 @@ def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
     return figure, numbers
 
 
-def _draw(panels: Any, dt: float, values: tuple[np.ndarray, ...], style: dict[str, Any]) -> None:
+def _draw(
+    panels: Any, dt: float, values: tuple[np.ndarray, ...], style: dict[str, Any], bands: bool
+) -> None:
     """Errors [S, T] of position and angle, and the share of trials found [S] by each time."""
     t = dt * np.arange(1, values[0].shape[1] + 1)
     for axes, each in zip(panels, values[:2], strict=False):
         axes.plot(t, np.median(each, 0), **style)
-        axes.fill_between(
-            t, *np.percentile(each, [25, 75], axis=0), alpha=0.15, color=style["color"]
-        )
+        if bands:
+            quartiles = np.percentile(each, [25, 75], axis=0)
+            axes.fill_between(t, *quartiles, alpha=0.15, color=style["color"])
     panels[2].plot(t, np.mean(values[2][:, None] <= t + dt / 2, 0), **style)
 
 
