@@ -18,6 +18,8 @@ from hybrid_rl.studies import belief_frames, belief_video, contacts
 from hybrid_rl.studies.belief_panel import Panel, View, level
 from hybrid_rl.studies.recorded import learned, read
 
+pytestmark = pytest.mark.xdist_group("contact_runs")  # their fixture is expensive
+
 STEPS, SEED = 12, 1
 Runs = dict[str, Path]
 

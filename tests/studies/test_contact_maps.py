@@ -15,6 +15,8 @@ from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.maps.learned import LearnedMap
 from hybrid_rl.studies import contact_maps_picture, contact_poses, contacts, false_contacts
 
+pytestmark = pytest.mark.xdist_group("contact_runs")  # their fixture is expensive
+
 WORLD = ContactPlane(objects=((0.3, 0.5, 0, 0.1, 0.1, 0.1), (0.75, 0.5, 0, 0.1, 0.1, 0.1)))
 
 NO_RUN: Any = None
