@@ -121,6 +121,7 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
     world = run.world
     inside = distances(world, grid(world)) < world.radius
     outline, owner = _outline(world)
+    free = _free(world)
     result: dict[str, list[list[float]]] = {}
     for trial, maps in enumerate(f):
         row: dict[str, list[float]] = {}
@@ -134,7 +135,7 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
                 "outline": float(near.mean()),
                 "iou": _iou(ndimage.binary_fill_holes(one > 0), inside),
                 "iou_raw": _iou(one > 0, inside),
-                "cells": _visited(world, s),
+                "cells": _visited(world, free, s),
             }.items():
                 row.setdefault(name, []).append(value)
         for name, values in row.items():
@@ -167,16 +168,21 @@ def _iou(a: Any, b: Any) -> float:
     return float((a & b).sum() / max((a | b).sum(), 1))
 
 
-def _visited(world: Any, s: np.ndarray) -> float:
-    """Share of the cells with a free middle in which a path s [T, 2] was."""
+def _free(world: Any) -> np.ndarray:
+    """Which cells [CELLS, CELLS] have a free middle."""
+    low, high = np.array(world.low), np.array(world.high)
+    sides = [a + (b - a) * (np.arange(CELLS) + 0.5) / CELLS for a, b in zip(low, high, strict=True)]
+    middles = np.stack(np.meshgrid(*sides, indexing="ij"), -1).astype(np.float32)
+    return distances(world, middles) > world.radius
+
+
+def _visited(world: Any, free: np.ndarray, s: np.ndarray) -> float:
+    """Share of the `free` cells in which a path s [T, 2] was."""
     low, high = np.array(world.low), np.array(world.high)
     index = np.floor((s - low) / (high - low) * CELLS).astype(int)
     index = index[((index >= 0) & (index < CELLS)).all(1)]
     seen = np.zeros((CELLS, CELLS), bool)
     seen[tuple(index.T)] = True
-    sides = [a + (b - a) * (np.arange(CELLS) + 0.5) / CELLS for a, b in zip(low, high, strict=True)]
-    middles = np.stack(np.meshgrid(*sides, indexing="ij"), -1).astype(np.float32)
-    free = distances(world, middles) > world.radius
     return float((seen & free).sum() / free.sum())
 
 
