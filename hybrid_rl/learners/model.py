@@ -46,6 +46,7 @@ class ModelLearner:
     updates: float = 2  # per decision
     reward_discount: float = 0.0
     max_grad_norm: float | None = None
+    weight_decay: float = 0.0  # of the layers' matrices, per unit of learning rate
 
     data: ClassVar[str] = "uniform"
     early: ClassVar[bool] = True  # random decisions inform the model
@@ -63,6 +64,8 @@ class ModelLearner:
             )
         if self.learning_rate <= 0:
             raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
+        if self.weight_decay < 0:
+            raise ValueError(f"model_learner.weight_decay={self.weight_decay}: must be 0 or more")
 
     @property
     def owns(self) -> tuple[str, ...]:
@@ -76,6 +79,8 @@ class ModelLearner:
 
     def _optimiser(self) -> optax.GradientTransformation:
         adam = optax.adam(self.learning_rate)
+        if self.weight_decay:
+            adam = optax.adamw(self.learning_rate, weight_decay=self.weight_decay, mask=_matrices)
         if self.max_grad_norm is None:
             return adam
         return optax.chain(optax.clip_by_global_norm(self.max_grad_norm), adam)
@@ -134,6 +139,7 @@ class ModelLearner:
             after = outcome(reward, first.next_obs, first.next_action)[0]
             goes_on = self.reward_discount * (1 - first.terminated) * (1 - first.truncated)
             target = target + goes_on * after
+        reward = part.observe_targets(reward, target)
 
         def loss(weights: Any) -> Array:
             each = jax.vmap(part.loss, (None, 0, 0, 0, 0))
@@ -141,6 +147,13 @@ class ModelLearner:
             return each(tuned, first.obs, first.action, target, first.terminated).mean()
 
         return reward, loss
+
+
+def _matrices(weights: Any) -> Any:
+    """Which leaves are matrices of layers: true for "kernel", false for biases and deviations."""
+    return jax.tree_util.tree_map_with_path(
+        lambda path, _: getattr(path[-1], "key", None) == "kernel", weights
+    )
 
 
 def _weights(model: Any, reward: Any) -> tuple[Any, Any]:

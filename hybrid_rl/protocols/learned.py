@@ -162,6 +162,9 @@ class Reward(Protocol):
     def observe(self, params: PyTree, x: Array) -> PyTree:
         """Parameters with statistics updated by planning states x [B, n]."""
 
+    def observe_targets(self, params: PyTree, target: Array) -> PyTree:
+        """Parameters with statistics updated by targets [B] of the reward."""
+
     def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
 

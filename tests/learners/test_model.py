@@ -150,3 +150,46 @@ def test_bad_rates_are_refused() -> None:
     """The error names the field."""
     with pytest.raises(ValueError, match=r"model_learner\.learning_rate"):
         ModelLearner(Gaussian(), learning_rate=0.0)
+
+
+def draw_linear(key: Array, size: int = 128) -> Batch:
+    """x' = x + (0.1 x_1, 0.1 u), in units that differ; reward 500 + 80 x_0."""
+    batch = draw(key, size)
+    y = batch.obs / SCALE[None]
+    change = 0.1 * jnp.stack([y[:, 1], batch.action[:, 0]], 1)
+    return batch._replace(reward=500 + 80 * y[:, 0], next_obs=SCALE[None] * (y + change))
+
+
+def test_direct_prediction_and_scaled_rewards_are_learned() -> None:
+    """With all ingredients: f is x + change of a linear world, r in its own units."""
+    model = Gaussian(hidden=(64,), activation="silu", predict="state", layer_norm=True)
+    reward = RewardNetwork(hidden=(64,), activation="silu", scale=True, layer_norm=True)
+    params = trained(ModelLearner(model, reward, weight_decay=1e-4), 2000, draw_linear)
+    test = draw_linear(jax.random.key(9), 500)
+    ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
+    error = np.abs(ahead - test.next_obs).mean(0) / SCALE
+    assert (error < 0.03).all()
+    got = jax.vmap(reward.outcome, (None, 0, 0))(params.reward, test.obs, test.action)[0]
+    assert float(jnp.abs(got - test.reward).mean()) < 0.05 * 80
+
+
+def test_weight_decay_shrinks_matrices_alone() -> None:
+    """AdamW: one step is Adam's, less learning_rate * weight_decay * W for matrices W."""
+    parts = Gaussian(hidden=(8,)), RewardNetwork(hidden=(8,))
+    plain, decayed = (ModelLearner(*parts, weight_decay=decay) for decay in (0.0, 0.1))
+    batch, key = draw(jax.random.key(2)), jax.random.key(0)
+    first = plain.init(key, SPEC)
+    after, shrunk = (
+        jax.jit(learner.update)(learner.init(key, SPEC), Params(), batch, key)[0]
+        for learner in (plain, decayed)
+    )
+    for name in ("model", "reward"):
+        flat = [
+            jax.tree_util.tree_leaves_with_path(getattr(state, name)["weights"])
+            for state in (first, after, shrunk)
+        ]
+        for (path, w), (_, a), (_, b) in zip(*flat, strict=True):
+            decay = plain.learning_rate * 0.1 if "kernel" in str(path[-1]) else 0
+            np.testing.assert_allclose(a - b, decay * w, rtol=1e-2, atol=1e-7)
+    with pytest.raises(ValueError, match=r"model_learner\.weight_decay=-1"):
+        ModelLearner(Gaussian(), weight_decay=-1)
