@@ -121,11 +121,17 @@ class Gaussian:
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         """Negative log-likelihood [] of next_obs [B, o], mean over its entries."""
+        return self._each(params, obs, action, next_obs).mean()
 
+    def losses(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
+        """Negative log-likelihood [1, B] of each of next_obs [B, o], mean over its entries."""
+        return self._each(params, obs, action, next_obs)[None]
+
+    def _each(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         def one(x: Array, u: Array, next_x: Array) -> Array:
             std = self.std(params, x)
             target = statistics.normalise(params["change"], next_x - x)
             error = (target - self.change(params, x, u)) / std
             return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
 
-        return jax.vmap(one)(obs, action, next_obs).mean()
+        return jax.vmap(one)(obs, action, next_obs)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from jax import Array
 
+from hybrid_rl.core import held_out
 from hybrid_rl.learners.model import ModelLearner
+from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.models.reward import RewardNetwork
 from hybrid_rl.objectives.predicted_return import PredictedReturn
@@ -193,3 +195,61 @@ def test_weight_decay_shrinks_matrices_alone() -> None:
             np.testing.assert_allclose(a - b, decay * w, rtol=1e-2, atol=1e-7)
     with pytest.raises(ValueError, match=r"model_learner\.weight_decay=-1"):
         ModelLearner(Gaussian(), weight_decay=-1)
+
+
+HELD = ModelLearner(
+    Ensemble(Gaussian(hidden=(8,)), members=3, elites=2),
+    RewardNetwork(hidden=(8,), scale=True),
+    batch_size=128,
+    holdout=0.2,
+)
+
+
+def test_held_out_decisions_are_not_learned_from() -> None:
+    """Other rewards and outcomes of them leave all but their loss unchanged, to the bit."""
+    batch, key = draw(jax.random.key(2), 3 * 128), jax.random.key(0)
+    held = held_out.flags(batch.obs, batch.action, 0.2)
+    assert 40 < int(held.sum()) < 120
+    far = batch._replace(
+        reward=batch.reward + 5 * held, next_obs=batch.next_obs + 9.0 * held[:, None]
+    )
+    update = jax.jit(HELD.update)
+    first = HELD.init(key, SPEC)
+    states, losses = [], []
+    for given in (batch, far, batch._replace(reward=batch.reward + 5 * ~held)):
+        state, metrics = update(first, Params(), given, key)
+        states.append([state.model["weights"], state.model["state"], state.model["change"]])
+        states[-1] += [state.reward, state.optimiser]
+        losses.append(float(metrics["model/held_out_loss"]))
+    same, other = (
+        [bool((a == b).all()) for a, b in zip(*map(jax.tree.leaves, (states[0], s)), strict=True)]
+        for s in states[1:]
+    )
+    assert all(same)
+    assert not all(other)
+    assert losses[1] > losses[0] + 1
+
+
+def test_held_out_losses_are_a_running_mean_that_ranks_the_members() -> None:
+    """Against the members' own losses on the decisions that the hash selects."""
+    one, update = Gaussian(hidden=(8,)), jax.jit(HELD.update)
+    state, want = HELD.init(jax.random.key(0), SPEC), np.zeros(3)
+    for n in range(1, 4):
+        batch = draw(jax.random.key(n), 3 * 128)
+        state, metrics = update(state, Params(), batch, jax.random.key(0))
+        held = np.flatnonzero(held_out.flags(batch.obs, batch.action, 0.2))[: round(0.2 * 384)]
+        rows = [x[held] for x in (batch.obs, batch.action, batch.next_obs)]
+        for i in range(3):
+            own = jax.tree.map(lambda w, i=i: w[i], state.model["weights"])
+            want[i] += (float(one.loss({**state.model, "weights": own}, *rows)) - want[i]) / n
+    np.testing.assert_allclose(state.held_out.mean, want, rtol=1e-4)
+    np.testing.assert_allclose(metrics["model/held_out_loss"], want.mean(), rtol=1e-4)
+    assert state.model["elites"].tolist() == np.argsort(want)[:2].tolist()
+
+
+def test_elites_need_held_out_decisions() -> None:
+    """One line that names both fields."""
+    with pytest.raises(ValueError, match=r"model\.elites=2: needs .* model_learner\.holdout"):
+        ModelLearner(HELD.model)
+    with pytest.raises(ValueError, match=r"model_learner\.holdout=0\.6"):
+        ModelLearner(HELD.model, holdout=0.6)
