@@ -171,7 +171,7 @@ class ModelLearner:
         return max(1, round(self.holdout * len(batch.obs)))
 
     def _judged(self, state: ModelState, rows: Batch, real: Array) -> ModelState:
-        """The state after losses on the held-out decisions `rows` [B], of which `real` [B] count."""
+        """The state after losses on held-out decisions `rows` [B], of which `real` [B] count."""
         part, before = self.model, state.held_out
         each = part.losses(state.model, rows.obs, rows.action, rows.next_obs)
         now = (each * real[None]).sum(1) / jnp.maximum(real.sum(), 1)
