@@ -3,6 +3,7 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 
 from hybrid_rl.models.reward import RewardNetwork
 from hybrid_rl.types import Spec
@@ -44,3 +45,23 @@ def test_layer_norm_against_numpy() -> None:
     hidden = (hidden - hidden.mean()) / np.sqrt(hidden.var() + 1e-6)
     want = np.maximum(hidden, 0) @ w["Dense_1"]["kernel"] + w["Dense_1"]["bias"]
     np.testing.assert_allclose(reward.outcome(params, X, U)[0], want[0], rtol=1e-4)
+
+
+def test_the_reward_of_several_networks_is_their_mean() -> None:
+    """And their loss the mean of their losses."""
+    one, several = (RewardNetwork(hidden=(8,), ends=True, members=k) for k in (1, 3))
+    params = several.init(jax.random.key(0), SPEC)
+    each = [
+        {**params, "weights": jax.tree.map(lambda w, i=i: w[i], params["weights"])}
+        for i in range(3)
+    ]
+    outcomes = np.array([one.outcome(member, X, U) for member in each])
+    assert outcomes.std(0).min() > 1e-3
+    np.testing.assert_allclose(several.outcome(params, X, U), outcomes.mean(0), rtol=1e-5)
+    target, ended = jnp.float32(2.0), jnp.float32(1.0)
+    losses = [one.loss(member, X, U, target, ended) for member in each]
+    np.testing.assert_allclose(
+        several.loss(params, X, U, target, ended), np.mean(losses), rtol=1e-5
+    )
+    with pytest.raises(ValueError, match=r"reward\.members=0"):
+        RewardNetwork(members=0)
