@@ -46,6 +46,9 @@ class Trainable(Model, Protocol):
     def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean loss [] of transitions [members * B, ...]."""
 
+    def losses(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
+        """Loss [members, B] of each member on each of the transitions [B, ...]."""
+
     def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Samples of the next planning states [B, n], for noise [B, n] ~ N(0, I)."""
 
@@ -164,6 +167,9 @@ class Reward(Protocol):
 
     def observe(self, params: PyTree, x: Array) -> PyTree:
         """Parameters with statistics updated by planning states x [B, n]."""
+
+    def observe_targets(self, params: PyTree, target: Array) -> PyTree:
+        """Parameters with statistics updated by targets [B] of the reward."""
 
     def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
