@@ -21,6 +21,7 @@ FILES = {
     "hopper": "hopper.xml",
     "walker2d": "walker2d_v5.xml",
     "ant": "ant.xml",
+    "ant_capsules": "ant.xml",
 }
 NAMES = {
     "halfcheetah": "HalfCheetah-v5",
