@@ -34,7 +34,7 @@ def long_table(drawn: Sequence[Curve], x: str) -> str:
     for curve in drawn:
         metric = NAMES.get(curve.metric, curve.metric)
         for seed, values in zip(curve.seeds, curve.each, strict=True):
-            for step, value in zip(curve.x, np.float32(values), strict=True):
+            for step, value in zip(curve.x, values.astype("float32"), strict=True):
                 if np.isfinite(value):
                     rows.writerow((curve.label, curve.task, seed, metric, f"{step:.10g}", value))
     return text.getvalue()
