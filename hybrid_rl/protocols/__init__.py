@@ -43,9 +43,9 @@ from hybrid_rl.protocols.learned import (
 )
 from hybrid_rl.protocols.learning import (
     Demonstrations,
+    Imagination,
     LatestLearner,
     Learner,
-    PolicyReturn,
     UniformLearner,
 )
 
@@ -65,6 +65,7 @@ __all__ = [
     "Env",
     "Features",
     "GoalPolicy",
+    "Imagination",
     "InformedBelief",
     "LabelledTarget",
     "LatestLearner",
@@ -75,7 +76,6 @@ __all__ = [
     "Objective",
     "PathTarget",
     "Policy",
-    "PolicyReturn",
     "Proposal",
     "Reward",
     "RewardedEnv",

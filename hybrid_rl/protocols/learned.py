@@ -156,6 +156,9 @@ class Critic(Protocol):
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, for planning states of size spec.n."""
 
+    def observe(self, params: PyTree, x: Array, returns: Array) -> PyTree:
+        """Parameters with statistics updated by states x [B, n] and reward / (1 - discount) [B]."""
+
     def all(self, params: PyTree, x: Array, u: Array) -> Array:
         """Q [members, ...] at x [..., n] and u [..., m]."""
 
