@@ -1,18 +1,18 @@
 """A curve in plain characters, for the end of a run on a console."""
 
-from collections.abc import Sequence
-
 import numpy as np
+from numpy.typing import ArrayLike
 
 WIDTH, HEIGHT = 60, 9  # characters
 
 
-def drawn(x: Sequence[float], y: Sequence[float], title: str, below: str) -> str:
-    """The line through the points (x, y), x increasing, with its greatest and least y and x.
+def drawn(x: ArrayLike, y: ArrayLike, title: str, below: str) -> str:
+    """The line through the points x [N], increasing, and y [N], with the limits of both.
 
     title: above the curve; below: the unit of x.
     """
-    low, high = min(y), max(y)
+    x, y = np.asarray(x), np.asarray(y)
+    low, high = y.min(), y.max()
     at = np.interp(np.linspace(x[0], x[-1], WIDTH), x, y)
     share = (at - low) / (high - low) if high > low else np.zeros(WIDTH)
     rows = np.rint(share * (HEIGHT - 1)).astype(int)
