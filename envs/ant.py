@@ -4,8 +4,15 @@
     gymnasium   r = 1[healthy] + dx/dt - 0.5 |a|^2, without the contact cost;
                 healthy: 0.2 <= z <= 1 m and all finite; terminates when not healthy
 
-o = (qpos without x and y, qvel) [27]; a: eight torques, as fractions of 150 N m; start:
-qpos ~ U(-0.1, 0.1) around the upright pose, qvel ~ 0.1 N(0, 1); a decision is 5 steps of 0.01 s.
+o = (qpos without x and y, qvel) [27], without the 78 contact forces of Ant-v5; a: eight torques,
+as fractions of 150 N m; start: qpos ~ U(-0.1, 0.1) around the upright pose, qvel ~ 0.1 N(0, 1);
+a decision is 5 steps of 0.01 s.
+
+    contacts=points     spheres at the ends of the capsules touch the floor, one where two meet;
+                        the same in all implementations of the physics, not that of Gymnasium
+    contacts=capsules   Gymnasium's: with native physics the state after a decision differs by
+                        5e-6, in contact or not. For a capsule within 30 degrees of the vertical
+                        MJX and Warp turn the friction pyramid, and rates differ by up to 2 rad/s.
 
 Source: Schulman et al. 2015; parameters of Gymnasium's Ant-v5; reward of pybullet_envs, which the
 thesis uses (its body weighs 182 kg there because the importer ignores the densities).
@@ -23,7 +30,12 @@ from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.options import one_of
 from hybrid_rl.types import EnvState, Spec
 
-ASSETS = {"rk4": "ant.xml", "euler": "ant_euler.xml"}  # by integrator
+ASSETS = {  # by contacts and integrator
+    ("points", "rk4"): "ant.xml",
+    ("points", "euler"): "ant_euler.xml",
+    ("capsules", "rk4"): "ant_capsules.xml",
+    ("capsules", "euler"): "ant_capsules_euler.xml",
+}
 STEPS = 5  # physics steps per decision
 DT = 0.05  # [s] of a decision
 
@@ -35,9 +47,11 @@ class Ant:
     physics: str = "auto"
     reward: str = "pybullet"  # or gymnasium
     integrator: str = "rk4"  # as Gymnasium; euler, as Brax, costs a quarter
+    contacts: str = "points"  # or capsules, as Gymnasium
 
     def __post_init__(self) -> None:
-        one_of("integrator", self.integrator, tuple(ASSETS))
+        one_of("integrator", self.integrator, ("rk4", "euler"))
+        one_of("contacts", self.contacts, ("points", "capsules"))
         one_of("reward", self.reward, ("pybullet", "gymnasium"))
         check(self.physics)
 
@@ -48,7 +62,7 @@ class Ant:
 
     @property
     def _body(self) -> Physics:
-        return Physics(ASSETS[self.integrator], self.physics)
+        return Physics(ASSETS[self.contacts, self.integrator], self.physics)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -1,4 +1,4 @@
-"""pybullet's reward for walking robots, shared by ant, half-cheetah and hopper.
+"""pybullet's reward for walking robots, shared by ant, half-cheetah, hopper and walker.
 
     r = alive + dx/dt - 2 mean_i |a_i w_i| - 0.1 mean_i a_i^2 - 0.1 #{i : |theta_i| > 0.99}
 

@@ -32,7 +32,15 @@ for name, value in SETTINGS.items():
 
 SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
     f"{task}-mjx"
-    for task in ("hopper", "ant", "panda_stack", "sawyer_push", "sawyer_torque", "sprk")
+    for task in (
+        "hopper",
+        "walker2d",
+        "ant",
+        "panda_stack",
+        "sawyer_push",
+        "sawyer_torque",
+        "sprk",
+    )
 ]
 
 

@@ -41,7 +41,7 @@ USAGE = [  # overrides of train, words of the line
     ),
     ("experiment=foo", "experiment=foo: unknown; choose one of arrangements/first"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of arrangements/first"),
-    ("task=pendulm", "van_der_pol; did you mean pendulum?"),
+    ("task=pendulm", "walker2d; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("sed=3", "sed: unknown key; did you mean seed?"),
     ("total_step=3", "total_step: unknown key; did you mean total_steps?"),

@@ -14,7 +14,15 @@ from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.mujoco import mjcf
 
 
-def test_contacts_are_those_of_gymnasium():
+@pytest.fixture
+def theirs():
+    """Gymnasium's, with the observation and the reward of its version 4."""
+    env = gymnasium.make("Ant-v5", contact_cost_weight=0.0, include_cfrc_ext_in_observation=False)
+    yield env.unwrapped
+    env.close()
+
+
+def test_points_touch_where_the_capsules_of_gymnasium_do():
     """The same depths at the same points, with the same friction.
 
     Gymnasium's model has two equal contacts where two capsules meet.
@@ -41,11 +49,8 @@ def test_contacts_are_those_of_gymnasium():
     assert count > 200
 
 
-def test_ant_is_that_of_gymnasium():
+def test_ant_is_that_of_gymnasium(theirs):
     """States in free fall; reward and termination also near the floor."""
-    theirs = gymnasium.make(
-        "Ant-v5", contact_cost_weight=0.0, include_cfrc_ext_in_observation=False
-    ).unwrapped
     theirs.reset(seed=3)
     ours, rng = Ant("native", "gymnasium"), np.random.default_rng(0)
     step = jitted(ours, "step")
@@ -65,7 +70,49 @@ def test_ant_is_that_of_gymnasium():
             assert bool(state.terminated) == terminated == ends
             if height > 1:
                 np.testing.assert_allclose(state.obs, obs, atol=1e-4)
-    theirs.close()
+
+
+def test_capsules_touch_as_those_of_gymnasium(theirs):
+    """Random decisions, each from Gymnasium's state; most of the last ones are in contact."""
+    ours, rng = Ant("native", "gymnasium", contacts="capsules"), np.random.default_rng(0)
+    state, step = ours.reset(jax.random.key(0)), jitted(ours, "step")
+    touching = 0
+    for seed in range(4):
+        theirs.reset(seed=seed)
+        for _ in range(25):
+            qpos, qvel = (jnp.asarray(x) for x in (theirs.data.qpos, theirs.data.qvel))
+            action = rng.uniform(-1, 1, 8).astype(np.float32)
+            obs, _, terminated, _, info = theirs.step(action)
+            after = step(state.replace(data=ours._body.reset(qpos, qvel)), action)
+            np.testing.assert_allclose(after.obs, obs, atol=1e-4)  # measured: 5e-6
+            assert bool(after.terminated) == terminated
+            speed = info["x_position"] / 0.05 - float(qpos[0]) / 0.05
+            expected = 1.0 - terminated + speed - 0.5 * (action**2).sum()
+            np.testing.assert_allclose(after.reward, expected, atol=1e-3)
+            touching += theirs.data.ncon > 0
+            if terminated:
+                break
+    assert touching > 20
+
+
+def test_capsules_have_the_contacts_of_gymnasium(theirs):
+    """All of them, each with the friction pyramid of Gymnasium's, which lies along the capsule."""
+    rng, model = np.random.default_rng(0), mjcf.load("ant_capsules.xml")
+    data, count = mujoco.MjData(model), 0
+    for _ in range(100):
+        qpos = rng.uniform(-1, 1, 15)
+        qpos[2] = rng.uniform(0.1, 0.8)
+        theirs.set_state(qpos, np.zeros(14))
+        data.qpos[:] = qpos
+        mujoco.mj_forward(model, data)
+        rows = [
+            np.column_stack([c.dist, c.pos, c.frame, c.friction, c.solref, c.solimp])
+            for c in (data.contact, theirs.data.contact)
+        ]
+        rows = [x[np.lexsort(x.round(6).T)] for x in rows]
+        np.testing.assert_allclose(*rows, atol=1e-9)
+        count += len(rows[0])
+    assert count > 200
 
 
 @pytest.mark.parametrize(("height", "falling", "ends"), [(0.75, 0.0, False), (0.7, -12.0, True)])

@@ -16,10 +16,17 @@ from hybrid_rl.envs.locomotion import pybullet_reward
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics
 
-FILES = {"halfcheetah": "half_cheetah.xml", "hopper": "hopper.xml", "ant": "ant.xml"}
+FILES = {
+    "halfcheetah": "half_cheetah.xml",
+    "hopper": "hopper.xml",
+    "walker2d": "walker2d_v5.xml",
+    "ant": "ant.xml",
+    "ant_capsules": "ant.xml",
+}
 NAMES = {
     "halfcheetah": "HalfCheetah-v5",
     "hopper": "Hopper-v5",
+    "walker2d": "Walker2d-v5",
     "pendulum": "Pendulum-v1",
     "ant": "Ant-v5",
 }
@@ -161,13 +168,14 @@ def test_trajectory_and_reward(task):
     theirs.close()
 
 
-def test_hopper_terminates_with_that_of_gymnasium():
-    theirs = gymnasium.make("Hopper-v5").unwrapped
+@pytest.mark.parametrize("task", ["hopper", "walker2d"])
+def test_terminates_with_that_of_gymnasium(task):
+    theirs = gymnasium.make(NAMES[task]).unwrapped
     theirs.reset(seed=1)
-    ours = make("hopper", "native")
-    state = _set("hopper", ours, ours.reset(jax.random.key(0)), theirs.data.qpos, theirs.data.qvel)
+    ours = make(task, "native")
+    state = _set(task, ours, ours.reset(jax.random.key(0)), theirs.data.qpos, theirs.data.qvel)
     step = jitted(ours, "step")
-    action = np.array([0.5, -0.5, 0.3], np.float32)
+    action = np.resize(np.array([0.5, -0.5, 0.3], np.float32), ours.spec.act)
     decisions = 0
     while not state.terminated:
         terminated = theirs.step(action)[2]
@@ -177,7 +185,30 @@ def test_hopper_terminates_with_that_of_gymnasium():
     assert 5 < decisions < 200
 
 
-@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "ant"])
+@pytest.mark.parametrize(
+    ("z", "pitch", "ends"),
+    [
+        (0.78, 0.0, True),
+        (0.84, 0.98, False),
+        (0.84, -1.02, True),
+        (1.98, 0.0, False),
+        (2.02, 0, True),
+    ],
+)
+def test_walker_is_healthy_where_that_of_gymnasium_is(z, pitch, ends):
+    theirs = gymnasium.make("Walker2d-v5").unwrapped
+    theirs.reset(seed=1)
+    qpos, qvel = np.array([0, z, pitch, 0, -1, 0, 0, -1, 0]), np.zeros(9)
+    theirs.set_state(qpos, qvel)
+    ours = make("walker2d", "native")
+    state = _set("walker2d", ours, ours.reset(jax.random.key(0)), qpos, qvel)
+    after = jitted(ours, "step")(state, jnp.zeros(6))
+    _, reward, terminated, *_ = theirs.step(np.zeros(6))
+    assert bool(after.terminated) == terminated == ends
+    np.testing.assert_allclose(after.reward, float(reward), atol=1e-4)
+
+
+@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "walker2d", "ant"])
 def test_initial_states_are_distributed_as_in_gymnasium(task):
     theirs = gymnasium.make(NAMES[task]).unwrapped
     size = TASKS[task](physics="native").spec.obs
@@ -219,7 +250,8 @@ def test_cheetah_kneels_where_mujoco_has_a_contact():
     np.testing.assert_array_equal(kneels, truth)
 
 
-def test_pybullet_rewards_terminate_the_hopper_only():
+@pytest.mark.parametrize("task", ["hopper", "walker2d"])
+def test_pybullet_rewards_terminate_all_but_the_cheetah(task):
     cheetah = HalfCheetah("native", "pybullet")
     state = cheetah.reset(jax.random.key(0))
     over = state.data.replace(qpos=jnp.array([0, 0, 3, 0, 0, 0, 0, 0, 0], jnp.float32))
@@ -228,14 +260,14 @@ def test_pybullet_rewards_terminate_the_hopper_only():
     assert stand.reward - stand.metrics["speed"] > 0.5
     assert fall.reward - fall.metrics["speed"] < -0.9
     assert not fall.terminated
-    hopper = TASKS["hopper"]("native", "pybullet")
-    state = hopper.reset(jax.random.key(0))
+    walker = TASKS[task]("native", "pybullet")
+    state, still = walker.reset(jax.random.key(0)), jnp.zeros(walker.spec.act)
     leaning = state.data.qpos.at[2].set(0.9)
-    assert not jitted(hopper, "step")(state, jnp.zeros(3)).terminated
+    assert not jitted(walker, "step")(state, still).terminated
     tipped = state.replace(data=state.data.replace(qpos=leaning.at[2].set(1.1)))
     leaning = state.replace(data=state.data.replace(qpos=leaning))
-    assert not jitted(hopper, "step")(leaning, jnp.zeros(3)).terminated
-    after = jitted(hopper, "step")(tipped, jnp.zeros(3))
+    assert not jitted(walker, "step")(leaning, still).terminated
+    after = jitted(walker, "step")(tipped, still)
     assert after.terminated
     assert after.reward - after.metrics["speed"] < -0.9
 

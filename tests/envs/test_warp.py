@@ -57,6 +57,7 @@ def test_an_overflow_gives_nan(env, small_lists):
     [
         ("cartpole.xml", 0, 1),  # the ends of the rail
         ("hopper.xml", 11, 38),
+        ("walker2d.xml", 14, 62),  # 7 capsules on a floor, 6 joint limits
         ("halfcheetah.xml", 16, 70),  # 8 capsules on a floor, 6 joint limits
     ],
 )

@@ -113,13 +113,13 @@ def test_unknown_physics_is_named(task):
         make(task, "bullet")
 
 
-@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "cartpole"])
+@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "walker2d", "cartpole"])
 def test_unknown_reward_is_named(task):
     with pytest.raises(ValueError, match=r"reward='fame': choose one of \w+, \w+"):
         TASKS[task](reward="fame")
 
 
-@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "cartpole"])
+@pytest.mark.parametrize("task", ["halfcheetah", "hopper", "walker2d", "cartpole"])
 def test_warp_without_a_gpu_raises(task):
     with pytest.raises(ValueError, match=r"physics='warp' needs"):
         make(task, "warp")

@@ -30,6 +30,7 @@ from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import TIP, SawyerPush
 from hybrid_rl.envs.sawyer_torque import SawyerTorque
 from hybrid_rl.envs.sprk import Sprk
+from hybrid_rl.envs.walker2d import Walker2d
 
 DECISIONS = 20
 STATE = {
@@ -55,6 +56,7 @@ ANALYTIC = {
 TASKS = {
     "halfcheetah": HalfCheetah,
     "hopper": Hopper,
+    "walker2d": Walker2d,
     "cartpole": Cartpole,
     "ant": Ant,
     "quadcopter": Quadcopter,
@@ -87,6 +89,7 @@ class Reference(NamedTuple):
 REFERENCE = {
     "halfcheetah": Reference("halfcheetah.xml", 5, (1,)),
     "hopper": Reference("hopper.xml", 4, (1,)),
+    "walker2d": Reference("walker2d.xml", 4, (1,)),
     "cartpole": Reference("cartpole.xml", 1),
     "ant": Reference("ant_euler.xml", 5, (2,)),
     "quadcopter": Reference("quadcopter.xml", 1),
@@ -131,7 +134,8 @@ def observe(task, data, state):
             return np.concatenate([qpos, qvel, neutral, neutral])
         case "sprk":
             return np.concatenate([qpos, qvel])
-    return np.concatenate([qpos[1:], np.clip(qvel, -10, 10) if task == "hopper" else qvel])
+    clipped = task in ("hopper", "walker2d")
+    return np.concatenate([qpos[1:], np.clip(qvel, -10, 10) if clipped else qvel])
 
 
 def actions(env):
