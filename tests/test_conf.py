@@ -219,8 +219,13 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
     assert (c.planner.horizon, c.model.hidden, c.mbpo.share) == (5, [200], 0)
     c = config.load(["settings=light", "total_steps=10", "algo=hybrid_stochastic"])
     learner = c.learners.policy.learner
-    assert (learner.updates, learner.critic.hidden, c.total_steps) == (1, [128, 128], 10)
+    assert (learner.updates, learner.critic.hidden, c.total_steps) == (2, [128, 128], 10)
+    assert learner.lookahead.model.members == 3
     config.build(c)
+    for algo in ("sac", "nn_mppi", "hybrid_deterministic", "hybrid_disagreement"):
+        c = config.load(["settings=light", f"algo={algo}"])
+        config.build(c)
+        assert (c.policy_learner.lookahead is None) == (algo == "sac")
 
 
 def test_thesis_parameters() -> None:

@@ -61,6 +61,7 @@ class Duration:
 def instead(config: DictConfig) -> str:
     """settings=light for hybrid learning and its baselines; fewer decisions for other methods."""
     light = OmegaConf.load(CONF / "settings" / "light.yaml")
-    if "mbpo" not in config or config.critic.hidden == light.critic.hidden:
+    for_it = "lookahead" in config.get("policy_learner", ())
+    if not for_it or config.critic.hidden == light.critic.hidden:
         return "a smaller total_steps"
     return "settings=light"
