@@ -32,6 +32,7 @@ class MLP(nn.Module):
     out: int
     activation: str = "relu"
     layer_norm: bool = False  # of every hidden layer, before its activation
+    zero: bool = False  # the last layer starts at zero
 
     @nn.compact
     def __call__(self, x: Array) -> Array:
@@ -39,7 +40,8 @@ class MLP(nn.Module):
         for width in self.hidden:
             x = nn.Dense(width, kernel_init=SPREAD)(x)
             x = ACTIVATIONS[self.activation](nn.LayerNorm()(x) if self.layer_norm else x)
-        return nn.Dense(self.out, kernel_init=SPREAD)(x)
+        last = nn.initializers.zeros if self.zero else SPREAD
+        return nn.Dense(self.out, kernel_init=last)(x)
 
 
 def check(name: str, hidden: Sequence[int], activation: str) -> None:

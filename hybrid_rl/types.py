@@ -78,6 +78,16 @@ class Batch(NamedTuple):
     next_action: Array | None = None  # [B, m] executed at next_obs; arbitrary if the episode ended
 
 
+class Imagined(NamedTuple):
+    """B trajectories of a policy in a model, of H decisions and one more."""
+
+    x: Array  # [H+1, B, n]
+    u: Array  # [H+1, B, m]
+    log_prob: Array  # [H+1, B] log pi(u|x)
+    reward: Array  # [H, B]
+    goes_on: Array  # [H, B] the probability that the episode continues
+
+
 class Path(NamedTuple):
     """A trajectory, real or imagined."""
 

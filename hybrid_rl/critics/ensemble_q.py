@@ -1,11 +1,23 @@
-"""Q(x, u): the minimum of an ensemble of action values (Fujimoto et al. 2018, eq. 10)."""
+"""Q(x, u): an ensemble of action values, reduced to their minimum or to mean - pessimism * std.
+
+The minimum of an ensemble is that of Fujimoto et al. 2018, eq. (10); of two members it equals the
+mean minus one standard deviation, and a random pair of many members has mean - 0.56 std as its
+expected minimum (Chen et al. 2021, REDQ, where members are normally distributed).
+
+With `scale` the networks' outputs are in units of the largest return that the rewards so far allow,
+rms(reward) / (1 - discount), so that a first step of learning has the size of a value; their last
+layer starts at zero. With `normalise` their inputs are states divided by their running standard
+deviation in the learner's data.
+"""
 
 from dataclasses import dataclass
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import statistics
 from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
@@ -15,13 +27,16 @@ class EnsembleQ:
     """`members` independent action-value networks.
 
     Raises:
-        ValueError: for invalid widths, activations or counts.
+        ValueError: for invalid widths, activations or counts, or a negative pessimism.
     """
 
     hidden: tuple[int, ...] = (256, 256)
     activation: str = "relu"
     members: int = 2
     layer_norm: bool = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
+    pessimism: float | None = None  # [std of the members]; None: their minimum
+    normalise: bool = False
+    scale: bool = False
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -29,18 +44,41 @@ class EnsembleQ:
         check("critic", self.hidden, self.activation)
         if self.members < 1:
             raise ValueError(f"critic.members={self.members}: must be at least 1")
+        if self.pessimism is not None and self.pessimism < 0:
+            raise ValueError(f"critic.pessimism={self.pessimism}: must be 0 or more, or null")
 
     def _net(self) -> MLP:
-        return MLP(self.hidden, 1, self.activation, self.layer_norm)
+        return MLP(self.hidden, 1, self.activation, self.layer_norm, zero=self.scale)
 
-    def init(self, key: Array, spec: Spec) -> Any:
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters, members on axis 0. The key is consumed."""
-        return ensemble_init(self._net(), key, self.members, jnp.zeros(spec.n + spec.act))
+        params: dict[str, Any] = {
+            "weights": ensemble_init(self._net(), key, self.members, jnp.zeros(spec.n + spec.act))
+        }
+        if self.normalise:
+            params["state"] = statistics.init(spec.n)
+        if self.scale:
+            params["value"] = statistics.init(1)
+        return params
 
-    def all(self, params: Any, x: Array, u: Array) -> Array:
+    def observe(self, params: dict[str, Any], x: Array, returns: Array) -> dict[str, Any]:
+        """Parameters with statistics updated by states x [B, n] and reward / (1 - discount) [B]."""
+        if self.normalise:
+            params = {**params, "state": statistics.update(params["state"], x)}
+        if self.scale:
+            params = {**params, "value": statistics.update(params["value"], returns[:, None])}
+        return params
+
+    def all(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Q of every member [members, ...] at x [..., n] and u [..., m]."""
-        return ensemble_apply(self._net(), params, jnp.concatenate([x, u], -1))[..., 0]
+        if self.normalise:
+            x = statistics.normalise(jax.lax.stop_gradient(params["state"]), x)
+        q = ensemble_apply(self._net(), params["weights"], jnp.concatenate([x, u], -1))[..., 0]
+        return q * jax.lax.stop_gradient(params["value"].magnitude[0]) if self.scale else q
 
-    def value(self, params: Any, x: Array, u: Array) -> Array:
-        """The minimum of Q [...] over the members."""
-        return self.all(params, x, u).min(0)
+    def value(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """Q [...], reduced over the members."""
+        q = self.all(params, x, u)
+        if self.pessimism is None:
+            return q.min(0)
+        return q.mean(0) - self.pessimism * jnp.sqrt(q.var(0) + 1e-8)  # smooth where all are equal

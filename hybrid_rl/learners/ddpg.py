@@ -93,6 +93,7 @@ class DDPG:
         state = state.replace(
             policy=self.policy.observe(state.policy, batch.obs),
             target_policy=self.policy.observe(state.target_policy, batch.obs),
+            critic=self.critic.observe(state.critic, batch.obs, batch.reward / (1 - self.discount)),
         )
         after = self.critic.value(
             state.target_critic,

@@ -1,11 +1,10 @@
-"""The soft return of a policy over H decisions of a learned model, for its gradient.
+"""Decisions of a policy in a learned model, for the returns of `core.soft_return`.
 
-    R(x_0) = sum_{t<H} c_t (r_t - alpha log pi_t) + c_H (min_i Q_i(x_H, u_H) - alpha log pi_H)
-    u_t ~ pi(x_t),   x_{t+1} ~ f(x_t, u_t),   c_t = discount^t times the chance to continue
+    u_t ~ pi(x_t),   x_{t+1} ~ f(x_t, u_t),   r_t, c_t = reward(x_t, u_t)
 
-The gradient of R by the policy's parameters goes through actions, model, reward and critic, with
-the noise fixed: stochastic value gradients (Heess et al. 2015), here with the maximum-entropy
-return, as in MAAC (Clavera et al. 2020). For H = 0 it is the policy's objective in SAC.
+with c_t the chance that the episode continues. The gradient by the policy's parameters goes through
+actions, model and reward, with the noise fixed (reparameterisation): stochastic value gradients
+(Heess et al. 2015).
 """
 
 from dataclasses import dataclass
@@ -15,8 +14,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.protocols import Critic, LearnedPolicy, Reward, Trainable
-from hybrid_rl.types import Params
+from hybrid_rl.protocols import LearnedPolicy, Reward, Trainable
+from hybrid_rl.types import Imagined, Params
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,6 @@ class Lookahead:
     model: Trainable
     reward: Reward
     policy: LearnedPolicy
-    critic: Critic
     steps: int = 3  # H
 
     def __post_init__(self) -> None:
@@ -38,28 +36,31 @@ class Lookahead:
         if not isinstance(self.steps, int) or self.steps < 1:
             raise ValueError(f"lookahead.steps={self.steps}: must be a whole number, 1 or more")
 
-    def value(
-        self, params: Params, alpha: Array, discount: float, x: Array, m: int, key: Array
-    ) -> tuple[Array, Array]:
-        """R [B] from planning states x [B, n], and log pi(u_0|x_0) [B]. The key is consumed."""
+    def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
+        """H decisions of size m from planning states x [B, n]. The key is consumed.
+
+        Differentiable by `params.policy`.
+        """
         acting, moving, choosing = jax.random.split(key, 3)
         length = self.steps
         for_policy = jax.random.normal(acting, (length + 1, len(x), m))
         for_model = jax.random.normal(moving, (length, *x.shape))
         outcome = jax.vmap(self.reward.outcome, (None, 0, 0))
 
-        def forward(carry: Any, at: Any) -> Any:
-            x, weight, total = carry
+        def forward(x: Array, at: Any) -> Any:
             noise, model_noise, key = at
             u, log_prob = self.policy.sample(params.policy, x, noise)
             r, end = outcome(params.reward, x, u)
-            total = total + weight * (r - alpha * log_prob)
             after = self.model.draw(params.model, x, u, model_noise, key)
-            return (after, weight * discount * jax.nn.sigmoid(-end), total), log_prob
+            return after, (x, u, log_prob, r, jax.nn.sigmoid(-end))
 
-        first = x, jnp.ones(len(x)), jnp.zeros(len(x))
         along = for_policy[:-1], for_model, jax.random.split(choosing, length)
-        (x, weight, total), log_probs = jax.lax.scan(forward, first, along, unroll=length)
-        u, log_prob = self.policy.sample(params.policy, x, for_policy[-1])
-        last = self.critic.value(params.critic, x, u) - alpha * log_prob
-        return total + weight * last, log_probs[0]
+        last, (xs, us, log_probs, rewards, goes_on) = jax.lax.scan(forward, x, along)
+        u, log_prob = self.policy.sample(params.policy, last, for_policy[-1])
+        return Imagined(
+            x=jnp.concatenate([xs, last[None]]),
+            u=jnp.concatenate([us, u[None]]),
+            log_prob=jnp.concatenate([log_probs, log_prob[None]]),
+            reward=rewards,
+            goes_on=goes_on,
+        )

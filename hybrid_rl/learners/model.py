@@ -7,19 +7,35 @@ with u' the action that was executed at x', no gradient through the target, and 
 the planner then sums a second time. Where an episode ended, also by its time limit, no action was
 executed at x', so that the target is only the reward. Without a reward the loss is that of thesis
 eq. (6.24)-(6.25).
+
+A share `holdout` of all decisions never enters a gradient or a statistic. The model's loss on them,
+a running mean over the updates, is logged and ranks the members of an ensemble with elites. The
+decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
+import jax.numpy as jnp
 import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import held_out
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.protocols import Reward, Trainable
 from hybrid_rl.types import Batch, Params, Spec
+
+RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
+
+
+@struct.dataclass
+class HeldOut:
+    """The loss on held-out decisions."""
+
+    mean: Array  # [members] running mean
+    count: Array  # [] updates with held-out decisions
 
 
 @struct.dataclass
@@ -29,6 +45,7 @@ class ModelState:
     model: Any
     reward: Any  # None without a reward
     optimiser: Any
+    held_out: Any = None  # HeldOut, or None without
 
 
 @dataclass(frozen=True)
@@ -36,7 +53,8 @@ class ModelLearner:
     """Gradient steps on a model and, unless it is None, a reward.
 
     Raises:
-        ValueError: for a model without weights, or a rate or a discount out of range.
+        ValueError: for a model without weights, a rate, a discount or a share out of range, or
+            elites without held-out decisions.
     """
 
     model: Trainable
@@ -46,6 +64,8 @@ class ModelLearner:
     updates: float = 2  # per decision
     reward_discount: float = 0.0
     max_grad_norm: float | None = None
+    weight_decay: float = 0.0  # of the layers' matrices, per unit of learning rate
+    holdout: float = 0.0  # share of the decisions
 
     data: ClassVar[str] = "uniform"
     early: ClassVar[bool] = True  # random decisions inform the model
@@ -63,6 +83,15 @@ class ModelLearner:
             )
         if self.learning_rate <= 0:
             raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
+        if self.weight_decay < 0:
+            raise ValueError(f"model_learner.weight_decay={self.weight_decay}: must be 0 or more")
+        if not 0 <= self.holdout <= 0.5:
+            raise ValueError(f"model_learner.holdout={self.holdout}: must lie in [0, 0.5]")
+        if self._elites is not None and not self.holdout:
+            raise ValueError(
+                f"model.elites={self._elites}: needs decisions that rank the members; give "
+                "model_learner.holdout, such as 0.1"
+            )
 
     @property
     def owns(self) -> tuple[str, ...]:
@@ -74,8 +103,15 @@ class ModelLearner:
         """One for each member of an ensemble."""
         return self.model.members
 
+    @property
+    def _elites(self) -> int | None:
+        """Members of an ensemble that draw states, if not all do."""
+        return getattr(self.model, "elites", None)
+
     def _optimiser(self) -> optax.GradientTransformation:
         adam = optax.adam(self.learning_rate)
+        if self.weight_decay:
+            adam = optax.adamw(self.learning_rate, weight_decay=self.weight_decay, mask=_matrices)
         if self.max_grad_norm is None:
             return adam
         return optax.chain(optax.clip_by_global_norm(self.max_grad_norm), adam)
@@ -88,7 +124,9 @@ class ModelLearner:
             for_model, for_reward = jax.random.split(key)
             model = self.model.init(for_model, spec)
             reward = self.reward.init(for_reward, lifted_spec(self.model, spec))
-        return ModelState(model, reward, self._optimiser().init(_weights(model, reward)))
+        optimiser = self._optimiser().init(_weights(model, reward))
+        none = HeldOut(jnp.zeros(self.batches), jnp.zeros(())) if self.holdout else None
+        return ModelState(model, reward, optimiser, none)
 
     def params(self, state: ModelState) -> dict[str, Any]:
         """The model, and the reward if there is one."""
@@ -98,6 +136,10 @@ class ModelLearner:
         self, state: ModelState, params: Params, batch: Batch, key: Array
     ) -> tuple[ModelState, dict[str, Array]]:
         """One Adam step: the model's loss on all batches, the reward's on the first."""
+        whole, held = batch, None
+        if state.held_out is not None:
+            held = held_out.flags(batch.obs, batch.action, self.holdout)
+            batch = held_out.without(batch, held)
         model = self.model.observe(state.model, batch.obs, batch.next_obs)
         reward, reward_loss = self._reward(state.reward, model, batch)
 
@@ -118,7 +160,26 @@ class ModelLearner:
         metrics = {"model/loss": of_model}
         if of_reward is not None:
             reward, metrics["model/reward_loss"] = {**reward, "weights": r}, of_reward
-        return ModelState({**model, "weights": f}, reward, optimiser), metrics
+        state = ModelState({**model, "weights": f}, reward, optimiser, state.held_out)
+        if held is not None:
+            state = self._judged(state, *held_out.only(whole, held, self._num_held(whole)))
+            metrics["model/held_out_loss"] = state.held_out.mean.mean()
+        return state, metrics
+
+    def _num_held(self, batch: Batch) -> int:
+        """Decisions of a batch that are held out, on average."""
+        return max(1, round(self.holdout * len(batch.obs)))
+
+    def _judged(self, state: ModelState, rows: Batch, real: Array) -> ModelState:
+        """The state after losses on held-out decisions `rows` [B], of which `real` [B] count."""
+        part, before = self.model, state.held_out
+        each = part.losses(state.model, rows.obs, rows.action, rows.next_obs)
+        now = (each * real[None]).sum(1) / jnp.maximum(real.sum(), 1)
+        count = before.count + real.any()
+        rate = jnp.where(real.any(), jnp.maximum(1 / jnp.maximum(count, 1), RATE), 0)
+        mean = before.mean + rate * (now - before.mean)
+        model = state.model if self._elites is None else part.rank(state.model, mean)
+        return state.replace(model=model, held_out=HeldOut(mean, count))
 
     def _reward(self, reward: Any, model: Any, batch: Batch) -> tuple[Any, Any]:
         """The reward's parameters with updated statistics, and its loss as a function."""
@@ -134,6 +195,7 @@ class ModelLearner:
             after = outcome(reward, first.next_obs, first.next_action)[0]
             goes_on = self.reward_discount * (1 - first.terminated) * (1 - first.truncated)
             target = target + goes_on * after
+        reward = part.observe_targets(reward, target)
 
         def loss(weights: Any) -> Array:
             each = jax.vmap(part.loss, (None, 0, 0, 0, 0))
@@ -141,6 +203,13 @@ class ModelLearner:
             return each(tuned, first.obs, first.action, target, first.terminated).mean()
 
         return reward, loss
+
+
+def _matrices(weights: Any) -> Any:
+    """Which leaves are matrices of layers: true for "kernel", false for biases and deviations."""
+    return jax.tree_util.tree_map_with_path(
+        lambda path, _: getattr(path[-1], "key", None) == "kernel", weights
+    )
 
 
 def _weights(model: Any, reward: Any) -> tuple[Any, Any]:

@@ -5,8 +5,10 @@
     L_pi   = mean (alpha log pi(v|x) - min_i Q_i(x, v)),                             v ~ pi(x)
     L_a    = -log(alpha) mean (log pi(v|x) + target),     Q' <- (1 - tau) Q' + tau Q
 
-With a `lookahead` the policy maximises the soft return of several decisions in a model. A time
-limit does not terminate the task: `truncated` is not used.
+With a `lookahead` the policy maximises the soft return V_0 of H decisions in a model instead, from
+the states of the batch; with `expand` the critic learns the y_t of the same H decisions, and
+nothing from the batch's own transitions (both in `core.soft_return`). A time limit does not
+terminate the task: `truncated` is not used.
 """
 
 from dataclasses import dataclass
@@ -18,9 +20,10 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import soft_return
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.protocols import Critic, LearnedPolicy, Model, PolicyReturn
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.protocols import Critic, Imagination, LearnedPolicy, Model
+from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 
 @struct.dataclass
@@ -56,13 +59,14 @@ class SAC:
     tau: float = 0.005
     batch_size: int = 256
     updates: float = 1  # per decision
-    lookahead: PolicyReturn | None = None  # what the policy maximises; None: the critic
+    early: bool = False  # whether it also learns while decisions are random
+    lookahead: Imagination | None = None  # the policy maximises V_0; None: the critic
+    expand: bool = False  # the critic learns from the lookahead, too
     max_grad_norm: float | None = None  # of the policy's gradient; None: no limit
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     batches: ClassVar[int] = 1
-    early: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -76,6 +80,10 @@ class SAC:
         if self.max_grad_norm is not None and not self.max_grad_norm > 0:
             raise ValueError(
                 f"policy_learner.max_grad_norm={self.max_grad_norm}: must be above 0, or null"
+            )
+        if self.expand and self.lookahead is None:
+            raise ValueError(
+                "policy_learner.expand=true: needs policy_learner.lookahead=${lookahead}"
             )
 
     def init(self, key: Array, spec: Spec) -> SACState:
@@ -103,76 +111,100 @@ class SAC:
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
         batch = lifted_batch(self.model, params.model, batch)
-        noise = jax.random.normal(key, (2, *batch.action.shape))
         alpha = jnp.exp(state.log_alpha)
-        state = state.replace(policy=self.policy.observe(state.policy, batch.obs))
-        y = self._target(state, alpha, batch, noise[0])
-
-        def critic_loss(critic: Any) -> tuple[Array, Array]:
-            q = self.critic.all(critic, batch.obs, batch.action)
-            return 0.5 * jnp.sum(jnp.mean((q - y[None]) ** 2, axis=-1)), q.mean()
-
-        (of_critic, q), grads = jax.value_and_grad(critic_loss, has_aux=True)(state.critic)
-        critic, critic_optimiser = _adam(
-            self.critic_learning_rate, grads, state.critic_optimiser, state.critic
+        state = state.replace(
+            policy=self.policy.observe(state.policy, batch.obs),
+            critic=self.critic.observe(state.critic, batch.obs, batch.reward / (1 - self.discount)),
         )
+        noise = jax.random.normal(key, (2, *batch.action.shape))
+        if self.expand:
+            state, paths, of_policy = self._improved(state, params, alpha, batch, key, noise[1])
+            state, of_critic = self._expanded(state, alpha, paths)
+        else:
+            y = self._target(state, alpha, batch, noise[0])
+            weight = jnp.ones_like(y)
+            state, of_critic = self._evaluated(state, batch.obs, batch.action, y, weight)
+            state, _, of_policy = self._improved(state, params, alpha, batch, key, noise[1])
 
-        known = params._replace(critic=critic)
-        policy, policy_optimiser, (of_policy, log_prob, norm) = self._improved(
-            state, known, alpha, batch.obs, noise[1], key
-        )
-        entropy = -log_prob.mean()
         target_entropy = self.target_entropy
         if target_entropy is None:
             target_entropy = -batch.action.shape[-1]
         log_alpha, alpha_optimiser = _adam(
             self.alpha_learning_rate,
-            entropy - target_entropy,
+            of_policy["sac/entropy"] - target_entropy,
             state.alpha_optimiser,
             state.log_alpha,
         )
-        target = optax.incremental_update(critic, state.target, self.tau)
-        metrics = {
-            "sac/critic_loss": of_critic,
-            "sac/policy_loss": of_policy,
-            "sac/alpha": alpha,
-            "sac/entropy": entropy,
-            "sac/q": q,
-            "sac/gradient_norm": norm,
-        }
-        return SACState(
-            policy, critic, target, log_alpha, policy_optimiser, critic_optimiser, alpha_optimiser
+        target = optax.incremental_update(state.critic, state.target, self.tau)
+        metrics = {**of_critic, **of_policy, "sac/alpha": alpha}
+        return state.replace(
+            target=target, log_alpha=log_alpha, alpha_optimiser=alpha_optimiser
         ), metrics
 
+    def _evaluated(
+        self, state: SACState, x: Array, u: Array, y: Array, weight: Array
+    ) -> tuple[SACState, dict[str, Array]]:
+        """The critic after a step towards targets y [B] at x [B, n] and u [B, m], and metrics."""
+
+        def loss(critic: Any) -> tuple[Array, Array]:
+            q = self.critic.all(critic, x, u)
+            return 0.5 * jnp.sum(jnp.mean(weight * (q - y[None]) ** 2, axis=-1)), q.mean()
+
+        (value, q), grads = jax.value_and_grad(loss, has_aux=True)(state.critic)
+        critic, optimiser = _adam(
+            self.critic_learning_rate, grads, state.critic_optimiser, state.critic
+        )
+        metrics = {"sac/critic_loss": value, "sac/q": q}
+        return state.replace(critic=critic, critic_optimiser=optimiser), metrics
+
+    def _expanded(
+        self, state: SACState, alpha: Array, paths: Imagined
+    ) -> tuple[SACState, dict[str, Array]]:
+        """The critic after a step towards the returns along `paths`, and metrics."""
+        paths = jax.lax.stop_gradient(paths)
+        last = self.critic.value(state.target, paths.x[-1], paths.u[-1])
+        y = soft_return.returns(paths, alpha, self.discount, last)
+        x, u = (each[:-1].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
+        return self._evaluated(state, x, u, y.ravel(), soft_return.reached(paths).ravel())
+
     def _improved(
-        self, state: SACState, params: Params, alpha: Array, x: Array, noise: Array, key: Array
-    ) -> tuple[Any, Any, tuple[Array, Array, Array]]:
-        """Policy, optimiser, and loss [], log pi [B] and the gradient's norm [] at x [B, n]."""
+        self,
+        state: SACState,
+        params: Params,
+        alpha: Array,
+        batch: Batch,
+        key: Array,
+        noise: Array,
+    ) -> tuple[SACState, Any, dict[str, Array]]:
+        """The policy after a step from the states of `batch`, the lookahead, and metrics."""
+        params = params._replace(critic=state.critic)
 
-        def loss(policy: Any) -> tuple[Array, Array]:
+        def loss(policy: Any) -> tuple[Array, tuple[Array, Any]]:
             known = params._replace(policy=policy)
-            value, log_prob = self._value(known, alpha, x, noise, key)
-            return -value.mean(), log_prob
+            if self.lookahead is None:
+                v, log_prob = self.policy.sample(policy, batch.obs, noise)
+                value = self.critic.value(state.critic, batch.obs, v) - alpha * log_prob
+                return -value.mean(), (log_prob, None)
+            ahead, m = jax.random.fold_in(key, 1), batch.action.shape[-1]
+            paths = self.lookahead.imagine(known, batch.obs, m, ahead)
+            last = self.critic.value(state.critic, paths.x[-1], paths.u[-1])
+            y = soft_return.returns(paths, alpha, self.discount, last)
+            return -(y[0] - alpha * paths.log_prob[0]).mean(), (paths.log_prob[0], paths)
 
-        (of_policy, log_prob), grads = jax.value_and_grad(loss, has_aux=True)(state.policy)
+        (value, (log_prob, paths)), grads = jax.value_and_grad(loss, has_aux=True)(state.policy)
         norm = optax.tree.norm(grads)
         if self.max_grad_norm is not None:
             shrunk = jnp.minimum(1.0, self.max_grad_norm / jnp.maximum(norm, 1e-12))
             grads = jax.tree.map(lambda g: g * shrunk, grads)
-        rate = self.policy_learning_rate
-        policy, optimiser = _adam(rate, grads, state.policy_optimiser, state.policy)
-        return policy, optimiser, (of_policy, log_prob, norm)
-
-    def _value(
-        self, params: Params, alpha: Array, x: Array, noise: Array, key: Array
-    ) -> tuple[Array, Array]:
-        """The soft return [B] that the policy maximises from x [B, n], and log pi [B] there."""
-        if self.lookahead is not None:
-            ahead = jax.random.fold_in(key, 1)
-            m = noise.shape[-1]
-            return self.lookahead.value(params, alpha, self.discount, x, m, ahead)
-        v, log_prob = self.policy.sample(params.policy, x, noise)
-        return self.critic.value(params.critic, x, v) - alpha * log_prob, log_prob
+        policy, optimiser = _adam(
+            self.policy_learning_rate, grads, state.policy_optimiser, state.policy
+        )
+        metrics = {
+            "sac/policy_loss": value,
+            "sac/entropy": -log_prob.mean(),
+            "sac/gradient_norm": norm,
+        }
+        return state.replace(policy=policy, policy_optimiser=optimiser), paths, metrics
 
     def _target(self, state: SACState, alpha: Array, batch: Batch, noise: Array) -> Array:
         """The target y [B], without gradient."""

@@ -4,7 +4,8 @@
 
 Members differ by their initial weights and by their batches, which are drawn independently from one
 replay memory. Deep ensembles (Lakshminarayanan et al. 2017), as in PETS and MBPO (Chua et al. 2018,
-Janner et al. 2019), without a bootstrapped data set for each member and without elites.
+Janner et al. 2019), without a bootstrapped data set for each member. With `elites`, states are
+drawn only from the members whose loss on held-out decisions is least, as in MBPO.
 """
 
 from dataclasses import dataclass
@@ -23,26 +24,38 @@ class Ensemble:
     """`members` copies of `model`, each with its own "weights", with shared statistics.
 
     Raises:
-        ValueError: for a number of members that is not a positive integer.
+        ValueError: for a number of members that is not a positive integer, or of elites that is not
+            between 1 and that.
     """
 
     model: Trainable
     members: int = 5
+    elites: int | None = None  # members that `draw` uses; None: all
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if not isinstance(self.members, int) or self.members < 1:
             raise ValueError(f"model.members={self.members}: must be a whole number, 1 or more")
+        if self.elites is not None and self.elites not in range(1, self.members + 1):
+            raise ValueError(
+                f"model.elites={self.elites}: must be a whole number from 1 to "
+                f"model.members={self.members}, or null for all"
+            )
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters; weights have a first axis [members]. The key is consumed."""
         keys = jax.random.split(key, self.members)
         weights = jax.vmap(lambda k: self.model.init(k, spec)["weights"])(keys)
-        return {**self.model.init(key, spec), "weights": weights}
+        params = {**self.model.init(key, spec), "weights": weights}
+        return params if self.elites is None else {**params, "elites": jnp.arange(self.elites)}
 
     def observe(self, params: dict[str, Any], obs: Array, next_obs: Array) -> dict[str, Any]:
         """Parameters with statistics updated by observations [B, o] and their successors."""
         return self.model.observe(params, obs, next_obs)
+
+    def rank(self, params: dict[str, Any], losses: Array) -> dict[str, Any]:
+        """Parameters whose elites are the members with the least of `losses` [members]."""
+        return {**params, "elites": jnp.argsort(losses)[: self.elites]}
 
     def lift(self, params: dict[str, Any], obs: Array) -> Array:
         """The planning state of an observation [o]."""
@@ -75,14 +88,18 @@ class Ensemble:
     def draw(self, params: dict[str, Any], x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Next states [B, n] for noise [B, n] ~ N(0, I), each of one member.
 
-        The states are divided equally among the members; `key` decides which share each one gets.
+        The states are divided equally among the elites, without them among the members; `key`
+        decides which share each one gets.
         """
-        order = jax.random.permutation(key, self.members)
+        count = self.elites or self.members
+        order = jax.random.permutation(key, count)
+        if self.elites is not None:
+            order = params["elites"][order]
         weights = jax.tree.map(lambda w: w[order], params["weights"])
-        missing = -len(x) % self.members
+        missing = -len(x) % count
 
         def share(x: Array) -> Array:
-            return jnp.pad(x, ((0, missing), (0, 0))).reshape(self.members, -1, x.shape[1])
+            return jnp.pad(x, ((0, missing), (0, 0))).reshape(count, -1, x.shape[1])
 
         def one(weights: Any, x: Array, u: Array, noise: Array) -> Array:
             return self.model.draw({**params, "weights": weights}, x, u, noise, key)
@@ -104,3 +121,11 @@ class Ensemble:
 
         shares = [x.reshape(self.members, -1, x.shape[1]) for x in (obs, action, next_obs)]
         return jax.vmap(one)(params["weights"], *shares).mean()
+
+    def losses(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
+        """Loss [members, B] of each member on each of the transitions [B, ...]."""
+
+        def one(weights: Any) -> Array:
+            return self.model.losses({**params, "weights": weights}, obs, action, next_obs)[0]
+
+        return jax.vmap(one)(params["weights"])

@@ -4,6 +4,13 @@ f = W_2 a(W_1 [x, u] + b_1) + b_2 by default; s is constant, or with `state_nois
 s(x) (thesis eq. 6.22). With `normalise`, the networks' inputs and outputs are divided by running
 standard deviations. `inputs` selects the coordinates of the state that the networks see: a free
 body's motion does not depend on its position, which flights near one position cannot teach.
+
+`predict: state` learns the next state itself, in running standard deviations of the state,
+
+    x' ~ N(f(x, u), diag(s^2)),
+
+which does not enlarge the noise of small changes (Barkley and Fridovich-Keil 2025, Fixing That Free
+Lunch). The loss is the same likelihood in the same units, so the two can be compared by it.
 """
 
 from dataclasses import dataclass
@@ -17,13 +24,15 @@ from hybrid_rl.core import statistics
 from hybrid_rl.networks import MLP, check
 from hybrid_rl.types import Spec
 
+PREDICT = ("change", "state")
+
 
 @dataclass(frozen=True)
 class Gaussian:
     """A one-step Gaussian model; the planning state is the observation.
 
     Raises:
-        ValueError: for invalid widths or activations.
+        ValueError: for invalid widths, activations or a `predict` that is unknown.
     """
 
     hidden: tuple[int, ...] = (200,)
@@ -33,6 +42,8 @@ class Gaussian:
     log_std_max: float = 2.0
     state_noise: bool = False  # s(x) instead of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
+    layer_norm: bool = False  # of every hidden layer, before its activation
+    predict: str = "change"  # or "state"
 
     members: ClassVar[int] = 1  # an ensemble has more
 
@@ -42,10 +53,15 @@ class Gaussian:
         check("model", self.hidden, self.activation)
         if self.inputs is not None:
             object.__setattr__(self, "inputs", tuple(self.inputs))
+        if self.predict not in PREDICT:
+            raise ValueError(f"model.predict={self.predict}: choose {' or '.join(PREDICT)}")
+
+    def _net(self, out: int) -> MLP:
+        return MLP(self.hidden, out, self.activation, self.layer_norm)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights and statistics. The key is consumed."""
-        net = MLP(self.hidden, spec.obs, self.activation)
+        net = self._net(spec.obs)
         size, log_std = len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
         if self.state_noise:
             log_std: Any = net.init(jax.random.fold_in(key, 1), jnp.zeros(size))
@@ -69,17 +85,23 @@ class Gaussian:
 
     def change(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Predicted change [n] of x [n] under u [m], in running standard deviations."""
-        net = MLP(self.hidden, x.shape[-1], self.activation)
         inputs = jnp.concatenate([self._inputs(statistics.normalise(params["state"], x)), u])
-        return net.apply(params["weights"]["net"], inputs)
+        out: Any = self._net(x.shape[-1]).apply(params["weights"]["net"], inputs)
+        if self.predict == "change":
+            return out
+        after = statistics.denormalise(params["state"], out)
+        return statistics.normalise(params["change"], after - x)
 
     def std(self, params: dict[str, Any], x: Array) -> Array:
         """s [n] of the change at x [n], in running standard deviations."""
         log_std: Any = params["weights"]["log_std"]
         if self.state_noise:
-            net = MLP(self.hidden, x.shape[-1], self.activation)
-            log_std = net.apply(log_std, self._inputs(statistics.normalise(params["state"], x)))
-        return jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
+            inputs = self._inputs(statistics.normalise(params["state"], x))
+            log_std = self._net(x.shape[-1]).apply(log_std, inputs)
+        std = jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
+        if self.predict == "change":
+            return std
+        return std * params["state"].scale / params["change"].scale
 
     def step(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
@@ -99,11 +121,17 @@ class Gaussian:
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         """Negative log-likelihood [] of next_obs [B, o], mean over its entries."""
+        return self._each(params, obs, action, next_obs).mean()
 
+    def losses(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
+        """Negative log-likelihood [1, B] of each of next_obs [B, o], mean over its entries."""
+        return self._each(params, obs, action, next_obs)[None]
+
+    def _each(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         def one(x: Array, u: Array, next_x: Array) -> Array:
             std = self.std(params, x)
             target = statistics.normalise(params["change"], next_x - x)
             error = (target - self.change(params, x, u)) / std
             return jnp.mean(0.5 * error**2 + jnp.log(std) + 0.5 * jnp.log(2 * jnp.pi))
 
-        return jax.vmap(one)(obs, action, next_obs).mean()
+        return jax.vmap(one)(obs, action, next_obs)

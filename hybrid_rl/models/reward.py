@@ -1,4 +1,12 @@
-"""A network for r(x, u) and the end of episodes (thesis appendix B: two layers of 200)."""
+"""A network for r(x, u) and the end of episodes (thesis appendix B: two layers of 200).
+
+    r = m + s f(x, u)
+
+with m = 0 and s = 1, or with `scale` the running mean and standard deviation of the rewards, so
+that their error counts in units of s, as a model's errors count in running standard deviations
+(Barkley and Fridovich-Keil 2025). With several `members`, f is the mean of networks that differ by
+their initial weights.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -8,7 +16,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.networks import MLP, check
+from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
 
@@ -17,28 +25,34 @@ class RewardNetwork:
     """A reward, and with `ends` the probability that the episode ends.
 
     Raises:
-        ValueError: for invalid widths or activations.
+        ValueError: for invalid widths, activations or counts.
     """
 
     hidden: tuple[int, ...] = (200, 200)
     activation: str = "relu"
     normalise: bool = True  # states by their running statistics
     ends: bool = False  # also learn where episodes end
+    layer_norm: bool = False  # of every hidden layer, before its activation
+    scale: bool = False  # targets by their running statistics
+    members: int = 1  # networks, whose mean is used
 
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
         check("reward", self.hidden, self.activation)
+        if not isinstance(self.members, int) or self.members < 1:
+            raise ValueError(f"reward.members={self.members}: must be a whole number, 1 or more")
 
     def _net(self) -> MLP:
-        return MLP(self.hidden, 1 + self.ends, self.activation)
+        return MLP(self.hidden, 1 + self.ends, self.activation, self.layer_norm)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights and statistics. The key is consumed."""
-        return {
-            "weights": self._net().init(key, jnp.zeros(spec.n + spec.act)),
-            "state": statistics.init(spec.n),
-        }
+        net, zeros = self._net(), jnp.zeros(spec.n + spec.act)
+        several = self.members > 1
+        weights = ensemble_init(net, key, self.members, zeros) if several else net.init(key, zeros)
+        params = {"weights": weights, "state": statistics.init(spec.n)}
+        return {**params, "target": statistics.init(1)} if self.scale else params
 
     def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
         """Parameters with statistics updated by x [B, n]."""
@@ -46,16 +60,41 @@ class RewardNetwork:
             return params
         return {**params, "state": statistics.update(params["state"], x)}
 
+    def observe_targets(self, params: dict[str, Any], target: Array) -> dict[str, Any]:
+        """Parameters with statistics updated by targets [B] of the reward."""
+        if not self.scale:
+            return params
+        return {**params, "target": statistics.update(params["target"], target[:, None])}
+
     def outcome(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
+        rewards, logits = self._each(params, x, u)
+        return rewards.mean(), logits.mean() if self.ends else -jnp.inf
+
+    def _each(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array]:
+        """Reward and logit [members] of every network; without ends the logits are empty."""
         inputs = jnp.concatenate([statistics.normalise(params["state"], x), u])
-        out: Any = self._net().apply(params["weights"], inputs)
-        return out[0], out[1] if self.ends else -jnp.inf
+        net, weights = self._net(), params["weights"]
+        several = self.members > 1
+        out: Any = (ensemble_apply if several else MLP.apply)(net, weights, inputs)
+        out = out.reshape(self.members, -1)
+        r = out[:, 0]
+        if self.scale:
+            r = params["target"].mean + params["target"].scale * r
+        return r, out[:, 1:].sum(1)
 
     def loss(
         self, params: dict[str, Any], x: Array, u: Array, target: Array, ended: Array
     ) -> Array:
-        """Half the squared error [] against target [], and the cross entropy of `ended` []."""
-        r, logit = self.outcome(params, x, u)
-        error = 0.5 * (target - r) ** 2
-        return error + jax.nn.softplus(logit) - ended * logit if self.ends else error
+        """Half the squared error [] against target [], and the cross entropy of `ended` [].
+
+        With `scale`, the error is in running standard deviations of the targets. Mean over members.
+        """
+        rewards, logits = self._each(params, x, u)
+        error = target - rewards
+        if self.scale:
+            error = error / params["target"].scale
+        losses = 0.5 * error**2
+        if self.ends:
+            losses = losses + jax.nn.softplus(logits) - ended * logits
+        return losses.mean()

@@ -41,9 +41,9 @@ from hybrid_rl.protocols.learned import (
 )
 from hybrid_rl.protocols.learning import (
     Demonstrations,
+    Imagination,
     LatestLearner,
     Learner,
-    PolicyReturn,
     UniformLearner,
 )
 
@@ -61,6 +61,7 @@ __all__ = [
     "Env",
     "Features",
     "GoalPolicy",
+    "Imagination",
     "InformedBelief",
     "LabelledTarget",
     "LatestLearner",
@@ -71,7 +72,6 @@ __all__ = [
     "Objective",
     "PathTarget",
     "Policy",
-    "PolicyReturn",
     "Proposal",
     "Reward",
     "RewardedEnv",

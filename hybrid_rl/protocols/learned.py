@@ -46,6 +46,9 @@ class Trainable(Model, Protocol):
     def loss(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean loss [] of transitions [members * B, ...]."""
 
+    def losses(self, params: PyTree, obs: Array, action: Array, next_obs: Array) -> Array:
+        """Loss [members, B] of each member on each of the transitions [B, ...]."""
+
     def draw(self, params: PyTree, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """Samples of the next planning states [B, n], for noise [B, n] ~ N(0, I)."""
 
@@ -146,6 +149,9 @@ class Critic(Protocol):
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, for planning states of size spec.n."""
 
+    def observe(self, params: PyTree, x: Array, returns: Array) -> PyTree:
+        """Parameters with statistics updated by states x [B, n] and reward / (1 - discount) [B]."""
+
     def all(self, params: PyTree, x: Array, u: Array) -> Array:
         """Q [members, ...] at x [..., n] and u [..., m]."""
 
@@ -161,6 +167,9 @@ class Reward(Protocol):
 
     def observe(self, params: PyTree, x: Array) -> PyTree:
         """Parameters with statistics updated by planning states x [B, n]."""
+
+    def observe_targets(self, params: PyTree, target: Array) -> PyTree:
+        """Parameters with statistics updated by targets [B] of the reward."""
 
     def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""

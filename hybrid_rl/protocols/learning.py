@@ -4,7 +4,7 @@ from typing import Literal, Protocol
 
 from jax import Array
 
-from hybrid_rl.types import Batch, Params, PyTree, Spec, Transition
+from hybrid_rl.types import Batch, Imagined, Params, PyTree, Spec, Transition
 
 
 class Demonstrations(Protocol):
@@ -14,15 +14,13 @@ class Demonstrations(Protocol):
         """All of them [N, ...], in order."""
 
 
-class PolicyReturn(Protocol):
-    """What a policy is improved for."""
+class Imagination(Protocol):
+    """Trajectories of the policy in the learned model."""
 
-    def value(
-        self, params: Params, alpha: Array, discount: float, x: Array, m: int, key: Array
-    ) -> tuple[Array, Array]:
-        """The soft return [B] from x [B, n], and log pi [B] of its first action of size m.
+    def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
+        """H decisions of size m from planning states x [B, n]. The key is consumed.
 
-        Differentiable by `params.policy`. alpha [] is the temperature.
+        Differentiable by `params.policy`.
         """
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from jax import Array
 
-from hybrid_rl.core import adjoint
+from hybrid_rl.core import adjoint, soft_return
 from hybrid_rl.learners.lookahead import Lookahead
 from hybrid_rl.types import Params, Path
 
@@ -68,9 +68,11 @@ def looped(gain: np.ndarray, steps: int) -> np.ndarray:
 
 def returned(gain: Array, steps: int, alpha: float = ALPHA, part: Any = PART) -> Array:
     """R [4] of the part."""
-    ahead = Lookahead(part, part, part, part, steps=steps)
-    params = PARAMS._replace(policy=gain)
-    return ahead.value(params, jnp.float32(alpha), DISCOUNT, X, 1, KEY)[0]
+    ahead = Lookahead(part, part, part, steps=steps)
+    paths = ahead.imagine(PARAMS._replace(policy=gain), X, 1, KEY)
+    last = part.value(None, paths.x[-1], paths.u[-1])
+    y = soft_return.returns(paths, jnp.float32(alpha), DISCOUNT, last)
+    return y[0] - alpha * paths.log_prob[0]
 
 
 @pytest.mark.parametrize("steps", [1, 3])
@@ -120,4 +122,4 @@ def test_the_costate_gives_the_same_gradient() -> None:
 def test_steps_must_be_positive() -> None:
     """Zero is the critic alone: no lookahead."""
     with pytest.raises(ValueError, match=r"lookahead\.steps=0"):
-        Lookahead(PART, PART, PART, PART, steps=0)
+        Lookahead(PART, PART, PART, steps=0)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from jax import Array
 
+from hybrid_rl.core import held_out
 from hybrid_rl.learners.model import ModelLearner
+from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.models.reward import RewardNetwork
 from hybrid_rl.objectives.predicted_return import PredictedReturn
@@ -150,3 +152,102 @@ def test_bad_rates_are_refused() -> None:
     """The error names the field."""
     with pytest.raises(ValueError, match=r"model_learner\.learning_rate"):
         ModelLearner(Gaussian(), learning_rate=0.0)
+
+
+def draw_linear(key: Array, size: int = 128) -> Batch:
+    """x' = x + (0.1 x_1, 0.1 u), in units that differ; reward 500 + 80 x_0."""
+    batch = draw(key, size)
+    y = batch.obs / SCALE[None]
+    change = 0.1 * jnp.stack([y[:, 1], batch.action[:, 0]], 1)
+    return batch._replace(reward=500 + 80 * y[:, 0], next_obs=SCALE[None] * (y + change))
+
+
+def test_direct_prediction_and_scaled_rewards_are_learned() -> None:
+    """With all ingredients: f is x + change of a linear world, r in its own units."""
+    model = Gaussian(hidden=(64,), activation="silu", predict="state", layer_norm=True)
+    reward = RewardNetwork(hidden=(64,), activation="silu", scale=True, layer_norm=True)
+    params = trained(ModelLearner(model, reward, weight_decay=1e-4), 2000, draw_linear)
+    test = draw_linear(jax.random.key(9), 500)
+    ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
+    error = np.abs(ahead - test.next_obs).mean(0) / SCALE
+    assert (error < 0.03).all()
+    got = jax.vmap(reward.outcome, (None, 0, 0))(params.reward, test.obs, test.action)[0]
+    assert float(jnp.abs(got - test.reward).mean()) < 0.05 * 80
+
+
+def test_weight_decay_shrinks_matrices_alone() -> None:
+    """Adam's first step is learning_rate sign(gradient); AdamW's takes a share of W more."""
+    learner = ModelLearner(Gaussian(hidden=(8,)), RewardNetwork(hidden=(8,)), weight_decay=10.0)
+    first = learner.init(jax.random.key(0), SPEC)
+    update = jax.jit(learner.update)
+    after = update(first, Params(), draw(jax.random.key(2)), jax.random.key(0))[0]
+    for name in ("model", "reward"):
+        old, new = (
+            jax.tree_util.tree_leaves_with_path(getattr(state, name)["weights"])
+            for state in (first, after)
+        )
+        for (path, w), (_, now) in zip(old, new, strict=True):
+            decay = learner.learning_rate * 10 if "kernel" in str(path[-1]) else 0
+            step = np.abs(np.asarray(now - (1 - decay) * w)) / learner.learning_rate
+            assert (np.minimum(step, np.abs(step - 1)) < 1e-2).all()  # 0 where no unit is active
+            assert step.max() > 0.9
+    with pytest.raises(ValueError, match=r"model_learner\.weight_decay=-1"):
+        ModelLearner(Gaussian(), weight_decay=-1)
+
+
+HELD = ModelLearner(
+    Ensemble(Gaussian(hidden=(8,)), members=3, elites=2),
+    RewardNetwork(hidden=(8,), scale=True),
+    batch_size=128,
+    holdout=0.2,
+)
+UPDATE = jax.jit(HELD.update)
+
+
+def test_held_out_decisions_are_not_learned_from() -> None:
+    """Other rewards and outcomes of them leave all but their loss unchanged, to the bit."""
+    batch, key = draw(jax.random.key(2), 3 * 128), jax.random.key(0)
+    held = held_out.flags(batch.obs, batch.action, 0.2)
+    assert 40 < int(held.sum()) < 120
+    far = batch._replace(
+        reward=batch.reward + 5 * held, next_obs=batch.next_obs + 9.0 * held[:, None]
+    )
+    first = HELD.init(key, SPEC)
+    states, losses = [], []
+    for given in (batch, far, batch._replace(reward=batch.reward + 5 * ~held)):
+        state, metrics = UPDATE(first, Params(), given, key)
+        states.append([state.model["weights"], state.model["state"], state.model["change"]])
+        states[-1] += [state.reward, state.optimiser]
+        losses.append(float(metrics["model/held_out_loss"]))
+    same, other = (
+        [bool((a == b).all()) for a, b in zip(*map(jax.tree.leaves, (states[0], s)), strict=True)]
+        for s in states[1:]
+    )
+    assert all(same)
+    assert not all(other)
+    assert losses[1] > losses[0] + 1
+
+
+def test_held_out_losses_are_a_running_mean_that_ranks_the_members() -> None:
+    """Against the members' own losses on the decisions that the hash selects."""
+    loss = jax.jit(Gaussian(hidden=(8,)).loss)
+    state, want = HELD.init(jax.random.key(0), SPEC), np.zeros(3)
+    for n in range(1, 4):
+        batch = draw(jax.random.key(n), 3 * 128)
+        state, metrics = UPDATE(state, Params(), batch, jax.random.key(0))
+        held = np.flatnonzero(held_out.flags(batch.obs, batch.action, 0.2))[: round(0.2 * 384)]
+        rows = [x[held] for x in (batch.obs, batch.action, batch.next_obs)]
+        for i in range(3):
+            own = jax.tree.map(lambda w, i=i: w[i], state.model["weights"])
+            want[i] += (float(loss({**state.model, "weights": own}, *rows)) - want[i]) / n
+    np.testing.assert_allclose(state.held_out.mean, want, rtol=1e-4)
+    np.testing.assert_allclose(metrics["model/held_out_loss"], want.mean(), rtol=1e-4)
+    assert state.model["elites"].tolist() == np.argsort(want)[:2].tolist()
+
+
+def test_elites_need_held_out_decisions() -> None:
+    """One line that names both fields."""
+    with pytest.raises(ValueError, match=r"model\.elites=2: needs .* model_learner\.holdout"):
+        ModelLearner(HELD.model)
+    with pytest.raises(ValueError, match=r"model_learner\.holdout=0\.6"):
+        ModelLearner(HELD.model, holdout=0.6)

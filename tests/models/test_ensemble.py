@@ -77,3 +77,37 @@ def test_bad_fields() -> None:
     """One line that names the field."""
     with pytest.raises(ValueError, match=r"model\.members=0"):
         Ensemble(ONE, 0)
+    with pytest.raises(
+        ValueError, match=r"model\.elites=5: must be a whole number from 1 to model"
+    ):
+        Ensemble(ONE, 4, elites=5)
+
+
+def test_elites_alone_draw() -> None:
+    """The members with the least losses, each for half of the states."""
+    model = Ensemble(ONE, members=4, elites=2)
+    params = model.rank(model.init(jax.random.key(0), SPEC), jnp.array([3.0, 1.0, 4.0, 2.0]))
+    x, u, noise = (
+        jax.random.normal(jax.random.key(i), (10, n)) for i, n in ((1, 3), (2, 2), (3, 3))
+    )
+    each = np.stack([ONE.draw(member(params, i), x, u, noise, None) for i in range(4)])
+    draw = jax.jit(model.draw)
+    for seed in range(5):
+        apart = np.abs(each - np.asarray(draw(params, x, u, noise, jax.random.key(seed)))).max(-1)
+        assert (apart.min(0) < 1e-5).all()
+        assert np.bincount(apart.argmin(0), minlength=4).tolist() == [0, 5, 0, 5]
+
+
+def test_losses_of_every_member_on_every_transition(params) -> None:
+    """[members, B], each the member's own loss of one transition."""
+    x, u, after = (
+        jax.random.normal(jax.random.key(i), (2, n)) for i, n in ((1, 3), (2, 2), (3, 3))
+    )
+    want = [
+        [
+            ONE.loss(member(params, i), x[b : b + 1], u[b : b + 1], after[b : b + 1])
+            for b in range(2)
+        ]
+        for i in range(4)
+    ]
+    np.testing.assert_allclose(MODEL.losses(params, x, u, after), want, rtol=1e-5)

@@ -3,6 +3,7 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
+import pytest
 
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.types import Spec
@@ -33,3 +34,44 @@ def test_draws_have_the_standard_deviation_of_their_state() -> None:
         np.testing.assert_allclose(apart, params["change"].std * here * noise, rtol=1e-3)
         there = model.std(params, 2 * X)
         assert bool(jnp.any(here != there)) == state_noise
+
+
+def test_layer_norm_against_numpy() -> None:
+    """W_2 relu((h - mean) / std) with h = W_1 [x, u] + b_1, over the units of the layer."""
+    model = Gaussian(hidden=(8,), layer_norm=True, normalise=False)
+    params = model.init(jax.random.key(0), SPEC)
+    w = jax.tree.map(lambda leaf: np.asarray(leaf, np.float64), params["weights"]["net"]["params"])
+    hidden = np.concatenate([X, U]) @ w["Dense_0"]["kernel"] + w["Dense_0"]["bias"]
+    hidden = (hidden - hidden.mean()) / np.sqrt(hidden.var() + 1e-6)
+    want = np.maximum(hidden, 0) @ w["Dense_1"]["kernel"] + w["Dense_1"]["bias"]
+    np.testing.assert_allclose(model.change(params, X, U), want, rtol=1e-4, atol=1e-6)
+
+
+def test_the_state_is_predicted_in_its_own_units() -> None:
+    """With `predict: state` x' = m + s (f + std e), m and s of the states; against NumPy."""
+    model = Gaussian(hidden=(8,), predict="state")
+    params = model.init(jax.random.key(0), SPEC)
+    params["weights"]["log_std"] = jnp.array([-1.0, -2.0, 0.5])
+    rng = np.random.default_rng(0)
+    x, after = rng.normal([1, 2, 3], [1, 10, 0.1], (2, 50, 3)).astype(np.float32)
+    u = rng.uniform(-1, 1, (50, 2)).astype(np.float32)
+    params = model.observe(params, jnp.asarray(x), jnp.asarray(after))
+    m, s, std = x.mean(0), x.std(0), np.exp([-1.0, -2.0, 0.5])
+    net = jax.tree.map(np.asarray, params["weights"]["net"]["params"])
+    of_net = np.maximum(np.concatenate([(x - m) / s, u], 1) @ net["Dense_0"]["kernel"], 0)
+    mean = m + s * (of_net @ net["Dense_1"]["kernel"])
+    step = np.asarray(jax.vmap(model.step, (None, 0, 0))(params, x, u))
+    np.testing.assert_allclose(step, mean, rtol=1e-4, atol=1e-4)
+    noise = rng.normal(size=(50, 3)).astype(np.float32)
+    drawn = model.draw(params, jnp.asarray(x), jnp.asarray(u), jnp.asarray(noise), None)
+    np.testing.assert_allclose(drawn - step, s * std * noise, rtol=1e-2, atol=1e-3)
+    density = np.log(2 * np.pi) / 2 + np.log(s * std) + ((after - mean) / (s * std)) ** 2 / 2
+    units = np.log((after - x).std(0))  # the likelihood is that of the normalised change
+    loss = model.loss(params, jnp.asarray(x), jnp.asarray(u), jnp.asarray(after))
+    np.testing.assert_allclose(loss, (density - units).mean(), rtol=1e-4)
+
+
+def test_a_prediction_that_is_unknown_is_refused() -> None:
+    """One line that names the field."""
+    with pytest.raises(ValueError, match=r"model\.predict=both: choose change or state"):
+        Gaussian(predict="both")

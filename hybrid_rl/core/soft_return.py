@@ -1,0 +1,33 @@
+"""The maximum-entropy return along trajectories of a policy in a model.
+
+    V_H = Q(x_H, u_H) - alpha log pi_H
+    y_t = r_t + discount c_t V_{t+1},   V_t = y_t - alpha log pi_t,   t < H
+
+with c_t the chance that the episode continues. V_0 is what a policy maximises by gradients through
+the model, as in MAAC (Clavera et al. 2020); for H = 0 it is the policy's objective in SAC. y_t,
+with the target critic's Q, are model-based value expansion (Feinberg et al. 2018).
+"""
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.types import Imagined
+
+
+def returns(paths: Imagined, alpha: Array, discount: float, last: Array) -> Array:
+    """y [H, B] along paths whose last decisions have action values `last` [B]."""
+
+    def back(value: Array, at: tuple[Array, Array, Array]) -> tuple[Array, Array]:
+        r, goes_on, log_prob = at
+        y = r + discount * goes_on * value
+        return y - alpha * log_prob, y
+
+    along = paths.reward, paths.goes_on, paths.log_prob[:-1]
+    value = last - alpha * paths.log_prob[-1]
+    return jax.lax.scan(back, value, along, reverse=True)[1]
+
+
+def reached(paths: Imagined) -> Array:
+    """The probability [H, B] that a trajectory does not end before each decision."""
+    return jnp.cumprod(paths.goes_on, 0) / jnp.maximum(paths.goes_on, 1e-12)

@@ -1,0 +1,67 @@
+"""The options of a learned reward."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl.models.reward import RewardNetwork
+from hybrid_rl.types import Spec
+
+SPEC = Spec(obs=3, act=2, dt=0.1)
+X, U = jnp.array([0.3, -1.0, 2.0]), jnp.array([0.5, -0.2])
+
+
+def test_scaled_rewards_are_in_real_units() -> None:
+    """r = m + s f with the rewards' mean and deviation; the error counts in units of s."""
+    plain = RewardNetwork(hidden=(8,), ends=True)
+    scaled = RewardNetwork(hidden=(8,), ends=True, scale=True)
+    rewards = np.random.default_rng(0).normal(300, 40, 100).astype(np.float32)
+    first = plain.init(jax.random.key(0), SPEC)
+    params = scaled.observe_targets(scaled.init(jax.random.key(0), SPEC), jnp.asarray(rewards))
+    (f, logit), (r, same) = plain.outcome(first, X, U), scaled.outcome(params, X, U)
+    assert same == logit
+    np.testing.assert_allclose(r, rewards.mean() + rewards.std() * f, rtol=1e-5)
+    target, ended = jnp.float32(333.0), jnp.float32(1.0)
+    of_end = np.log1p(np.exp(logit)) - logit
+    wanted = 0.5 * ((333 - float(r)) / rewards.std()) ** 2 + of_end
+    np.testing.assert_allclose(scaled.loss(params, X, U, target, ended), wanted, rtol=1e-4)
+
+
+def test_rewards_of_one_value_are_learned_exactly() -> None:
+    """A standard deviation of zero does not divide by zero."""
+    reward = RewardNetwork(hidden=(8,), scale=True)
+    params = reward.observe_targets(reward.init(jax.random.key(0), SPEC), jnp.full(16, 7.0))
+    assert abs(float(reward.outcome(params, X, U)[0]) - 7) < 1e-4
+    assert np.isfinite(reward.loss(params, X, U, jnp.float32(7), jnp.float32(0)))
+
+
+def test_layer_norm_against_numpy() -> None:
+    """W_2 relu((h - mean) / std) with h = W_1 [x, u] + b_1, over the units of the layer."""
+    reward = RewardNetwork(hidden=(8,), layer_norm=True)
+    params = reward.init(jax.random.key(0), SPEC)
+    w = jax.tree.map(lambda leaf: np.asarray(leaf, np.float64), params["weights"]["params"])
+    hidden = np.concatenate([X, U]) @ w["Dense_0"]["kernel"] + w["Dense_0"]["bias"]
+    hidden = (hidden - hidden.mean()) / np.sqrt(hidden.var() + 1e-6)
+    want = np.maximum(hidden, 0) @ w["Dense_1"]["kernel"] + w["Dense_1"]["bias"]
+    np.testing.assert_allclose(reward.outcome(params, X, U)[0], want[0], rtol=1e-4)
+
+
+def test_the_reward_of_several_networks_is_their_mean() -> None:
+    """And their loss the mean of their losses."""
+    one, several = (RewardNetwork(hidden=(8,), ends=True, members=k) for k in (1, 3))
+    params = several.init(jax.random.key(0), SPEC)
+    each = [
+        {**params, "weights": jax.tree.map(lambda w, i=i: w[i], params["weights"])}
+        for i in range(3)
+    ]
+    outcomes = np.array([one.outcome(member, X, U) for member in each])
+    assert outcomes.std(0).min() > 1e-3
+    np.testing.assert_allclose(several.outcome(params, X, U), outcomes.mean(0), rtol=1e-5)
+    target, ended = jnp.float32(2.0), jnp.float32(1.0)
+    losses = [one.loss(member, X, U, target, ended) for member in each]
+    np.testing.assert_allclose(
+        several.loss(params, X, U, target, ended), np.mean(losses), rtol=1e-5
+    )
+    with pytest.raises(ValueError, match=r"reward\.members=0"):
+        RewardNetwork(members=0)
