@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SUFFIXES = (".png", ".pdf", ".svg")
+TABLE = ".csv"  # of studies with a function `table`
 DPI = 200
 DEFAULT = "learning_curves"
 ARGUMENTS = (  # of every study
@@ -58,7 +59,10 @@ class Study(Protocol):
     """The picture and its numbers. A keyword `name: Annotated[type, "help", kind] = default` is an
     argument of the command; `kind` (hybrid_rl.cli.arguments) parses and checks it."""
     summary: Callable[[dict[str, Any]], list[str]]
-    """Lines to print about the numbers."""
+    """Lines to print about the numbers.
+
+    A third function, `table(numbers)`, returns the text of a table, which out=FILE.csv saves.
+    """
 
 
 def studies() -> dict[str, str]:
@@ -151,10 +155,17 @@ def main() -> None:
         doc += f"\n\nThe arguments below are those of study={DEFAULT}."
     of_all = replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]
     values, _ = read(doc, (*of_all, *arguments(study)))
-    out = output("out", values.pop("out"), SUFFIXES, ".json")
+    table = getattr(study, "table", None)
+    suffixes = SUFFIXES if table is None else (*SUFFIXES, TABLE)
+    out = output("out", values.pop("out"), suffixes, ".json")
     del values["study"]
     prepare(load([]))
     figure, numbers = study.figure(**values)
+    if table is not None and out.suffix == TABLE:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        out.write_text(table(numbers), encoding="utf-8")
+        print(*study.summary(numbers), out, sep="\n")
+        return
     save(figure, numbers, out)
     print(*study.summary(numbers), f"{out} and {out.with_suffix('.json')}", sep="\n")
 

@@ -3,8 +3,9 @@
     python -m hybrid_rl.list
     python -m hybrid_rl.list config_dir=my_conf
 
-The description is the first comment of the YAML file. With config_dir=DIR, or --config-dir DIR
-as for `train`, the entries of that folder are listed, too.
+The description is the first comment of the YAML file; a comment "Needs an analytic task." of a
+method is listed as [needs an analytic task]. With config_dir=DIR, or --config-dir DIR as for
+`train`, the entries of that folder are listed, too.
 """
 
 if __name__ == "__main__":
@@ -13,29 +14,15 @@ if __name__ == "__main__":
     interrupt.install()
 
 import sys
-from collections.abc import Sequence
-from contextlib import suppress
-from functools import cache
 from pathlib import Path
-from typing import get_args
-
-from hydra import compose, initialize_config_dir
-from hydra.errors import HydraException
-from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, read
-from hybrid_rl.config import CONF, part_class, tasks_with
+from hybrid_rl.config import CONF, tasks_with
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import plain, reached, search_path
 
 HAS = {"equilibrium": "equilibrium", "reference": "reference", "dynamics": "analytic"}
-NEEDS = {  # type of a part's environment, the most demanding first -> mark of its method
-    "TrackingEnv": "tasks with a reference",
-    "AnalyticEnv": "analytic tasks",
-    "BalancedEnv": "tasks with an equilibrium",
-    "RewardedEnv": "tasks with a known reward",
-}
+NEEDS = "# Needs "  # begins the comment of a method that not every task fits
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
 ARGUMENTS = (Argument("config_dir", "", "folder with configuration groups of yours"),)
 
@@ -60,31 +47,21 @@ def about(path: Path) -> str:
     return ""
 
 
-@cache
 def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
     """Group -> name -> what the environment of a task has, or that of a method must have."""
     tasks: dict[str, str] = {}
     for method, mark in HAS.items():
         tasks |= dict.fromkeys(tasks_with(method, conf), mark)
-    names = [path.stem for path in sorted((conf / "algo").glob("*.yaml"))]
-    more = [] if conf == CONF else [search_path(conf)]
-    with initialize_config_dir(str(CONF), version_base="1.3"):
-        methods = {name: needs for name in names if (needs := _needs(name, more))}
+    methods = {path.stem: needs(path) for path in sorted((conf / "algo").glob("*.yaml"))}
     return {"task": tasks, "algo": methods, "experiment": {}}
 
 
-def _needs(algo: str, more: Sequence[str]) -> str:
-    """What the parts of a method need of their environment, by the type of their field `world`."""
-    kinds: set[str] = set()
-    with suppress(HydraException, OmegaConfBaseException):  # a file that the user has not finished
-        raw = plain(compose("train", [*more, f"algo={algo}"]))
-        read = reached(raw, ("controllers", "learners"))
-        for key, value in read.items():
-            if value == "${env}":
-                part = part_class(read[f"{key.rpartition('.')[0]}._target_"])
-                kind = part.__annotations__["world"]
-                kinds |= {each.__name__ for each in get_args(kind) or (kind,)}
-    return next((mark for kind, mark in NEEDS.items() if kind in kinds), "")
+def needs(path: Path) -> str:
+    """What a method says it needs, "needs an analytic task"; empty if it says nothing."""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if line.startswith(NEEDS):
+            return f"needs {line.removeprefix(NEEDS).strip().rstrip('.')}"
+    return ""
 
 
 def main() -> None:

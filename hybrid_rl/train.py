@@ -4,10 +4,11 @@
     python -m hybrid_rl.train -m algo=sac,nn_mppi,hybrid_stochastic num_seeds=5
     python -m hybrid_rl.train resume=DIR total_steps=10000
 
-A run writes to runs/TASK/ALGO/TIME, or to run_dir=DIR. The jobs of a sweep are checked before the
-first one starts; a job that fails does not end the others; jobs that share run_dir=DIR write to
-DIR/0, DIR/1, ... An override that the method does not use is refused; in a sweep, one that none
-of its methods uses.
+A run writes to runs/TASK/ALGO/TIME, or to run_dir=DIR. With three evaluations or more it ends with
+their curve, on the console and in DIR/curve.png. The jobs of a sweep are checked before the first
+one starts; a job that fails does not end the others; jobs that share run_dir=DIR write to DIR/0,
+DIR/1, ... An override that the method does not use is refused; in a sweep, one that none of its
+methods uses.
 """
 
 if __name__ == "__main__":
@@ -17,16 +18,21 @@ if __name__ == "__main__":
 
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig
 
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
-from hybrid_rl.errors import DivergenceError
-from hybrid_rl.run import divergence, launch
+from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.run import curve, divergence, launch
+
+EVALUATION = "eval/return"
+CURVE = 3  # evaluations
 
 
 def train(config: DictConfig, given: Mapping[str, str] = launch.NOTHING) -> dict[str, Any]:
@@ -47,6 +53,8 @@ def _job(config: DictConfig) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds."""
     given = overrides.given(overrides.of_job(HydraConfig.get()))
     summary = train(configuration.resolved(config), given)
+    if summary["signal"] is None:
+        _curve(Path(summary["run_dir"]))
     print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
     if summary["signal"] is not None:
         sys.exit(128 + summary["signal"])
@@ -54,6 +62,23 @@ def _job(config: DictConfig) -> dict[str, Any]:
         left = len(summary["seeds"]) - len(summary["diverged"])
         raise DivergenceError(divergence.line(summary["diverged"], left, None))
     return summary
+
+
+def _curve(run_dir: Path) -> None:
+    """Print and draw the evaluations of a run, if there are at least CURVE of them."""
+    from hybrid_rl.figures import save
+    from hybrid_rl.studies import learning_curves
+
+    try:
+        (line,) = learning_curves.curves(run_dir, EVALUATION)
+    except UsageError:  # there are none
+        return
+    if len(line.x) < CURVE:
+        return
+    save(*learning_curves.figure(run_dir, EVALUATION), run_dir / "curve.png")
+    title = f"{learning_curves.LABELS[EVALUATION]} ({run_dir / 'curve.png'})"
+    known = np.isfinite(line.iqm)
+    print(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))
 
 
 def _result(summary: Mapping[str, Any]) -> str:

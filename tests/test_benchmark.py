@@ -45,7 +45,7 @@ def test_the_command_measures_every_part(tmp_path, capsys):
     """On the smallest of everything."""
     out = tmp_path / "new" / "b.json"
     small = ["tasks=cartpole", "worlds=2", "learners=1", "plans=4x2", "rounds=1"]
-    world = ["experiment=thesis/fig_3_2_pendulum", "parts=physics,plan,loop"]
+    world = ["experiment=thesis/fig_3_2_pendulum", "algo=nn_mppi", "parts=physics,plan,loop"]
     assert run(*small, *world, f"out={out}") == 0
     printed = capsys.readouterr().out
     assert "bare mujoco.rollout" in printed

@@ -16,7 +16,6 @@ from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, run
 
 from hybrid_rl import config, evaluate, figures, render
-from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.native import cores
@@ -237,13 +236,6 @@ def test_python_does_what_the_commands_do(tmp_path):
     (curve,) = curves(values["run_dir"])
     assert (curve.label, list(curve.x)) == ("sac", [200, 400, 600])
     assert contents(tmp_path) == before
-
-
-def test_the_list_names_every_task_and_method(capsys):
-    assert call(lambda: command.guarded(listed.main)) == 0
-    printed = capsys.readouterr().out
-    for group in ("task", "algo", "experiment"):
-        assert all(f"  {name}  " in printed for name in command.options(group))
 
 
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are read from /proc")

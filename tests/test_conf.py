@@ -2,7 +2,7 @@
 
 import dataclasses
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import jax
 import jax.numpy as jnp
@@ -13,6 +13,7 @@ from omegaconf import DictConfig, OmegaConf
 from tiny import SMALL, demonstrate
 
 from hybrid_rl import config
+from hybrid_rl import list as listed
 from hybrid_rl.cli.command import options
 from hybrid_rl.training.loop import Loop
 
@@ -78,6 +79,7 @@ RUN = {  # methods that run; the others, and other tasks, differ by parts with t
     *("koopman_active", "koopman_embedding", "koopman_track", "gp_active", "computed_torque"),
     *("fisher", "disagreement", "dagger", "ergodic_mapping", "ergodic_localisation"),
 }
+LINEAR = ("koopman", "gp_")  # begin the names of methods without networks to shrink
 EACH = [  # every method on one task, the default method on the default task, one on every task
     *((OF_TASK.get(algo, "pendulum"), algo) for algo in options("algo")),
     ("halfcheetah", "hybrid_stochastic"),
@@ -105,6 +107,31 @@ def with_demonstrations(composed: DictConfig, folder: Path) -> DictConfig:
     return composed
 
 
+NEEDS = {  # type of the world that a part takes, the most demanding first -> comment of its method
+    "TrackingEnv": "needs a task with a reference",
+    "AnalyticEnv": "needs an analytic task",
+    "BalancedEnv": "needs a task with an equilibrium",
+    "RewardedEnv": "needs a task with a known reward",
+}
+
+
+def needs(composed: DictConfig) -> str:
+    """What the parts of a method need of their environment, by the type of their field `world`."""
+    kinds: set[str] = set()
+
+    def visit(node: Any) -> None:
+        if node.get("world") == composed.env:
+            kind = get_class(node._target_).__annotations__["world"]
+            kinds.update(each.__name__ for each in get_args(kind) or (kind,))
+        for value in node.values():
+            if isinstance(value, DictConfig):
+                visit(value)
+
+    for section in (composed.controllers, composed.learners):
+        visit(section)
+    return next((comment for kind, comment in NEEDS.items() if kind in kinds), "")
+
+
 def trace(agent: Any) -> None:
     """Fail unless a decision of two learners has the shapes of the state before it."""
     keys = jax.random.split(jax.random.key(0), 2)
@@ -120,10 +147,14 @@ def trace(agent: Any) -> None:
 
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
-    """Eight decisions of two learners, with learning, all finite; of some only the program."""
-    linear = "features" in config.load([f"task={task}", f"algo={algo}"])  # no networks to shrink
+    """Eight decisions of two learners, with learning, all finite; of some only the program.
+
+    A method's comment says which tasks its parts need.
+    """
+    linear = algo.startswith(LINEAR)
     small = ["total_steps=200"] if linear else SMALL
     composed = config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *small])
+    assert listed.needs(config.CONF / "algo" / f"{algo}.yaml") == needs(composed)
     if linear:
         put(composed.controllers, horizon=2, size=4)
         put(composed.learners, horizon=2, size=4)
@@ -188,8 +219,13 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
     assert (c.planner.horizon, c.model.hidden, c.mbpo.share) == (5, [200], 0)
     c = config.load(["settings=light", "total_steps=10", "algo=hybrid_stochastic"])
     learner = c.learners.policy.learner
-    assert (learner.updates, learner.critic.hidden, c.total_steps) == (1, [128, 128], 10)
+    assert (learner.updates, learner.critic.hidden, c.total_steps) == (2, [128, 128], 10)
+    assert learner.lookahead.model.members == 3
     config.build(c)
+    for algo in ("sac", "nn_mppi", "hybrid_deterministic", "hybrid_disagreement"):
+        c = config.load(["settings=light", f"algo={algo}"])
+        config.build(c)
+        assert (c.policy_learner.lookahead is None) == (algo == "sac")
 
 
 def test_thesis_parameters() -> None:

@@ -148,7 +148,7 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["runs=nowhere/*"], "runs=nowhere/*: no run there (a folder that holds metrics.jsonl)"),
         (["runs=RUNS", "metric=x/y"], "metric=x/y: not in these runs; they have train/return"),
         (["runs=RUNS", "x=hours"], "x=hours: must be step, wall_s, or a number"),
-        (["runs=RUNS", "out=a.jpg"], "out=a.jpg: must end in .png, .pdf, .svg"),
+        (["runs=RUNS", "out=a.jpg"], "out=a.jpg: must end in .png, .pdf, .svg, .csv"),
         (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
         (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),
         (["runs=RUNS", "colour=red"], "colour=red: unknown argument"),

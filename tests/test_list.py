@@ -10,8 +10,6 @@ from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.config import CONF
 
-pytestmark = pytest.mark.xdist_group("list")  # it composes every method, once in a process
-
 
 def call(monkeypatch, *arguments):
     """Exit code of the command."""
@@ -34,6 +32,7 @@ def conf(tmp_path):
     add("algo/sac.yaml", "algo: sac  # not this\n\n#\n#    Actor and critic.\n")
     add("experiment/thesis/figure_2.yaml", "# Figure 2.\n")
     add("experiment/thesis/deep/table_1.yaml", "a: 1\n")
+    add("algo/ring.yaml", "# Around a ring.\n# Needs a task with an equilibrium.\nalgo: ring\n")
     add("model/network.yaml", "# A part.\n")
     return tmp_path
 
@@ -41,7 +40,7 @@ def conf(tmp_path):
 def test_each_name_has_the_first_comment_of_its_file(conf):
     assert listed.listing(conf) == {
         "task": {"hopper": "Hopper: hops."},
-        "algo": {"sac": "Actor and critic."},
+        "algo": {"ring": "Around a ring.", "sac": "Actor and critic."},
         "experiment": {"thesis/deep/table_1": "", "thesis/figure_2": "Figure 2."},
     }
 
@@ -81,24 +80,19 @@ def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
     printed = capsys.readouterr().out
     assert "  kettle " in printed
     assert "Kettle: boils." in printed
+    assert "Around a ring. [needs a task with an equilibrium]\n" in printed
     (ours,) = [line for line in printed.splitlines() if line.startswith("  pendulum ")]
     assert ours.endswith("[analytic]")
     assert "  halfcheetah " in printed
 
 
-@pytest.fixture(scope="module")
-def marked():
-    """The methods that need an analytic task."""
-    return listed.marks()["algo"]
-
-
 @pytest.mark.parametrize("algo", ["sac", "bc", "ddpg", "kle3", "kle3_ddpg", "bayesopt", "ou_noise"])
-def test_what_needs_an_analytic_task_is_marked(algo, marked, tmp_path):
+def test_what_needs_an_analytic_task_is_marked(algo, tmp_path):
     """The methods that MuJoCo's half-cheetah refuses, and no other."""
     given = ["task=halfcheetah", f"algo={algo}", "total_steps=100"]
     if algo == "bc":
         given.append(demonstrate(tmp_path, config.load(given)))
-    if algo not in marked:
+    if not listed.needs(CONF / "algo" / f"{algo}.yaml"):
         config.build(config.load(given))
         return
     with pytest.raises(config.UsageError) as raised:

@@ -55,7 +55,7 @@ class Lookahead:
             return after, (x, u, log_prob, r, jax.nn.sigmoid(-end))
 
         along = for_policy[:-1], for_model, jax.random.split(choosing, length)
-        last, (xs, us, log_probs, rewards, goes_on) = jax.lax.scan(forward, x, along)
+        last, (xs, us, log_probs, rewards, goes_on) = jax.lax.scan(forward, x, along, unroll=length)
         u, log_prob = self.policy.sample(params.policy, last, for_policy[-1])
         return Imagined(
             x=jnp.concatenate([xs, last[None]]),

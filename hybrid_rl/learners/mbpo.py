@@ -146,8 +146,8 @@ class MBPO:
     def _continued(self, state: Branches, params: Params, batch: Batch, key: Array) -> Branches:
         """The branches one decision later, with their transitions in the memory.
 
-        At the first update the branches begin with different ages, so that later a part of them
-        begins anew at each update.
+        At the first update the branches start at different ages, so that later a part of them
+        restarts at each update.
         """
         acting, moving, choosing, aging = jax.random.split(key, 4)
         x, age = batch.obs, jnp.zeros_like(state.age)

@@ -148,7 +148,7 @@ class SAC:
 
         def loss(critic: Any) -> tuple[Array, Array]:
             q = self.critic.all(critic, x, u)
-            return 0.5 * jnp.sum(jnp.mean(weight * (q - y[None]) ** 2, axis=-1)), q.mean()
+            return 0.5 * jnp.sum(jnp.mean(weight[None] * (q - y[None]) ** 2, axis=-1)), q.mean()
 
         (value, q), grads = jax.value_and_grad(loss, has_aux=True)(state.critic)
         critic, optimiser = _adam(

@@ -16,6 +16,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.core.squashing import log_density
 from hybrid_rl.networks import MLP, check, outputs
 from hybrid_rl.types import Spec
 
@@ -101,17 +102,10 @@ class TanhGaussian:
         """The action u [..., m] for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
         mu, sigma = self.gaussian(params, x)
         z = mu + sigma * noise
-        return jnp.tanh(z), _log_density(z, noise, sigma)
+        return jnp.tanh(z), log_density(z, noise, sigma)
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """The log-density log pi(u|x) [...] of u [..., m] inside (-1, 1), at x [..., n]."""
         mu, sigma = self.gaussian(params, x)
         z = jnp.arctanh(u)
-        return _log_density(z, (z - mu) / sigma, sigma)
-
-
-def _log_density(z: Array, noise: Array, sigma: Array) -> Array:
-    """Log-density [...] of tanh(z), z = mu + sigma noise, for arguments [..., m]."""
-    log_normal = -0.5 * noise**2 - jnp.log(sigma) - 0.5 * jnp.log(2 * jnp.pi)
-    log_jacobian = 2 * (jnp.log(2.0) - z - jax.nn.softplus(-2 * z))
-    return jnp.sum(log_normal - log_jacobian, axis=-1)
+        return log_density(z, (z - mu) / sigma, sigma)

@@ -21,7 +21,9 @@ from hybrid_rl.protocols.environments import (
     TrackingEnv,
 )
 from hybrid_rl.protocols.learned import (
+    BatchPolicy,
     Belief,
+    CategoricalCritic,
     Committee,
     ContactMap,
     Critic,
@@ -50,7 +52,9 @@ from hybrid_rl.protocols.learning import (
 __all__ = [
     "AnalyticEnv",
     "BalancedEnv",
+    "BatchPolicy",
     "Belief",
+    "CategoricalCritic",
     "Committee",
     "ContactEnv",
     "ContactMap",

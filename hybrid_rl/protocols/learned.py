@@ -124,6 +124,16 @@ class Committee(LearnedPolicy, Protocol):
         """The action of every member [members, ..., m] at x [..., n]."""
 
 
+class BatchPolicy(LearnedPolicy, Protocol):
+    """A policy that normalises by batches; its parameters hold "weights" and "statistics"."""
+
+    def in_batch(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array, PyTree]:
+        """`sample` at x [B, n], normalised by that batch; parameters with its statistics."""
+
+    def constrained(self, params: PyTree) -> PyTree:
+        """Parameters with weights projected to those that are allowed, after a gradient step."""
+
+
 class GoalPolicy(Policy, Protocol):
     """A policy that leads to a goal, which can be changed."""
 
@@ -157,6 +167,28 @@ class Critic(Protocol):
 
     def value(self, params: PyTree, x: Array, u: Array) -> Array:
         """Q [...], reduced over the members."""
+
+
+class CategoricalCritic(Critic, Protocol):
+    """A critic of distributions over scaled returns, whose mean is Q.
+
+    It normalises by batches; its parameters hold "weights" and "statistics".
+    """
+
+    def in_batch(self, params: PyTree, x: Array, u: Array) -> tuple[Array, PyTree]:
+        """log p [members, B, bins] at x [B, n] and u [B, m], normalised by that batch.
+
+        Also the parameters with the batch's statistics.
+        """
+
+    def target(self, log_p: Array, reward: Array, factor: Array, penalty: Array) -> Array:
+        """Probabilities [B, bins] of reward + factor (Z - penalty), each of the three [B].
+
+        Z is the return of the member with the smaller mean, of log p [members, B, bins].
+        """
+
+    def constrained(self, params: PyTree) -> PyTree:
+        """Parameters with weights projected to those that are allowed, after a gradient step."""
 
 
 class Reward(Protocol):

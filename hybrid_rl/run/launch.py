@@ -7,12 +7,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import jax
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import checkpoint, distributed, folder, integrity, memory, provenance
+from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.log import RunLog
@@ -79,7 +81,8 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]
     ):
         progress.note(f"{label}: run folder {run_dir}\n{size}")
         loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
-        session = Session(loop, run.controllers, _schedule(config), log, progress)
+        duration = Duration(jax.default_backend() == "cpu", instead(config))
+        session = Session(loop, run.controllers, _schedule(config), log, progress, duration)
         if config.resume is None:
             session.begin()
         else:

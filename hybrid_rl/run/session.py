@@ -20,16 +20,16 @@ from hybrid_rl.errors import DivergenceError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import divergence, memory, provenance, rows
 from hybrid_rl.run.divergence import Diverged
+from hybrid_rl.run.duration import Duration
 from hybrid_rl.run.evaluations import Evaluations
 from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.progress import Progress, clock, rate
+from hybrid_rl.run.progress import Progress
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.store import Store
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
-SURE = 100  # decisions with learning after which the time of the whole run is estimated
 
 
 @dataclass
@@ -41,6 +41,7 @@ class Session:
     schedule: Schedule
     log: RunLog
     progress: Progress
+    duration: Duration
     state: Any = None  # AgentState [S, ...], once begun
     step: int = 0  # decisions of each learner
     before_s: float = 0.0  # [s] in earlier sessions
@@ -53,7 +54,6 @@ class Session:
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
     gathered: rows.Gathered = field(default_factory=rows.Gathered)  # since the last row of means
     recent: Speed = field(default_factory=Speed)  # since then
-    trial: Speed | None = field(default_factory=Speed)  # until the whole run's time is estimated
     pace: Pace = field(default_factory=Pace)
     program: Any = None  # compiled
     evaluations: Evaluations | None = None  # compiled
@@ -118,11 +118,16 @@ class Session:
         if plan.total_steps <= random:
             decisions = f"all {plan.total_steps:,} decisions are random"
             self.progress.note(f"{decisions}: random_steps={random}")
+        with self.progress.doing("tracing"):
+            traced, left = self.loop.trace(self.state), plan.total_steps - max(self.step, random)
+        rounds = -(-left // self.loop.agent.num_envs)
+        if note := self.duration.before(self.loop.operations(traced), rounds):
+            self.progress.note(note)
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle_note}")
         with self.progress.doing("compiling"):
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
 
-            self.program = self.loop.compile(self.state)
+            self.program = self.loop.compile(self.state, traced)
             memory.check(self.loop, self.program)
             began = perf_counter()
             modes = {mode: self.controllers[mode] for mode in plan.eval_modes}
@@ -178,16 +183,10 @@ class Session:
         """Measure the speed of learning; print one estimate of the total time."""
         self.recent.add(decisions, seconds)
         self.learning.add(decisions, seconds)
-        if self.trial is not None:
-            self.trial.add(decisions, seconds)
-            if self.trial.decisions >= SURE * self.diverged.left and self.trial.rate:
-                left = (self.schedule.total_steps - self.step) * self.diverged.left
-                whole = clock(self.wall_s + left / self.trial.rate)
-                speed, self.trial = rate(self.trial.rate), None
-                self.progress.note(
-                    f"about {whole} for the whole run at {speed} decisions/s, "
-                    "without the evaluations to come"
-                )
+        learners = self.diverged.left
+        left = (self.schedule.total_steps - self.step) * learners
+        if note := self.duration.after(decisions, seconds, learners, left, self.wall_s):
+            self.progress.note(note)
 
     def _record(self, metrics: rows.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""

@@ -6,9 +6,12 @@ One panel per task; one line per algorithm and, where its runs differ in their s
 settings (hybrid_rl.studies.curves). Several metrics, such as
 metric=train/return,planner/mode_insertion_gradient, are one row of panels each. x=wall_s plots over
 time, x=KEY over a number that was swept, such as num_demonstrations. runs=FILE.json redraws a
-figure from its JSON. The summary has the last value, the mean over the run (the area under the
-curve), the decisions to reach threshold=, and in which share of pairs of seeds one method is ahead
-of another. Notes on missing values and failed seeds are in the picture and in the JSON.
+figure from its JSON. out=FILE.csv writes a table instead, a value of a seed in each row, with the
+columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.studies.long_table).
+
+The summary has the last value, the mean over the run (the area under the curve), the decisions to
+reach threshold=, and in which share of pairs of seeds one method is ahead of another. Notes on
+missing values and failed seeds are in the picture and in the JSON.
 """
 
 import itertools
@@ -32,6 +35,7 @@ from hybrid_rl.studies.curves import (
     spread,
     steps_to,
 )
+from hybrid_rl.studies.long_table import long_table
 from hybrid_rl.studies.style import (
     COLOURS,
     ENTRY,
@@ -128,6 +132,11 @@ def summary(numbers: dict[str, Any]) -> list[str]:
                 f"in {rate:.0%} [{low:.0%}, {high:.0%}] of pairs"
             )
     return lines + [f"note: {note}" for curve in drawn for note in curve.notes]
+
+
+def table(numbers: dict[str, Any]) -> str:
+    """The curves as text of a long table."""
+    return long_table(from_numbers(numbers), numbers["x"])
 
 
 def to_numbers(curve: Curve) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from hybrid_rl.training.agent import Agent, AgentState, trace_once
+from hybrid_rl.training.operations import operations
 
 # On a CPU, matrix products of Eigen are a sixth faster than those of YNNPACK, XLA's default.
 COMPILER_OPTIONS: dict[str, Any] = {
@@ -78,13 +79,25 @@ class Loop:
         keys = jnp.stack([jax.random.key(seed) for seed in self.seeds])
         return self.shard(jax.vmap(self.agent.init), SEEDS, SEEDS)(keys)
 
-    def compile(self, state: AgentState) -> Any:
-        """The compiled program (state, first step, rounds) -> (state, metrics)."""
+    def trace(self, state: AgentState) -> Any:
+        """The trace of the program, for `operations` and `compile`."""
         began = perf_counter()
         parts = (SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         program = self.shard(self._advance, *parts, donate_argnums=0)
         zero = jnp.zeros((), jnp.int32)
-        lowered = program.lower(state, zero, zero)
+        traced = program.trace(state, zero, zero)
+        self.compile_s += perf_counter() - began
+        return traced
+
+    def operations(self, traced: Any) -> float:
+        """Floating-point operations of a round of all learners, with learning."""
+        return operations(traced.jaxpr) * self.mesh.size
+
+    def compile(self, state: AgentState, traced: Any = None) -> Any:
+        """The compiled program (state, first step, rounds) -> (state, metrics)."""
+        traced = self.trace(state) if traced is None else traced
+        began = perf_counter()
+        lowered = traced.lower()
         try:
             compiled = lowered.compile(COMPILER_OPTIONS.get(jax.default_backend()))
         except jax.errors.JaxRuntimeError as error:

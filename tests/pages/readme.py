@@ -23,7 +23,6 @@ def sac(label: str, x: float) -> list[float]:
 FALLS = chapter7_falls.methods("2")["koopman_active"]
 KLE3 = chapter6_values.SEARCHES["kle3_bayesopt"]
 CITED = [
-    Text("to a return of # (", [curve("light_halfcheetah", "settings=light").at(60_000)[0]]),
     Table(" | hybrid_stochastic | nn_mppi | sac", main_table),
     Text(
         "our SAC matches Stable-Baselines3's: # [#, #] and # [#, #] at 100,000",

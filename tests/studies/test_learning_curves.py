@@ -1,5 +1,6 @@
 """Learning curves: panels, lines and notes, and their numbers."""
 
+import csv
 import itertools
 import json
 from dataclasses import replace
@@ -189,3 +190,34 @@ def test_the_summary_compares_and_counts_who_reaches_the_threshold():
     assert ", 1,500 reached by 3 of 3 at " in lines[1]
     assert lines[2].startswith("hopper, train/return: a ahead of b in 1")
     assert lines[3:] == ["note: a note"]
+
+
+def test_a_table_has_a_row_for_each_value_of_each_seed(tmp_path, capsys):
+    """Read by Python's own parser; the columns are those of SimbaV2's published curves."""
+    one = curve(points=3, metric="eval/return")
+    one.each[2, 1] = np.nan
+    drawn = [one, curve("ant", "hybrid, long", seeds=1, points=3)]
+    save(plot(drawn), numbers_of(drawn, "eval/return"), tmp_path / "a.png")
+    arguments = f"runs={tmp_path / 'a.json'}", f"out={tmp_path / 'new' / 'a.csv'}"
+    assert call(lambda: command.guarded(figures.main), *arguments) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "new" / "a.csv")
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["a.csv"]
+    with (tmp_path / "new" / "a.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["exp_name", "env_name", "seed", "metric", "env_step", "value"]
+    read = {
+        (r["exp_name"], r["env_name"], r["metric"], int(r["seed"]), int(r["env_step"])): r
+        for r in rows
+    }
+    assert len(read) == len(rows) == 8 + 3
+    assert float(read["sac", "hopper", "avg_return", 2, 200_000]["value"]) == 3000
+    assert float(read["hybrid, long", "ant", "train/return", 0, 100_500]["value"]) == 500
+    assert ("sac", "hopper", "avg_return", 2, 100_500) not in read
+
+
+def test_a_table_over_time_is_refused(tmp_path, capsys):
+    one = curve()
+    save(plot([one]), numbers_of([one], x="wall_s"), tmp_path / "b.png")
+    arguments = f"runs={tmp_path / 'b.json'}", f"out={tmp_path / 'b.csv'}"
+    assert call(lambda: command.guarded(figures.main), *arguments) == 2
+    assert "x=wall_s: a table is over decisions; give x=step" in capsys.readouterr().err

@@ -1,0 +1,176 @@
+"""Soft actor-critic with a categorical critic, batch normalisation and unit weights (FlashSAC).
+
+    q     = distribution of r / scale + gamma (1 - terminated) (Z' - alpha log pi(u'|x'))
+    L_Q   = -mean sum_k q_k log p_k(x, u)
+    L_pi  = mean (alpha log pi(v|x) - min_i Q_i(x, v)),                             v ~ pi(x)
+    L_a   = -alpha mean (log pi(v|x) + m log(sigma sqrt(2 pi e)))
+
+Z' is the target critic's return with the smaller mean, `scale` that of hybrid_rl.learners
+.return_scale. Critic and target see (x, u) and (x', u') as one batch, and are normalised by it
+together (CrossQ, Bhatt et al. 2024); the policy sees x and x' so. After each gradient step the
+weights are projected to unit norm. One update is a step of policy and temperature, then `batches`
+steps of the critic. Source: FlashSAC (Kim et al. 2026), with its settings for one environment; its
+learning rate falls by half over 1,000,000 decisions, here it is constant.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import jax
+import jax.numpy as jnp
+import optax
+from flax import struct
+from jax import Array
+
+from hybrid_rl.protocols import BatchPolicy, CategoricalCritic
+from hybrid_rl.types import Batch, Params, Spec
+
+
+@struct.dataclass
+class FlashSACState:
+    """The state of the learner; optimisers are those of "weights"."""
+
+    policy: Any
+    critic: Any
+    target: Any
+    log_alpha: Array  # []
+    policy_optimiser: Any
+    critic_optimiser: Any
+    alpha_optimiser: Any
+
+
+@dataclass(frozen=True)
+class FlashSAC:
+    """Soft actor-critic on a batch normalised policy and a categorical critic.
+
+    Its rewards are divided by `params.belief`, the scale of returns.
+
+    Raises:
+        ValueError: for rates, a discount, tau or counts out of range.
+    """
+
+    policy: BatchPolicy
+    critic: CategoricalCritic
+    learning_rate: float = 3e-4
+    alpha: float = 0.01  # initial temperature, for scaled rewards
+    target_sigma: float = 0.15  # of the normal distribution with the entropy that is aimed at
+    discount: float = 0.99
+    tau: float = 0.01
+    batch_size: int = 512
+    batches: int = 2  # steps of the critic for each step of the policy
+    updates: float = 0.5  # steps of the policy per decision
+
+    data: ClassVar[str] = "uniform"
+    owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
+    early: ClassVar[bool] = False  # starts after the random decisions
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 <= self.discount < 1:
+            raise ValueError(f"policy_learner.discount={self.discount}: must lie in [0, 1)")
+        if not 0 < self.tau <= 1:
+            raise ValueError(f"policy_learner.tau={self.tau}: must lie in (0, 1]")
+        for name in ("learning_rate", "alpha", "target_sigma"):
+            if getattr(self, name) <= 0:
+                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
+        if not isinstance(self.batches, int) or self.batches < 1:
+            raise ValueError(
+                f"policy_learner.batches={self.batches}: must be a whole number, 1 or more"
+            )
+
+    def init(self, key: Array, spec: Spec) -> FlashSACState:
+        """Initial parameters, optimisers and target. The key is consumed."""
+        for_policy, for_critic = jax.random.split(key)
+        policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
+        log_alpha, adam = jnp.log(jnp.float32(self.alpha)), optax.adam(self.learning_rate)
+        return FlashSACState(
+            policy,
+            critic,
+            jax.tree.map(jnp.copy, critic),
+            log_alpha,
+            adam.init(policy["weights"]),
+            adam.init(critic["weights"]),
+            adam.init(log_alpha),
+        )
+
+    def params(self, state: FlashSACState) -> dict[str, Any]:
+        """The policy and the critic."""
+        return {"policy": state.policy, "critic": state.critic}
+
+    def update(
+        self, state: FlashSACState, params: Params, batch: Batch, key: Array
+    ) -> tuple[FlashSACState, dict[str, Array]]:
+        """A step of policy and temperature, then `batches` of the critic. The key is consumed."""
+        acting, *following = jax.random.split(key, 1 + self.batches)
+        batch = batch._replace(reward=batch.reward / params.belief, next_action=None)
+        size = len(batch.reward) // self.batches
+        stacked = jax.tree.map(lambda v: v.reshape(self.batches, size, *v.shape[1:]), batch)
+        state, metrics = self._improved(state, jax.tree.map(lambda v: v[0], stacked), acting)
+        for i, key_i in enumerate(following):
+            part = jax.tree.map(lambda v, i=i: v[i], stacked)
+            state, of_critic = self._evaluated(state, part, key_i)
+            metrics |= of_critic
+        return state, metrics
+
+    def _improved(
+        self, state: FlashSACState, batch: Batch, key: Array
+    ) -> tuple[FlashSACState, dict[str, Array]]:
+        """One step of policy and temperature. The key is consumed."""
+        both, b = jnp.concatenate([batch.obs, batch.next_obs]), len(batch.obs)
+        noise = jax.random.normal(key, (2 * b, batch.action.shape[-1]))
+        alpha = jnp.exp(state.log_alpha)
+
+        def loss(weights: Any) -> tuple[Array, tuple[Array, Any]]:
+            known = {**state.policy, "weights": weights}
+            v, log_prob, known = self.policy.in_batch(known, both, noise)
+            q = self.critic.value(state.critic, batch.obs, v[:b])
+            return jnp.mean(alpha * log_prob[:b] - q), (-log_prob[:b].mean(), known["statistics"])
+
+        (of_policy, (entropy, statistics)), grads = jax.value_and_grad(loss, has_aux=True)(
+            state.policy["weights"]
+        )
+        weights, optimiser = self._stepped(grads, state.policy_optimiser, state.policy["weights"])
+        policy = self.policy.constrained({"weights": weights, "statistics": statistics})
+        aim = batch.action.shape[-1] * math.log(self.target_sigma * math.sqrt(2 * math.pi * math.e))
+        log_alpha, alpha_optimiser = self._stepped(
+            alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
+        )
+        metrics = {"sac/policy_loss": of_policy, "sac/alpha": alpha, "sac/entropy": entropy}
+        return state.replace(
+            policy=policy,
+            policy_optimiser=optimiser,
+            log_alpha=log_alpha,
+            alpha_optimiser=alpha_optimiser,
+        ), metrics
+
+    def _evaluated(
+        self, state: FlashSACState, batch: Batch, key: Array
+    ) -> tuple[FlashSACState, dict[str, Array]]:
+        """One step of the critic and its target. The key is consumed."""
+        b, noise = len(batch.obs), jax.random.normal(key, batch.action.shape)
+        after, log_prob = self.policy.sample(state.policy, batch.next_obs, noise)
+        x = jnp.concatenate([batch.obs, batch.next_obs])
+        u = jnp.concatenate([batch.action, after])
+        log_p, _ = self.critic.in_batch(state.target, x, u)
+        factor = self.discount * (1 - batch.terminated)
+        penalty = jnp.exp(state.log_alpha) * log_prob
+        q = self.critic.target(log_p[:, b:], batch.reward, factor, penalty)
+
+        def loss(weights: Any) -> tuple[Array, Any]:
+            log_p, known = self.critic.in_batch({**state.critic, "weights": weights}, x, u)
+            return -(q[None] * log_p[:, :b]).sum(-1).mean(), known["statistics"]
+
+        (of_critic, statistics), grads = jax.value_and_grad(loss, has_aux=True)(
+            state.critic["weights"]
+        )
+        weights, optimiser = self._stepped(grads, state.critic_optimiser, state.critic["weights"])
+        critic = self.critic.constrained({"weights": weights, "statistics": statistics})
+        target = optax.incremental_update(critic, state.target, self.tau)
+        state = state.replace(critic=critic, critic_optimiser=optimiser, target=target)
+        return state, {"sac/critic_loss": of_critic}
+
+    def _stepped(self, grads: Any, optimiser: Any, weights: Any) -> tuple[Any, Any]:
+        """One Adam step: new weights, new optimiser state."""
+        change, optimiser = optax.adam(self.learning_rate).update(grads, optimiser, weights)
+        return optax.apply_updates(weights, change), optimiser

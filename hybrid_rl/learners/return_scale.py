@@ -1,0 +1,75 @@
+"""The scale of returns: what rewards are divided by, so that a bounded critic can hold them.
+
+    G' = r + gamma G,    scale = max(std of all G', max |G'| / bound)
+
+G is the discounted sum of past rewards in each environment and starts at 0 in each episode.
+`params.belief` is the scale [], 1 before the first reward. Source: SimbaV2 (Lee et al. 2025) and
+FlashSAC (Kim et al. 2026).
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+
+from hybrid_rl.core import statistics
+from hybrid_rl.types import Batch, Params, Spec
+
+
+@struct.dataclass
+class ScaleState:
+    """What the decisions so far tell about returns."""
+
+    so_far: Array  # [E] gamma G of the running episodes
+    stats: statistics.Running  # of all G, size 1
+    largest: Array  # [] |G|
+
+
+@dataclass(frozen=True)
+class ReturnScale:
+    """The running scale of discounted returns.
+
+    Raises:
+        ValueError: for a discount, a bound or a number of environments out of range.
+    """
+
+    discount: float = 0.99
+    bound: float = 5.0  # of scaled returns
+    num_envs: int = 1
+
+    data: ClassVar[str] = "latest"
+    owns: ClassVar[tuple[str, ...]] = ("belief",)
+    every: ClassVar[int] = 1
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if not 0 <= self.discount < 1:
+            raise ValueError(f"return_scale.discount={self.discount}: must lie in [0, 1)")
+        if not self.bound > 0:
+            raise ValueError(f"return_scale.bound={self.bound}: must be above 0")
+        if self.num_envs < 1:
+            raise ValueError(f"return_scale.num_envs={self.num_envs}: must be 1 or more")
+
+    def init(self, key: Array, spec: Spec) -> ScaleState:
+        """No rewards yet. The key is not used."""
+        return ScaleState(jnp.zeros(self.num_envs), statistics.init(1), jnp.zeros(()))
+
+    def params(self, state: ScaleState) -> dict[str, Any]:
+        """The scale []."""
+        scale = jnp.maximum(state.stats.std[0], state.largest / self.bound)
+        return {"belief": jnp.where((state.largest > 0) & (scale > 0), scale, 1.0)}
+
+    def update(
+        self, state: ScaleState, params: Params, batch: Batch, key: Array
+    ) -> tuple[ScaleState, dict[str, Array]]:
+        """The state after the rewards of one round [E]; the key is not used."""
+        now = batch.reward + state.so_far
+        ended = jnp.maximum(batch.terminated, batch.truncated)
+        state = ScaleState(
+            self.discount * (1 - ended) * now,
+            statistics.update(state.stats, now[:, None], rate=0.0),
+            jnp.maximum(state.largest, jnp.abs(now).max()),
+        )
+        return state, {"return_scale/scale": self.params(state)["belief"]}

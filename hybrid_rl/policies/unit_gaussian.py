@@ -1,0 +1,98 @@
+"""u = tanh(z), z ~ N(mu(x), diag(sigma(x)^2)), from a network with unit weights.
+
+    log sigma = low + (high - low) (1 + tanh(s(x))) / 2
+
+mu and s are the outputs of one network of hybrid_rl.core.unit_networks. In a batch it is normalised
+by that batch, elsewhere by running statistics. Source: the policy of FlashSAC (Kim et al. 2026),
+with its width, its two blocks and its bounds.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import unit_networks
+from hybrid_rl.core.squashing import log_density
+from hybrid_rl.core.unit_networks import UnitNet
+from hybrid_rl.types import Spec
+
+
+@dataclass(frozen=True)
+class UnitGaussian:
+    """A stochastic policy on [-1, 1]^m.
+
+    Raises:
+        ValueError: for widths that are not one positive integer, or bounds out of order.
+    """
+
+    hidden: tuple[int, ...] = (128, 128)  # the width, once for each residual block
+    log_std_min: float = -10.0
+    log_std_max: float = 2.0
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        object.__setattr__(self, "hidden", tuple(self.hidden))
+        unit_networks.check("policy", self.hidden)
+        if self.log_std_min >= self.log_std_max:
+            raise ValueError(f"policy.log_std_min={self.log_std_min}: must lie below log_std_max")
+
+    def _net(self, out: int) -> UnitNet:
+        return UnitNet(self.hidden[0], len(self.hidden), out)
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """Initial parameters. The key is consumed."""
+        return unit_networks.init(self._net(2 * spec.act), key, spec.n)
+
+    def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
+        """`params`: the statistics are those of `in_batch`."""
+        return params
+
+    def constrained(self, params: dict[str, Any]) -> dict[str, Any]:
+        """`params` with weights of unit norm."""
+        return {**params, "weights": unit_networks.constrained(params["weights"])}
+
+    def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
+        """The mean mu and standard deviation sigma [..., m] before tanh, at x [..., n]."""
+        return self._split(unit_networks.apply(self._net(unit_networks.outputs(params)), params, x))
+
+    def _split(self, both: Array) -> tuple[Array, Array]:
+        mu, s = jnp.split(both, 2, axis=-1)
+        low, high = self.log_std_min, self.log_std_max
+        return mu, jnp.exp(low + (high - low) * (1 + jnp.tanh(s)) / 2)
+
+    def mean(self, params: dict[str, Any], x: Array) -> Array:
+        """tanh(mu(x)) [..., m]."""
+        return jnp.tanh(self.gaussian(params, x)[0])
+
+    def variance(self, params: dict[str, Any], x: Array) -> Array:
+        """Variance of the action [..., m], to first order around the mean: (1 - mean^2)^2 sigma^2.
+
+        The table in hybrid_rl.policies.tanh_gaussian has its accuracy.
+        """
+        mu, sigma = self.gaussian(params, x)
+        return ((1 - jnp.tanh(mu) ** 2) * sigma) ** 2
+
+    def sample(self, params: dict[str, Any], x: Array, noise: Array) -> tuple[Array, Array]:
+        """The action u [..., m] for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
+        return _sampled(*self.gaussian(params, x), noise)
+
+    def in_batch(
+        self, params: dict[str, Any], x: Array, noise: Array
+    ) -> tuple[Array, Array, dict[str, Any]]:
+        """`sample` at x [B, n], normalised by that batch; parameters with its statistics."""
+        net = self._net(unit_networks.outputs(params))
+        both, params = unit_networks.apply_in_batch(net, params, x)
+        return *_sampled(*self._split(both), noise), params
+
+    def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
+        """The log-density log pi(u|x) [...] of u [..., m] inside (-1, 1), at x [..., n]."""
+        mu, sigma = self.gaussian(params, x)
+        z = jnp.arctanh(u)
+        return log_density(z, (z - mu) / sigma, sigma)
+
+
+def _sampled(mu: Array, sigma: Array, noise: Array) -> tuple[Array, Array]:
+    z = mu + sigma * noise
+    return jnp.tanh(z), log_density(z, noise, sigma)
