@@ -193,7 +193,7 @@ class ModelLearner:
             return None, None
         first: Any = jax.tree.map(lambda x: x[: self.batch_size], batch)
         first = lifted_batch(self.model, jax.lax.stop_gradient(model), first)
-        reward = part.observe(reward, first.obs, first.next_obs)
+        reward = part.observe(reward, first.obs)
         target = first.reward
         if self.reward_discount > 0:
             outcome = jax.vmap(part.outcome, (None, 0, 0, 0))

@@ -7,9 +7,9 @@ that their error counts in units of s, as a model's errors count in running stan
 (Barkley and Fridovich-Keil 2025). With several `members`, f is the mean of networks that differ by
 their initial weights.
 
-With `next_state` it is f(x, u, x' - x), of the true next state in the data and of the imagined one
-in a model. A robot's reward for speed, and whether it has fallen, are functions of x'; from x and u
-alone the network would have to learn the dynamics again.
+With `next_state` it is f(x, u, x'), of the true next state in the data and of the imagined one in a
+model: a reward for distance depends on both states, and from x and u alone the network would have
+to learn the dynamics again.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class RewardNetwork:
     layer_norm: bool = False  # of every hidden layer, before its activation
     scale: bool = False  # targets by their running statistics
     members: int = 1  # networks, whose mean is used
-    next_state: bool = False  # the change of the state is an input, too
+    next_state: bool = False  # x' is an input, too
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -58,21 +58,13 @@ class RewardNetwork:
         several = self.members > 1
         weights = ensemble_init(net, key, self.members, zeros) if several else net.init(key, zeros)
         params = {"weights": weights, "state": statistics.init(spec.n)}
-        if self.scale:
-            params["target"] = statistics.init(1)
-        if self.next_state:
-            params["change"] = statistics.init(spec.n)
-        return params
+        return {**params, "target": statistics.init(1)} if self.scale else params
 
-    def observe(self, params: dict[str, Any], x: Array, after: Array) -> dict[str, Any]:
-        """Parameters with statistics updated by x [B, n] and the next states [B, n]."""
+    def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
+        """Parameters with statistics updated by x [B, n]."""
         if not self.normalise:
             return params
-        params = {**params, "state": statistics.update(params["state"], x)}
-        if self.next_state:
-            magnitude = params["state"].magnitude
-            params["change"] = statistics.update(params["change"], after - x, magnitude)
-        return params
+        return {**params, "state": statistics.update(params["state"], x)}
 
     def observe_targets(self, params: dict[str, Any], target: Array) -> dict[str, Any]:
         """Parameters with statistics updated by targets [B] of the reward."""
@@ -96,7 +88,7 @@ class RewardNetwork:
         """Reward and logit [members] of every network; without ends the logits are zero."""
         inputs = [statistics.normalise(params["state"], x), u]
         if self.next_state:
-            inputs.append(statistics.normalise(params["change"], after - x))
+            inputs.append(statistics.normalise(params["state"], after))
         inputs = jnp.concatenate(inputs)
         net, weights = self._net(), params["weights"]
         several = self.members > 1

@@ -197,8 +197,8 @@ class Reward(Protocol):
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, for planning states of size spec.n."""
 
-    def observe(self, params: PyTree, x: Array, after: Array) -> PyTree:
-        """Parameters with statistics updated by planning states x [B, n] and the next [B, n]."""
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
 
     def observe_targets(self, params: PyTree, target: Array) -> PyTree:
         """Parameters with statistics updated by targets [B] of the reward."""
