@@ -55,11 +55,12 @@ def test_the_reward_of_several_networks_is_their_mean() -> None:
         {**params, "weights": jax.tree.map(lambda w, i=i: w[i], params["weights"])}
         for i in range(3)
     ]
-    outcomes = np.array([one.outcome(member, X, U, X) for member in each])
+    outcome, loss = jax.jit(one.outcome), jax.jit(one.loss)
+    outcomes = np.array([outcome(member, X, U, X) for member in each])
     assert outcomes.std(0).min() > 1e-3
     np.testing.assert_allclose(several.outcome(params, X, U, X), outcomes.mean(0), rtol=1e-5)
     target, ended = jnp.float32(2.0), jnp.float32(1.0)
-    losses = [one.loss(member, X, U, X, target, ended) for member in each]
+    losses = [loss(member, X, U, X, target, ended) for member in each]
     np.testing.assert_allclose(
         several.loss(params, X, U, X, target, ended), np.mean(losses), rtol=1e-5
     )
