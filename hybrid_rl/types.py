@@ -99,7 +99,7 @@ class Params(NamedTuple):
     """Read-only view of everything that is learned; each field has one learner at most."""
 
     model: PyTree = None  # f(x, u)
-    reward: PyTree = None  # r(x, u)
+    reward: PyTree = None  # r(x, u, x')
     policy: PyTree = None  # pi(x)
     critic: PyTree = None  # Q(x, u)
     belief: PyTree = None  # anything else that a method learns

@@ -1,6 +1,6 @@
 """Decisions of a policy in a learned model, for the returns of `core.soft_return`.
 
-    u_t ~ pi(x_t),   x_{t+1} ~ f(x_t, u_t),   r_t, c_t = reward(x_t, u_t)
+    u_t ~ pi(x_t),   x_{t+1} ~ f(x_t, u_t),   r_t, c_t = reward(x_t, u_t, x_{t+1})
 
 with c_t the chance that the episode continues. The gradient by the policy's parameters goes through
 actions, model and reward, with the noise fixed (reparameterisation): stochastic value gradients
@@ -45,13 +45,13 @@ class Lookahead:
         length = self.steps
         for_policy = jax.random.normal(acting, (length + 1, len(x), m))
         for_model = jax.random.normal(moving, (length, *x.shape))
-        outcome = jax.vmap(self.reward.outcome, (None, 0, 0))
+        outcome = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
 
         def forward(x: Array, at: Any) -> Any:
             noise, model_noise, key = at
             u, log_prob = self.policy.sample(params.policy, x, noise)
-            r, end = outcome(params.reward, x, u)
             after = self.model.draw(params.model, x, u, model_noise, key)
+            r, end = outcome(params.reward, x, u, after)
             return after, (x, u, log_prob, r, jax.nn.sigmoid(-end))
 
         along = for_policy[:-1], for_model, jax.random.split(choosing, length)

@@ -2,7 +2,7 @@
 
 A share of each batch is replaced: from the first states of the batch the policy acts in the model,
 
-    u ~ pi(x),   x' ~ f(x, u),   r, end = reward(x, u),
+    u ~ pi(x),   x' ~ f(x, u),   r, end = reward(x, u, x'),
 
 for 1 to `steps` decisions, of which the last is used; of an ensemble, f is one member for each
 branch, drawn at each step. These are the branched rollouts of Janner et al. 2019 (MBPO), drawn for
@@ -212,7 +212,8 @@ class MBPO:
         """One transition from each x [b, n]; its `terminated` is a probability."""
         u = jax.vmap(self.policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
         after = self.model.draw(params.model, x, u, for_model, key)
-        reward, end = jax.vmap(self.reward.outcome, (None, 0, 0))(params.reward, x, u)
+        outcome = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
+        reward, end = outcome(params.reward, x, u, after)
         return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(len(x)), after)
 
 

@@ -81,6 +81,11 @@ class ModelLearner:
             raise ValueError(
                 f"model_learner.reward_discount={self.reward_discount}: must lie in [0, 1)"
             )
+        if self.reward_discount and getattr(self.reward, "next_state", False):
+            raise ValueError(
+                "reward.next_state=true: the value of x' would need the state after it; give "
+                "model_learner.reward_discount=0"
+            )
         if self.learning_rate <= 0:
             raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
         if self.weight_decay < 0:
@@ -191,16 +196,16 @@ class ModelLearner:
         reward = part.observe(reward, first.obs)
         target = first.reward
         if self.reward_discount > 0:
-            outcome = jax.vmap(part.outcome, (None, 0, 0))
-            after = outcome(reward, first.next_obs, first.next_action)[0]
+            outcome = jax.vmap(part.outcome, (None, 0, 0, 0))
+            later = outcome(reward, first.next_obs, first.next_action, first.next_obs)[0]
             goes_on = self.reward_discount * (1 - first.terminated) * (1 - first.truncated)
-            target = target + goes_on * after
+            target = target + goes_on * later
         reward = part.observe_targets(reward, target)
 
         def loss(weights: Any) -> Array:
-            each = jax.vmap(part.loss, (None, 0, 0, 0, 0))
-            tuned = {**reward, "weights": weights}
-            return each(tuned, first.obs, first.action, target, first.terminated).mean()
+            each = jax.vmap(part.loss, (None, 0, 0, 0, 0, 0))
+            tuned, known = {**reward, "weights": weights}, (first.obs, first.action, first.next_obs)
+            return each(tuned, *known, target, first.terminated).mean()
 
         return reward, loss
 

@@ -6,6 +6,10 @@ with m = 0 and s = 1, or with `scale` the running mean and standard deviation of
 that their error counts in units of s, as a model's errors count in running standard deviations
 (Barkley and Fridovich-Keil 2025). With several `members`, f is the mean of networks that differ by
 their initial weights.
+
+With `next_state` it is f(x, u, x'), of the true next state in the data and of the imagined one in a
+model: a reward for distance depends on both states, and from x and u alone the network would have
+to learn the dynamics again.
 """
 
 from dataclasses import dataclass
@@ -35,6 +39,7 @@ class RewardNetwork:
     layer_norm: bool = False  # of every hidden layer, before its activation
     scale: bool = False  # targets by their running statistics
     members: int = 1  # networks, whose mean is used
+    next_state: bool = False  # x' is an input, too
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -48,7 +53,8 @@ class RewardNetwork:
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights and statistics. The key is consumed."""
-        net, zeros = self._net(), jnp.zeros(spec.n + spec.act)
+        size = spec.n + spec.act + (spec.n if self.next_state else 0)
+        net, zeros = self._net(), jnp.zeros(size)
         several = self.members > 1
         weights = ensemble_init(net, key, self.members, zeros) if several else net.init(key, zeros)
         params = {"weights": weights, "state": statistics.init(spec.n)}
@@ -66,14 +72,24 @@ class RewardNetwork:
             return params
         return {**params, "target": statistics.update(params["target"], target[:, None])}
 
-    def outcome(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array]:
-        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
-        rewards, logits = self._each(params, x, u)
+    def outcome(
+        self, params: dict[str, Any], x: Array, u: Array, after: Array
+    ) -> tuple[Array, Array]:
+        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
+
+        after: [n] the next state, which is used with `next_state`.
+        """
+        rewards, logits = self._each(params, x, u, after)
         return rewards.mean(), logits.mean() if self.ends else -jnp.inf
 
-    def _each(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array]:
-        """Reward and logit [members] of every network; without ends the logits are empty."""
-        inputs = jnp.concatenate([statistics.normalise(params["state"], x), u])
+    def _each(
+        self, params: dict[str, Any], x: Array, u: Array, after: Array
+    ) -> tuple[Array, Array]:
+        """Reward and logit [members] of every network; without ends the logits are zero."""
+        inputs = [statistics.normalise(params["state"], x), u]
+        if self.next_state:
+            inputs.append(statistics.normalise(params["state"], after))
+        inputs = jnp.concatenate(inputs)
         net, weights = self._net(), params["weights"]
         several = self.members > 1
         out: Any = (ensemble_apply if several else MLP.apply)(net, weights, inputs)
@@ -84,13 +100,19 @@ class RewardNetwork:
         return r, out[:, 1:].sum(1)
 
     def loss(
-        self, params: dict[str, Any], x: Array, u: Array, target: Array, ended: Array
+        self,
+        params: dict[str, Any],
+        x: Array,
+        u: Array,
+        after: Array,
+        target: Array,
+        ended: Array,
     ) -> Array:
         """Half the squared error [] against target [], and the cross entropy of `ended` [].
 
         With `scale`, the error is in running standard deviations of the targets. Mean over members.
         """
-        rewards, logits = self._each(params, x, u)
+        rewards, logits = self._each(params, x, u, after)
         error = target - rewards
         if self.scale:
             error = error / params["target"].scale

@@ -1,4 +1,6 @@
-"""J(path) = sum_t c_t r(x_t, u_t) [+ c_T min_i Q_i(x_T, pi(x_T))]: the return of a learned reward.
+"""The return of a learned reward along a path, discounted.
+
+    J(path) = sum_t c_t r(x_t, u_t, x_{t+1}) [+ c_T min_i Q_i(x_T, pi(x_T))]
 
 c_t is the discount so far, times the probability that the episode continues if the reward predicts
 it: without it a planner expects rewards after a robot has fallen.
@@ -51,8 +53,8 @@ class PredictedReturn:
 
     def _outcomes(self, params: Params, path: Path) -> Any:
         """Rewards [T], and logits [T] of the episode ending."""
-        each = jax.vmap(self.reward.outcome, (None, 0, 0))
-        return each(params.reward, path.x[:-1], path.u)
+        each = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
+        return each(params.reward, path.x[:-1], path.u, path.x[1:])
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""

@@ -192,7 +192,7 @@ class CategoricalCritic(Critic, Protocol):
 
 
 class Reward(Protocol):
-    """r(x, u), learned; its parameters hold "weights" as a Trainable's do."""
+    """r(x, u, x'), learned; its parameters hold "weights" as a Trainable's do."""
 
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, for planning states of size spec.n."""
@@ -203,10 +203,15 @@ class Reward(Protocol):
     def observe_targets(self, params: PyTree, target: Array) -> PyTree:
         """Parameters with statistics updated by targets [B] of the reward."""
 
-    def outcome(self, params: PyTree, x: Array, u: Array) -> tuple[Array, Array]:
-        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there."""
+    def outcome(self, params: PyTree, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
+        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
 
-    def loss(self, params: PyTree, x: Array, u: Array, target: Array, ended: Array) -> Array:
+        after: [n] the next planning state, real or imagined.
+        """
+
+    def loss(
+        self, params: PyTree, x: Array, u: Array, after: Array, target: Array, ended: Array
+    ) -> Array:
         """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
 
 

@@ -75,7 +75,7 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
             paths = paths._replace(x=paths.x.at[k, t + 1].set(x))
     to_go = jax.vmap(lambda path: objective.reward_to_go(params, path))(paths)
     w = np.asarray(sampling.weights(to_go[:, :-1], 0.1))[:, 0]
-    first = [float(reward.outcome(params.reward, X, jnp.full(1, k / K))[0]) for k in range(K)]
+    first = [float(reward.outcome(params.reward, X, jnp.full(1, k / K), X)[0]) for k in range(K)]
     controller = SamplingController(Cart(), objective, Grid(), horizon=T, samples=K)
     metrics = controller.act(params, controller.init(SPEC), X, jax.random.key(1))[2]
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)

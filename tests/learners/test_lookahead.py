@@ -28,7 +28,7 @@ class Line:
         """A x + B u and noise."""
         return x @ A.T + u @ B.T + self.noise * noise
 
-    def outcome(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
+    def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """Reward, and a chance to end that grows with x[0]."""
         return -(x @ x) - 0.1 * u @ u, x[0] - 2
 
@@ -92,8 +92,8 @@ def test_the_costate_gives_the_same_gradient() -> None:
 
     @dataclass(frozen=True)
     class Plain(Line):
-        def outcome(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
-            return super().outcome(params, x, u)[0], -jnp.inf
+        def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
+            return super().outcome(params, x, u, after)[0], -jnp.inf
 
         def sample(self, params: Any, x: Array, noise: Array) -> tuple[Array, Array]:
             return x @ params.T, jnp.zeros(x.shape[:-1])

@@ -30,7 +30,7 @@ class Counting:
         """One more."""
         return x + 1
 
-    def outcome(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
+    def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """Reward and logit of the end."""
         return x[0], jnp.where(x[0] > 2.5, 20.0, -20.0)
 

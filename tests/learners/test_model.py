@@ -58,7 +58,9 @@ def test_model_and_reward_are_learned() -> None:
     error = jnp.abs(ahead - test.next_obs).mean(0)
     change = jnp.abs(test.next_obs - test.obs).mean(0)
     assert (np.asarray(error) < 0.1 * np.asarray(change)).all()
-    got = jax.vmap(reward.outcome, (None, 0, 0))(params.reward, test.obs, test.action)[0]
+    got = jax.vmap(reward.outcome, (None, 0, 0, 0))(
+        params.reward, test.obs, test.action, test.next_obs
+    )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05
 
 
@@ -72,7 +74,7 @@ def test_reward_discount_learns_a_value() -> None:
 
     reward = RewardNetwork(hidden=(32,))
     learner = ModelLearner(Gaussian(hidden=(8,)), reward, reward_discount=0.8)
-    at = (jnp.zeros(2), jnp.zeros(1))
+    at = (jnp.zeros(2), jnp.zeros(1), jnp.zeros(2))
     going = trained(learner, 4000, endless).reward
     assert float(reward.outcome(going, *at)[0]) == pytest.approx(5, abs=0.4)
     ended = trained(learner, 2000, lambda key: endless(key, 1.0)).reward
@@ -85,7 +87,10 @@ def test_reward_to_go_is_the_sum_of_later_rewards() -> None:
     objective = PredictedReturn(reward, discount=0.9)
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
     path = Path(jax.random.normal(jax.random.key(1), (5, 2)), jnp.ones((4, 1)))
-    rates = [float(reward.outcome(params.reward, path.x[t], path.u[t])[0]) for t in range(4)]
+    rates = [
+        float(reward.outcome(params.reward, path.x[t], path.u[t], path.x[t + 1])[0])
+        for t in range(4)
+    ]
     want = [sum(0.9 ** (i - t) * rates[i] for i in range(t, 4)) for t in range(5)]
     np.testing.assert_allclose(objective.reward_to_go(params, path), want, rtol=1e-4, atol=1e-6)
 
@@ -166,12 +171,14 @@ def test_direct_prediction_and_scaled_rewards_are_learned() -> None:
     """With all ingredients: f is x + change of a linear world, r in its own units."""
     model = Gaussian(hidden=(64,), activation="silu", predict="state", layer_norm=True)
     reward = RewardNetwork(hidden=(64,), activation="silu", scale=True, layer_norm=True)
-    params = trained(ModelLearner(model, reward, weight_decay=1e-4), 2000, draw_linear)
+    params = trained(ModelLearner(model, reward, weight_decay=1e-4), 1000, draw_linear)
     test = draw_linear(jax.random.key(9), 500)
     ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
     error = np.abs(ahead - test.next_obs).mean(0) / SCALE
     assert (error < 0.03).all()
-    got = jax.vmap(reward.outcome, (None, 0, 0))(params.reward, test.obs, test.action)[0]
+    got = jax.vmap(reward.outcome, (None, 0, 0, 0))(
+        params.reward, test.obs, test.action, test.next_obs
+    )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05 * 80
 
 
@@ -251,3 +258,23 @@ def test_elites_need_held_out_decisions() -> None:
         ModelLearner(HELD.model)
     with pytest.raises(ValueError, match=r"model_learner\.holdout=0\.6"):
         ModelLearner(HELD.model, holdout=0.6)
+
+
+def test_a_reward_of_the_next_state_is_learned() -> None:
+    """Of x' that the action does not decide: r = x'_0 / 10 and the end at x'_0 > 0 are exact."""
+
+    def jumping(key: Array) -> Batch:
+        batch = draw(key)
+        after = 10 * jax.random.normal(jax.random.fold_in(key, 1), (128, 2))
+        ends = (after[:, 0] > 0).astype(jnp.float32)
+        return batch._replace(reward=after[:, 0] / 10, next_obs=after, terminated=ends)
+
+    reward = RewardNetwork(hidden=(32,), activation="silu", ends=True, next_state=True)
+    params = trained(ModelLearner(Gaussian(hidden=(8,)), reward), 1000, jumping).reward
+    test = jumping(jax.random.key(9))
+    outcome = jax.vmap(reward.outcome, (None, 0, 0, 0))
+    r, end = outcome(params, test.obs, test.action, test.next_obs)
+    assert float(jnp.abs(r - test.reward).mean()) < 0.1
+    assert float(((end > 0) == (test.terminated > 0)).mean()) > 0.95
+    with pytest.raises(ValueError, match=r"reward\.next_state=true: .*reward_discount=0"):
+        ModelLearner(Gaussian(), reward, reward_discount=0.9)

@@ -90,8 +90,8 @@ def test_elites_alone_draw() -> None:
     x, u, noise = (
         jax.random.normal(jax.random.key(i), (10, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
-    each = np.stack([ONE.draw(member(params, i), x, u, noise, None) for i in range(4)])
-    draw = jax.jit(model.draw)
+    alone, draw = jax.jit(ONE.draw), jax.jit(model.draw)
+    each = np.stack([alone(member(params, i), x, u, noise, None) for i in range(4)])
     for seed in range(5):
         apart = np.abs(each - np.asarray(draw(params, x, u, noise, jax.random.key(seed)))).max(-1)
         assert (apart.min(0) < 1e-5).all()
@@ -103,11 +103,6 @@ def test_losses_of_every_member_on_every_transition(params) -> None:
     x, u, after = (
         jax.random.normal(jax.random.key(i), (2, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
-    want = [
-        [
-            ONE.loss(member(params, i), x[b : b + 1], u[b : b + 1], after[b : b + 1])
-            for b in range(2)
-        ]
-        for i in range(4)
-    ]
+    loss, rows = jax.jit(ONE.loss), [[v[b : b + 1] for v in (x, u, after)] for b in range(2)]
+    want = [[loss(member(params, i), *row) for row in rows] for i in range(4)]
     np.testing.assert_allclose(MODEL.losses(params, x, u, after), want, rtol=1e-5)

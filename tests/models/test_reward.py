@@ -19,21 +19,21 @@ def test_scaled_rewards_are_in_real_units() -> None:
     rewards = np.random.default_rng(0).normal(300, 40, 100).astype(np.float32)
     first = plain.init(jax.random.key(0), SPEC)
     params = scaled.observe_targets(scaled.init(jax.random.key(0), SPEC), jnp.asarray(rewards))
-    (f, logit), (r, same) = plain.outcome(first, X, U), scaled.outcome(params, X, U)
+    (f, logit), (r, same) = plain.outcome(first, X, U, X), scaled.outcome(params, X, U, X)
     assert same == logit
     np.testing.assert_allclose(r, rewards.mean() + rewards.std() * f, rtol=1e-5)
     target, ended = jnp.float32(333.0), jnp.float32(1.0)
     of_end = np.log1p(np.exp(logit)) - logit
     wanted = 0.5 * ((333 - float(r)) / rewards.std()) ** 2 + of_end
-    np.testing.assert_allclose(scaled.loss(params, X, U, target, ended), wanted, rtol=1e-4)
+    np.testing.assert_allclose(scaled.loss(params, X, U, X, target, ended), wanted, rtol=1e-4)
 
 
 def test_rewards_of_one_value_are_learned_exactly() -> None:
     """A standard deviation of zero does not divide by zero."""
     reward = RewardNetwork(hidden=(8,), scale=True)
     params = reward.observe_targets(reward.init(jax.random.key(0), SPEC), jnp.full(16, 7.0))
-    assert abs(float(reward.outcome(params, X, U)[0]) - 7) < 1e-4
-    assert np.isfinite(reward.loss(params, X, U, jnp.float32(7), jnp.float32(0)))
+    assert abs(float(reward.outcome(params, X, U, X)[0]) - 7) < 1e-4
+    assert np.isfinite(reward.loss(params, X, U, X, jnp.float32(7), jnp.float32(0)))
 
 
 def test_layer_norm_against_numpy() -> None:
@@ -44,7 +44,7 @@ def test_layer_norm_against_numpy() -> None:
     hidden = np.concatenate([X, U]) @ w["Dense_0"]["kernel"] + w["Dense_0"]["bias"]
     hidden = (hidden - hidden.mean()) / np.sqrt(hidden.var() + 1e-6)
     want = np.maximum(hidden, 0) @ w["Dense_1"]["kernel"] + w["Dense_1"]["bias"]
-    np.testing.assert_allclose(reward.outcome(params, X, U)[0], want[0], rtol=1e-4)
+    np.testing.assert_allclose(reward.outcome(params, X, U, X)[0], want[0], rtol=1e-4)
 
 
 def test_the_reward_of_several_networks_is_their_mean() -> None:
@@ -55,13 +55,29 @@ def test_the_reward_of_several_networks_is_their_mean() -> None:
         {**params, "weights": jax.tree.map(lambda w, i=i: w[i], params["weights"])}
         for i in range(3)
     ]
-    outcomes = np.array([one.outcome(member, X, U) for member in each])
+    outcome, loss = jax.jit(one.outcome), jax.jit(one.loss)
+    outcomes = np.array([outcome(member, X, U, X) for member in each])
     assert outcomes.std(0).min() > 1e-3
-    np.testing.assert_allclose(several.outcome(params, X, U), outcomes.mean(0), rtol=1e-5)
+    np.testing.assert_allclose(several.outcome(params, X, U, X), outcomes.mean(0), rtol=1e-5)
     target, ended = jnp.float32(2.0), jnp.float32(1.0)
-    losses = [one.loss(member, X, U, target, ended) for member in each]
+    losses = [loss(member, X, U, X, target, ended) for member in each]
     np.testing.assert_allclose(
-        several.loss(params, X, U, target, ended), np.mean(losses), rtol=1e-5
+        several.loss(params, X, U, X, target, ended), np.mean(losses), rtol=1e-5
     )
     with pytest.raises(ValueError, match=r"reward\.members=0"):
         RewardNetwork(members=0)
+
+
+def test_the_next_state_is_an_input() -> None:
+    """Against NumPy: f of (x - m) / s, u and (x' - m) / s, with the data's statistics."""
+    reward = RewardNetwork(hidden=(8,), next_state=True)
+    params = reward.init(jax.random.key(0), SPEC)
+    x = np.random.default_rng(0).normal(2, 3, (50, 3)).astype(np.float32)
+    params = reward.observe(params, jnp.asarray(x))
+    after = X + jnp.array([0.3, -0.1, 0.2])
+    w = jax.tree.map(lambda leaf: np.asarray(leaf, np.float64), params["weights"]["params"])
+    m, s = x.mean(0), x.std(0)
+    inputs = np.concatenate([(X - m) / s, U, (after - m) / s])
+    hidden = np.maximum(inputs @ w["Dense_0"]["kernel"], 0)
+    got = reward.outcome(params, X, U, after)[0]
+    np.testing.assert_allclose(got, (hidden @ w["Dense_1"]["kernel"])[0], rtol=1e-3)
