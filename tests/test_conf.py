@@ -228,6 +228,18 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
         assert (c.policy_learner.lookahead is None) == (algo == "sac")
 
 
+def test_settings_of_the_lookahead() -> None:
+    """Policy and critic learn from five imagined decisions; all fields reach their parts."""
+    learner = config.load(["settings=lookahead"]).learners.policy
+    assert (learner.memory, learner.learner.lookahead.steps, learner.learner.expand) == (
+        25600,
+        5,
+        True,
+    )
+    for algo in ("hybrid_stochastic", "hybrid_disagreement"):
+        config.build(config.load(["settings=lookahead", f"algo={algo}"]))
+
+
 def test_thesis_parameters() -> None:
     """Table B.1, with its swapped columns corrected."""
     table = {  # H, T, K, lambda

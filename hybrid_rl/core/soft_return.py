@@ -30,4 +30,5 @@ def returns(paths: Imagined, alpha: Array, discount: float, last: Array) -> Arra
 
 def reached(paths: Imagined) -> Array:
     """The probability [H, B] that a trajectory does not end before each decision."""
-    return jnp.cumprod(paths.goes_on, 0) / jnp.maximum(paths.goes_on, 1e-12)
+    before = jnp.concatenate([jnp.ones_like(paths.goes_on[:1]), paths.goes_on[:-1]])
+    return jnp.cumprod(before, 0)

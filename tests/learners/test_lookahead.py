@@ -11,7 +11,7 @@ from jax import Array
 
 from hybrid_rl.core import adjoint, soft_return
 from hybrid_rl.learners.lookahead import Lookahead
-from hybrid_rl.types import Params, Path
+from hybrid_rl.types import Imagined, Params, Path
 
 A = np.array([[0.9, 0.2], [-0.1, 0.8]], np.float32)
 B = np.array([[0.1], [0.7]], np.float32)
@@ -117,6 +117,14 @@ def test_the_costate_gives_the_same_gradient() -> None:
         return found.gradient.T @ path.x[:-1]
 
     np.testing.assert_allclose(slope, jax.vmap(gradient)(X).sum(0), rtol=1e-4)
+
+
+def test_how_likely_a_decision_is_reached() -> None:
+    """The product of the chances to continue before it."""
+    goes_on = jnp.array([[0.5, 1.0], [0.2, 0.0], [1.0, 0.3]])
+    x = jnp.zeros((4, 2, 1))
+    paths = Imagined(x, x, x[..., 0], goes_on, goes_on)
+    np.testing.assert_allclose(soft_return.reached(paths), [[1, 1], [0.5, 1], [0.1, 0]], atol=1e-6)
 
 
 def test_steps_must_be_positive() -> None:

@@ -1,7 +1,8 @@
 """Soft actor-critic on problems with known values."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -12,13 +13,13 @@ from jax import Array
 from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.learners.sac import SAC, SACState
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 SPEC = Spec(obs=1, act=1, dt=1.0)
 B = 64
 
 
-def learner(**fields: float) -> SAC:
+def learner(**fields: Any) -> SAC:
     """A small learner with high rates."""
     rates = dict.fromkeys(
         ("policy_learning_rate", "critic_learning_rate", "alpha_learning_rate"), 3e-3
@@ -28,7 +29,7 @@ def learner(**fields: float) -> SAC:
     )
 
 
-def train(sac: SAC, draw: partial, steps: int) -> SACState:
+def train(sac: SAC, draw: Any, steps: int) -> SACState:
     """The state after `steps` updates on batches that `draw` makes."""
 
     def one(state: SACState, key: Array) -> tuple[SACState, None]:
@@ -116,3 +117,63 @@ def test_the_value_is_the_minimum_over_critics() -> None:
     assert members.shape == (3,)
     assert len(set(np.asarray(members).tolist())) == 3
     assert float(critic.value(params, x, u)) == float(members.min())
+
+
+def test_pessimism_counts_standard_deviations() -> None:
+    """Mean - p std against NumPy; of two members with p = 1 it is their minimum."""
+    x, u = jnp.array([[0.3], [-2.0]]), jnp.array([[0.5], [-0.1]])
+    for members, pessimism in ((3, 0.56), (2, 1.0)):
+        critic = EnsembleQ(hidden=(8,), members=members, pessimism=pessimism)
+        params = critic.init(jax.random.key(0), SPEC)
+        each = np.asarray(critic.all(params, x, u), np.float64)
+        wanted = each.mean(0) - pessimism * each.std(0) if members > 2 else each.min(0)
+        np.testing.assert_allclose(critic.value(params, x, u), wanted, atol=1e-5)
+    with pytest.raises(ValueError, match=r"critic\.pessimism=-1"):
+        EnsembleQ(pessimism=-1)
+
+
+def test_scaled_values_begin_at_zero_and_reach_large_returns() -> None:
+    """In 100 updates a scaled critic has learned most of a return of 1,000, another one little."""
+
+    def large(key: Array) -> Batch:
+        drawn = batch(key, 1.0, 0.0, False)
+        return drawn._replace(reward=1000 * drawn.reward)
+
+    found = []
+    for scale in (True, False):
+        critic = EnsembleQ(hidden=(32, 32), scale=scale, normalise=scale)
+        sac = replace(learner(discount=0.0), critic=critic)
+        if scale:
+            assert value(sac, sac.init(jax.random.key(0), SPEC)) == 0
+        found.append(value(sac, train(sac, large, 100)))
+    assert 800 < found[0] < 1001
+    assert abs(found[1]) < 200
+
+
+@dataclass(frozen=True)
+class Staying:
+    """Three decisions in one state with reward 1; after the second the episode ends or not."""
+
+    policy: TanhGaussian
+    goes_on: float
+
+    def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
+        """The same state again and again."""
+        xs = jnp.broadcast_to(x, (4, *x.shape))
+        u, log_prob = self.policy.sample(params.policy, xs, jax.random.normal(key, (4, len(x), m)))
+        goes_on = jnp.ones((3, len(x))).at[1].set(self.goes_on)
+        return Imagined(xs, u, log_prob, jnp.ones((3, len(x))), goes_on)
+
+
+@pytest.mark.parametrize(("goes_on", "wanted"), [(1.0, 2.0), (0.0, 1.25)])
+def test_an_expanded_critic_learns_the_imagined_returns(goes_on: float, wanted: float) -> None:
+    """Q = 1 / (1 - 1/2); with an end the mean of 1 + 1/2 and 1, as later decisions do not count.
+
+    The rewards of the batch, -(u - 0.5)^2, do not matter.
+    """
+    plain = learner(discount=0.5, alpha=1e-6, alpha_learning_rate=1e-9, expand=False)
+    sac = replace(plain, lookahead=Staying(plain.policy, goes_on), expand=True)
+    state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 1500)
+    assert value(sac, state) == pytest.approx(wanted, abs=0.05)
+    with pytest.raises(ValueError, match=r"policy_learner\.expand=true: needs"):
+        replace(plain, expand=True)
