@@ -26,6 +26,7 @@ PAGES = [
     "chapter5",
     "chapter6",
     "chapter7",
+    "lookahead",
     "robots",
     "speed",
 ]

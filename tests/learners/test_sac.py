@@ -21,7 +21,7 @@ B = 64
 
 def learner(**fields: Any) -> SAC:
     """A small learner with high rates."""
-    rates = dict.fromkeys(
+    rates: dict[str, Any] = dict.fromkeys(
         ("policy_learning_rate", "critic_learning_rate", "alpha_learning_rate"), 3e-3
     )
     return SAC(
@@ -154,7 +154,7 @@ def test_scaled_values_begin_at_zero_and_reach_large_returns() -> None:
 class Staying:
     """Three decisions in one state with reward 1; after the second the episode ends or not."""
 
-    policy: TanhGaussian
+    policy: Any
     goes_on: float
 
     def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
