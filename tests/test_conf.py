@@ -224,7 +224,7 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
     config.build(c)
     for algo in ("sac", "nn_mppi", "hybrid_deterministic", "hybrid_disagreement"):
         config.build(config.load(["settings=light", f"algo={algo}"]))
-    with pytest.raises(config.UsageError, match=r"it uses mbpo\.learner\.updates"):
+    with pytest.raises(config.UsageError, match=r"mbpo\.learner\.updates"):
         config.load(["settings=light", "policy_learner.updates=3"])
 
 

@@ -2,7 +2,7 @@
 
 from pages import chapter3, chapter6_values, chapter7_falls, hopper, results
 from pages.cited import Table, Text
-from pages.values import curve, number
+from pages.values import number
 
 PAGE = "README.md"
 
