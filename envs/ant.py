@@ -1,18 +1,22 @@
 """Ant: a four-legged robot runs forward.
 
     pybullet    r as in `locomotion`; alive: z > 0.26 m; terminates when not alive
-    gymnasium   r = 1[healthy] + dx/dt - 0.5 |a|^2, without the contact cost;
-                healthy: 0.2 <= z <= 1 m and all finite; terminates when not healthy
+    gymnasium   r = 1[healthy] + dx/dt - 0.5 |a|^2; terminates when not healthy;
+                healthy: 0.2 <= z <= 1 m and all finite
 
-o = (qpos without x and y, qvel) [27], without the 78 contact forces of Ant-v5; a: eight torques,
-as fractions of 150 N m; start: qpos ~ U(-0.1, 0.1) around the upright pose, qvel ~ 0.1 N(0, 1);
-a decision is 5 steps of 0.01 s.
+o = (qpos without x and y, qvel) [27]; a: eight torques, as fractions of 150 N m; start:
+qpos ~ U(-0.1, 0.1) around the upright pose, qvel ~ 0.1 N(0, 1); a decision is 5 steps of 0.01 s.
 
-    contacts=points     spheres at the ends of the capsules touch the floor, one where two meet;
-                        the same in all implementations of the physics, not that of Gymnasium
-    contacts=capsules   Gymnasium's: with native physics the state after a decision differs by
-                        5e-6, in contact or not. For a capsule within 30 degrees of the vertical
-                        MJX and Warp turn the friction pyramid, and rates differ by up to 2 rad/s.
+    points      spheres at the ends of the capsules touch the floor, one where two capsules meet:
+                not Gymnasium's contacts, but the same ones in MuJoCo C, MJX and Warp
+    capsules    Gymnasium's contacts. In MuJoCo C a decision ends in the state of Ant-v5 (5e-6).
+                Not in MJX and Warp, which turn the friction pyramid of a capsule that is less than
+                30 degrees from vertical: rates differ by up to 2 rad/s.
+
+The observation is that of Ant-v4; Ant-v5 adds 78 contact forces. The reward `gymnasium` is that of
+Ant-v5 without its contact cost 0.0005 |clip(cfrc_ext, -1, 1)|^2, on average 0.001 a decision.
+Gymnasium measures x in the last stage of the integrator, ours at the end of the step, so that
+dx/dt differs by 0.01 m/s (rms).
 
 Source: Schulman et al. 2015; parameters of Gymnasium's Ant-v5; reward of pybullet_envs, which the
 thesis uses (its body weighs 182 kg there because the importer ignores the densities).

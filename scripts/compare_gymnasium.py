@@ -1,0 +1,91 @@
+"""Walking robots against Gymnasium's: one decision from the same state, random actions.
+
+    python scripts/compare_gymnasium.py --physics native mjx --out docs/results/gymnasium.json
+
+Before every decision ours is set to the state of Gymnasium's, so that differences do not grow
+from decision to decision. `state` is the largest difference of an entry of qpos or qvel after the
+decision, `reward` the difference of the reward, which for Ant-v5 includes the contact cost.
+"""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from hybrid_rl.envs.ant import Ant
+from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.envs.hopper import Hopper
+from hybrid_rl.envs.walker2d import Walker2d
+
+WORLDS = {  # name -> environment, its fields, Gymnasium's
+    "half-cheetah": (HalfCheetah, {}, "HalfCheetah-v5"),
+    "hopper": (Hopper, {}, "Hopper-v5"),
+    "walker": (Walker2d, {}, "Walker2d-v5"),
+    "ant, points": (Ant, {"reward": "gymnasium"}, "Ant-v5"),
+    "ant, capsules": (Ant, {"reward": "gymnasium", "contacts": "capsules"}, "Ant-v5"),
+}
+EPISODES, LONGEST = 20, 100  # decisions
+
+
+def differences(name: str, physics: str) -> dict[str, Any]:
+    """One row: how far a decision differs."""
+    kind, fields, theirs_name = WORLDS[name]
+    ours, theirs = kind(physics, **fields), gymnasium.make(theirs_name).unwrapped
+    empty = ours.reset(jax.random.key(0))
+    reset, step = jax.jit(ours._body.reset), jax.jit(ours.step)
+    state, reward, cost, touching, ends = [], [], [], 0, 0
+    for episode in range(EPISODES):
+        theirs.reset(seed=episode)
+        rng = np.random.default_rng(episode)
+        for _ in range(LONGEST):
+            data = reset(jnp.asarray(theirs.data.qpos), jnp.asarray(theirs.data.qvel))
+            action = rng.uniform(-1, 1, ours.spec.act).astype(np.float32)
+            _, right, terminated, _, info = theirs.step(action)
+            after = step(empty.replace(data=data), action)
+            pairs = ((after.data.qpos, theirs.data.qpos), (after.data.qvel, theirs.data.qvel))
+            state.append(max(np.abs(np.asarray(a) - b).max() for a, b in pairs))
+            reward.append(abs(float(after.reward) - float(right)))
+            cost.append(-info.get("reward_contact", 0.0))
+            touching += theirs.data.ncon > 0
+            ends += bool(after.terminated) != terminated
+            if terminated:
+                break
+    theirs.close()
+    return {
+        "name": name,
+        "physics": physics,
+        "decisions": len(state),
+        "touching": int(touching),
+        "other_ends": int(ends),
+        "state_median": float(np.median(state)),
+        "state_99": float(np.quantile(state, 0.99)),
+        "state_max": float(np.max(state)),
+        "reward_mean": float(np.mean(reward)),
+        "reward_max": float(np.max(reward)),
+        "contact_cost_mean": float(np.mean(cost)),
+        "contact_cost_max": float(np.max(cost)),
+    }
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(description="Walking robots against Gymnasium's")
+    parser.add_argument("--physics", nargs="+", default=["native"])
+    parser.add_argument("--out", type=Path)
+    arguments = parser.parse_args()
+    rows = []
+    for physics in arguments.physics:
+        for name in WORLDS:
+            rows.append(differences(name, physics))
+            print(json.dumps(rows[-1]), flush=True)
+    if arguments.out:
+        arguments.out.write_text(json.dumps({"rows": rows}, indent=1) + "\n", encoding="ascii")
+
+
+if __name__ == "__main__":
+    main()
