@@ -1,4 +1,4 @@
-# make train    half-cheetah by settings=light; make train ARGS="task=cartpole": whatever ARGS says
+# make train    half-cheetah by settings=light, with its curve; make train ARGS="task=cartpole": whatever ARGS says
 # make test [ARGS="-k sac"]
 # Needs python3 >= 3.11; another one: make PYTHON=python3.12 ...
 

@@ -223,9 +223,9 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
     assert learner.lookahead.model.members == 3
     config.build(c)
     for algo in ("sac", "nn_mppi", "hybrid_deterministic", "hybrid_disagreement"):
-        c = config.load(["settings=light", f"algo={algo}"])
-        config.build(c)
-        assert (c.policy_learner.lookahead is None) == (algo == "sac")
+        config.build(config.load(["settings=light", f"algo={algo}"]))
+    with pytest.raises(config.UsageError, match=r"mbpo\.learner\.updates"):
+        config.load(["settings=light", "policy_learner.updates=3"])
 
 
 def test_settings_of_the_lookahead() -> None:

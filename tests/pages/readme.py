@@ -51,7 +51,6 @@ PLAIN = [
     # settings and versions
     "(Northwestern University, 2020)",
     "Python 3.11 to 3.13",
-    "60,000 decisions in about three minutes on two cores",
     "CUDA 13",
     "seeds 0 to 9",
     "seeds 0 to 2",
