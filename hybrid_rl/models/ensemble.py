@@ -91,20 +91,21 @@ class Ensemble:
         The states are divided equally among the elites, without them among the members; `key`
         decides which share each one gets.
         """
-        count = self.elites or self.members
-        order = jax.random.permutation(key, count)
+        count, weights = self.elites or self.members, params["weights"]
         if self.elites is not None:
-            order = params["elites"][order]
-        weights = jax.tree.map(lambda w: w[order], params["weights"])
+            weights = jax.tree.map(lambda w: w[params["elites"]], weights)
+        member_of = jax.random.permutation(key, count)  # of each share
+        share_of = jnp.argmax(member_of[:, None] == jnp.arange(count)[None], 0)  # of each member
         missing = -len(x) % count
 
-        def share(x: Array) -> Array:
-            return jnp.pad(x, ((0, missing), (0, 0))).reshape(count, -1, x.shape[1])
+        def shares(x: Array) -> Array:  # states are permuted: fewer numbers than weights
+            padded = jnp.pad(x, ((0, missing), (0, 0)))
+            return padded.reshape(count, -1, x.shape[1])[share_of]
 
         def one(weights: Any, x: Array, u: Array, noise: Array) -> Array:
             return self.model.draw({**params, "weights": weights}, x, u, noise, key)
 
-        drawn = jax.vmap(one)(weights, *map(share, (x, u, noise)))
+        drawn = jax.vmap(one)(weights, *map(shares, (x, u, noise)))[member_of]
         return drawn.reshape(-1, x.shape[1])[: len(x)]
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
