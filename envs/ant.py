@@ -97,6 +97,12 @@ class Ant:
         limits = jnp.asarray(model.jnt_range[joints], jnp.float32)
         return pybullet_reward(alive, speed, action, angle, velocity, limits)
 
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [27]."""
+        if self.reward == "gymnasium":
+            return ~((obs[0] >= 0.2) & (obs[0] <= 1.0))
+        return ~(obs[0] > 0.26)
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text("ant.xml")

@@ -71,6 +71,13 @@ class Hopper:
             reward = pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
         return _state(data, reward, ~alive, speed)
 
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [11]."""
+        z, pitch = obs[0], jnp.abs(obs[1])
+        if self.reward == "gymnasium":
+            return ~((z > 0.7) & (pitch < 0.2) & (jnp.abs(obs[1:]) < 100.0).all())
+        return ~((z > 0.8) & (pitch < 1.0))
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(ASSET)

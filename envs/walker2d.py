@@ -71,6 +71,11 @@ class Walker2d:
             reward = pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
         return _state(data, reward, ~alive, speed)
 
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [17]."""
+        highest = 2.0 if self.reward == "gymnasium" else jnp.inf
+        return ~((obs[0] > 0.8) & (obs[0] < highest) & (jnp.abs(obs[1]) < 1.0))
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(ASSET)

@@ -10,6 +10,8 @@ their initial weights.
 With `next_state` it is f(x, u, x'), of the true next state in the data and of the imagined one in a
 model: a reward for distance depends on both states, and from x and u alone the network would have
 to learn the dynamics again.
+
+Ends are learned as a second output, or known by the rule of a task, from its next observation.
 """
 
 from dataclasses import dataclass
@@ -24,6 +26,9 @@ from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
 
+CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
+
+
 @dataclass(frozen=True)
 class RewardNetwork:
     """A reward, and with `ends` the probability that the episode ends.
@@ -35,7 +40,8 @@ class RewardNetwork:
     hidden: tuple[int, ...] = (200, 200)
     activation: str = "relu"
     normalise: bool = True  # states by their running statistics
-    ends: bool = False  # also learn where episodes end
+    ends: bool = False  # also where episodes end
+    rule: Any = None  # an EndingEnv, whose rule gives the ends; others, and None: they are learned
     layer_norm: bool = False  # of every hidden layer, before its activation
     scale: bool = False  # targets by their running statistics
     members: int = 1  # networks, whose mean is used
@@ -48,8 +54,14 @@ class RewardNetwork:
         if not isinstance(self.members, int) or self.members < 1:
             raise ValueError(f"reward.members={self.members}: must be a whole number, 1 or more")
 
+    @property
+    def _known(self) -> bool:
+        """Whether ends are known."""
+        return self.ends and hasattr(self.rule, "ended")
+
     def _net(self) -> MLP:
-        return MLP(self.hidden, 1 + self.ends, self.activation, self.layer_norm)
+        out = 1 + (self.ends and not self._known)
+        return MLP(self.hidden, out, self.activation, self.layer_norm)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights and statistics. The key is consumed."""
@@ -77,9 +89,11 @@ class RewardNetwork:
     ) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
 
-        after: [n] the next state, which is used with `next_state`.
+        after: [n] the next state, which is used with `next_state` and with a rule.
         """
         rewards, logits = self._each(params, x, u, after)
+        if self._known:
+            return rewards.mean(), jnp.where(self.rule.ended(after), CERTAIN, -CERTAIN)
         return rewards.mean(), logits.mean() if self.ends else -jnp.inf
 
     def _each(
@@ -117,6 +131,6 @@ class RewardNetwork:
         if self.scale:
             error = error / params["target"].scale
         losses = 0.5 * error**2
-        if self.ends:
+        if self.ends and not self._known:
             losses = losses + jax.nn.softplus(logits) - ended * logits
         return losses.mean()

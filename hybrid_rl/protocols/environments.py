@@ -39,6 +39,13 @@ class RewardedEnv(Env, Protocol):
         """The reward [] of action u [m] at the observation x [o], which led to `after` [o]."""
 
 
+class EndingEnv(Env, Protocol):
+    """An environment whose observation shows where it terminates."""
+
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [o]."""
+
+
 class TrackingEnv(BalancedEnv, Protocol):
     """An environment whose observation contains a reference that the robot is to follow."""
 

@@ -85,7 +85,7 @@ def test_capsules_touch_as_those_of_gymnasium(theirs):
             obs, _, terminated, _, info = theirs.step(action)
             after = step(state.replace(data=ours._body.reset(qpos, qvel)), action)
             np.testing.assert_allclose(after.obs, obs, atol=1e-4)  # measured: 5e-6
-            assert bool(after.terminated) == terminated
+            assert bool(after.terminated) == terminated == bool(ours.ended(after.obs))
             speed = info["x_position"] / 0.05 - float(qpos[0]) / 0.05
             expected = 1.0 - terminated + speed - 0.5 * (action**2).sum()
             np.testing.assert_allclose(after.reward, expected, atol=1e-3)
@@ -122,7 +122,7 @@ def test_ant_terminates_below_the_height_limit(height, falling, ends):
     qpos, qvel = state.data.qpos.at[2].set(height), state.data.qvel.at[2].set(falling)
     data = state.data.replace(qpos=qpos, qvel=qvel)
     after = jitted(ant, "step")(state.replace(data=data), jnp.zeros(8))
-    assert bool(after.terminated) == ends
+    assert bool(after.terminated) == ends == bool(ant.ended(after.obs))
     angle, limits = after.data.qpos[7:], ant._body.model.jnt_range[1:]
     middle, half = limits.mean(1), (limits[:, 1] - limits[:, 0]) / 2
     at_limit = (np.abs((angle - middle) / half) > 0.99).sum()

@@ -180,7 +180,7 @@ def test_terminates_with_that_of_gymnasium(task):
     while not state.terminated:
         terminated = theirs.step(action)[2]
         state = step(state, action)
-        assert bool(state.terminated) == terminated
+        assert bool(state.terminated) == terminated == bool(ours.ended(state.obs))
         decisions += 1
     assert 5 < decisions < 200
 
@@ -204,7 +204,7 @@ def test_walker_is_healthy_where_that_of_gymnasium_is(z, pitch, ends):
     state = _set("walker2d", ours, ours.reset(jax.random.key(0)), qpos, qvel)
     after = jitted(ours, "step")(state, jnp.zeros(6))
     _, reward, terminated, *_ = theirs.step(np.zeros(6))
-    assert bool(after.terminated) == terminated == ends
+    assert bool(after.terminated) == terminated == ends == bool(ours.ended(after.obs))
     np.testing.assert_allclose(after.reward, float(reward), atol=1e-4)
 
 

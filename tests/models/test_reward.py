@@ -5,6 +5,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.models.reward import RewardNetwork
 from hybrid_rl.types import Spec
 
@@ -81,3 +83,20 @@ def test_the_next_state_is_an_input() -> None:
     hidden = np.maximum(inputs @ w["Dense_0"]["kernel"], 0)
     got = reward.outcome(params, X, U, after)[0]
     np.testing.assert_allclose(got, (hidden @ w["Dense_1"]["kernel"])[0], rtol=1e-3)
+
+
+def test_ends_by_the_rule_of_a_task() -> None:
+    """The rule decides by the next observation; nothing is learned about ends.
+
+    A task without a rule learns them.
+    """
+    env = Hopper(physics="native")
+    known = RewardNetwork(hidden=(8,), ends=True, rule=env)
+    params = known.init(jax.random.key(0), env.spec)
+    x, u = jnp.zeros(11), jnp.zeros(3)
+    for height, sign in ((0.69, 1), (0.71, -1)):
+        assert jnp.sign(known.outcome(params, x, u, x.at[0].set(height))[1]) == sign
+    losses = [known.loss(params, x, u, x, jnp.float32(1), jnp.float32(end)) for end in (0, 1)]
+    assert losses[0] == losses[1]
+    learned = RewardNetwork(hidden=(8,), ends=True, rule=HalfCheetah(physics="native"))
+    assert learned.init(jax.random.key(0), SPEC)["weights"]["params"]["Dense_1"]["bias"].size == 2
