@@ -25,7 +25,6 @@ from hybrid_rl.core import statistics
 from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
-
 CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
 
 
