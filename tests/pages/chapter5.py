@@ -1,9 +1,12 @@
 """docs/results/chapter5.md."""
 
+from typing import Any
+
 import numpy as np
 
 from pages.cited import Table, Text
 from pages.contacts import (
+    ALONE,
     ARRANGEMENTS,
     FIRST,
     MAPS,
@@ -23,26 +26,57 @@ from pages.contacts import (
     poses,
     seventh,
     sixth,
+    sooner,
     touched,
+    waits,
 )
 from pages.values import read
 
 PAGE = "docs/results/chapter5.md"
+PATHS = "informative paths"
 BEHIND = [-x for x in one(POSES, FIRST)["truth_behind"]["each"] if x < 0]
 LEARNED_MAPS = [label for label in read(SEVENTH)["methods"] if "learned" in label]
 ANGLES = [seventh(label, "angle")[0] for label in LEARNED_MAPS]
 WRONG = [100 * x for x in interval(one("sprk", "accelerometer")["false"]["wrong"]["each"])]
 SPEED = read("speed_contacts")
-RATES = {row["name"].split()[0]: row["rate"] for row in SPEED["tables"][0]["rows"]}
 SHARED = SPEED["shared_h100"]
+ON_MADE = ("MuJoCo, map made in MuJoCo", "MuJoCo, map of the formula", "map made in MuJoCo")
+FOUND = [seventh(label, "found at 130 s")[0] for label in (*LEARNED_MAPS, *ON_MADE)]
+OWN = one("sprk_57_own", "MuJoCo, map made in MuJoCo")
+MORE = one("fig_5_6_wrong", "Fourier, 0.1 instead of 0.02")["false"]
+
+
+def rate(trials: str, column: str) -> list[float]:
+    """A cell of the table of speed."""
+    tables = (SPEED["h100"] if "H100" in column else SPEED)["tables"]
+    task = "ergodic_mapping" if "mapping" in column else "ergodic_localisation"
+    (table,) = (table for table in tables if table["what"] == task)
+    (row,) = (
+        row
+        for row in table["rows"]
+        if row["name"] in (f"{trials} learner{s}, native" for s in ("", "s"))
+    )
+    return [row["rate"]]
+
+
+def return_ratio(false: dict[str, Any]) -> float:
+    """Time near false contacts over time elsewhere."""
+    return interval(false["returned"]["each"])[0] / interval(false["elsewhere"]["each"])[0]
+
+
 CITED = [
     Table(
-        "trials in one program | mapping on two cores of an AMD EPYC [decisions/s]",
-        lambda label, column: [RATES[label]],
+        "trials in one program, decisions/s | mapping, two cores of an AMD EPYC"
+        " | localising, the two cores, shared | mapping, one H100 | localising, one H100",
+        rate,
     ),
     Text(
         "20 trials made # (mapping) and # (localising)",
         [SHARED["ergodic_mapping"], SHARED["ergodic_localisation"]],
+    ),
+    Text(
+        "one trial made # to # decisions/s",
+        [pick(SPEED["localising_shared_each"]) for pick in (min, max)],
     ),
     Table(
         "20 trials of 60 s | all 3 objects at 20 s | all 3 at 60 s | outline covered at 20 s"
@@ -121,7 +155,28 @@ CITED = [
             for label in ("forget 0", "printed step", "printed step, forget 0", "5 modes")
         ],
     ),
+    Text(
+        "Informative paths find the pose in # of 20 trials, sooner than EER in # and sooner than "
+        "Fourier with the trace in # (p #)",
+        [
+            good(POSES, PATHS),
+            sooner(waits(ALONE[PATHS], PATHS), waits(POSES, "entropy"))[0],
+            *sooner(waits(ALONE[PATHS], PATHS), waits(POSES, FIRST)),
+        ],
+    ),
     Text("# [#, #]% of its readings are wrong", WRONG),
+    Text("# [#, #]% of all readings are wrong", [100 * x for x in interval(MORE["wrong"]["each"])]),
+    Text(
+        "returns only # and # times as often",
+        [return_ratio(MORE), return_ratio(one("sprk", "accelerometer")["false"])],
+    ),
+    Text("on each map: # to # of 20 trials", [min(FOUND), max(FOUND)]),
+    Text("on its own map has #;", seventh("MuJoCo, map made in MuJoCo", "found at 130 s")),
+    Text(
+        "it is # rad in MuJoCo and # rad with the formula",
+        [seventh(f"{world}map made in MuJoCo", "angle")[0] for world in ("MuJoCo, ", "")],
+    ),
+    Text("the same sign in # of 20 trials", [sum(x < 0 for x in OWN["signed_angle"])]),
     Text("between # and # rad", [min(ANGLES), max(ANGLES)]),
     Text(
         "contacts alone in # trials of 20",
@@ -151,10 +206,12 @@ PLAIN = [
     "s in the median, IoU",
     "at 60 s\n([sawyer",
     "programs shared, 20 trials",
-    "Not measured: 1 and 1,024 trials",
     "a resolution of 3 mm, at least -11.5 nat",
     "trials of 20",
     "p = 1/2, and the ergodic robots",
+    "With 0.1 instead of 0.02",
+    "five (0.1) and eight times",
+    "of 20 trials at 130 s",
     "20 trials (seeds 0\nto 19",
     "Settings were chosen on seeds 100 to 105",
     "float32, jax 0.11",
@@ -203,10 +260,12 @@ PLAIN = [
     "(KL) of 20 trials",
     "of 20 trials, whichever",
     "of 20 trials, by either",
+    "of 20. * Informative",
+    "of 20 trials, sooner",
+    "of 20 trials: this map",
     "of 20 (next table)",
     "of 20. Information",
     "of 20 trials only",
-    "of 20. The filter",
     "of 20. The controller",
     "of 20 are found at 40 s",
 ]

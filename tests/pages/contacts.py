@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from scipy.stats import binomtest
 
 from hybrid_rl.studies.curves import band, iqm
 from pages.values import read
@@ -11,6 +12,13 @@ from pages.values import read
 MAPS, POSES = "fig_5_5_mapping", "fig_5_5_localisation"
 SEVENTH, ROWS = "fig_5_7", "fig_5_2_rows"
 FIRST = "Fourier trace"
+ALONE = {  # row -> its own file
+    "informative paths": "fig_5_5_informative",
+    "Fourier, 0.1 instead of 0.02": "fig_5_6_wrong",
+    "MuJoCo, map made in MuJoCo": "sprk_57_own",
+    "MuJoCo, map of the formula": "sprk_57",
+    "map made in MuJoCo": "sprk_57",
+}
 ARRANGEMENTS = ("first", "second", "third")
 LEARNED = {  # row -> file and its label
     "learned map, default: trace": ("fig_5_4_learned", "trace"),
@@ -54,7 +62,7 @@ def touched(file: str, label: str, seconds: float) -> list[float]:
     return [int((each[:, at(file, seconds)] == MOST[file]).sum()), len(each)]
 
 
-MOST = {MAPS: 3, ROWS: 3, "fig_5_6": 3, "sprk": 3}
+MOST = {MAPS: 3, ROWS: 3, "fig_5_6": 3, "fig_5_6_wrong": 3, "sprk": 3}
 
 
 def over_time(file: str, label: str, name: str, seconds: float) -> list[float]:
@@ -85,7 +93,7 @@ def mapped(file: str, end: float) -> Callable[[str, str], list[float]]:
 
 def sixth(label: str, column: str) -> list[float]:
     """Cells of figure 5-6's table."""
-    file = "sprk" if label.startswith("MuJoCo") else "fig_5_6"
+    file = "sprk" if label.startswith("MuJoCo") else ALONE.get(label, "fig_5_6")
     label = label.removeprefix("MuJoCo, ")
     names = {"rejected": "rejected", "return": "returned", "elsewhere": "elsewhere"}
     if column == "false contacts a trial":
@@ -106,10 +114,9 @@ def found(file: str, label: str, column: str, early: float, end: float) -> list[
     if "stuck" in column:
         return [sum(numbers["each"]["stuck"])]
     if "seconds" in column:
-        each = [np.inf if wait is None else wait for wait in numbers["found"]["each"]]
-        return [float(np.median(each))]
+        return [float(np.median(waits(file, label)))]
     if column.startswith("p "):
-        return [numbers["found"]["against_first_run"]["p"]]
+        return [sooner(waits(file, label), waits(POSES, FIRST))[-1]]
     seconds = early if f"{early:g} s" in column else end
     position, angle = (
         np.array(numbers["each"][name])[:, at(file, seconds)] for name in ("position", "angle")
@@ -117,9 +124,21 @@ def found(file: str, label: str, column: str, early: float, end: float) -> list[
     return [int(((position < 0.03) & (angle < 0.1)).sum())]
 
 
+def waits(file: str, label: str) -> np.ndarray:
+    """[S] seconds until found; infinite if never."""
+    each = one(file, label)["found"]["each"]
+    return np.array([np.inf if wait is None else wait for wait in each])
+
+
+def sooner(a: np.ndarray, b: np.ndarray) -> list[float]:
+    """Trials in which a is smaller, and p of the sign test."""
+    less, more = int((a < b).sum()), int((a > b).sum())
+    return [less, float(binomtest(less, less + more).pvalue)]
+
+
 def poses(file: str, early: float, end: float) -> Callable[[str, str], list[float]]:
-    """Cells of a table of poses, of one file."""
-    return lambda label, column: found(file, label, column, early, end)
+    """Cells of a table of poses, of one file or the row's own."""
+    return lambda label, column: found(ALONE.get(label, file), label, column, early, end)
 
 
 def learned(label: str, column: str) -> list[float]:
@@ -129,10 +148,7 @@ def learned(label: str, column: str) -> list[float]:
 
 def seventh(label: str, column: str) -> list[float]:
     """Cells of figure 5-7's table."""
-    file = SEVENTH
-    if "formula" in label or "made in MuJoCo" in label:
-        file = "sprk_57"
-    return found(file, label, column, 40.0, 130.0)
+    return poses(SEVENTH, 40.0, 130.0)(label, column)
 
 
 def entropy(label: str, column: str) -> list[float]:
@@ -148,7 +164,7 @@ def arranged(label: str, column: str) -> list[float]:
 
 def good(file: str, label: str) -> float:
     """Trials within 3 cm and 0.1 rad at 40 s."""
-    return found(file, label, "at 40 s", 20.0, 40.0)[0]
+    return poses(file, 20.0, 40.0)(label, "at 40 s")[0]
 
 
 def median_iou(label: str) -> float:
