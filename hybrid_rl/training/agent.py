@@ -233,7 +233,7 @@ class Agent:
             @trace_once
             def update(state: Any, k: Array, count: int = count, one: Any = one) -> Any:
                 pairs = jax.random.split(k, (count, 2))
-                state, each = jax.lax.scan(one, state, pairs, unroll=1)
+                state, each = jax.lax.scan(one, state, pairs)
                 return state, jax.tree.map(lambda m: m[-1], each)
 
             nothing = _zeros(jax.eval_shape(update, states[name], k)[1])
