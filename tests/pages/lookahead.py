@@ -27,6 +27,16 @@ def parts(label: str, column: str) -> list[float]:
     return [float(kind[column]())]
 
 
+def signal(label: str, column: str) -> list[float]:
+    """A cell of the table of the agreement signal."""
+    metric = {
+        "plain": "planner/mode_insertion_gradient",
+        "per unit of variance": "planner/insertion_per_variance",
+        "variance": "planner/policy_variance",
+    }[column]
+    return curve("lookahead_agreement", "hybrid_stochastic", metric).at(number(label))
+
+
 CHEETAH, WALKER = line("half-cheetah"), line("walker2d")
 CITED = [
     Table(
@@ -46,6 +56,7 @@ CITED = [
         [float(WALKER.seeds(40_000).min()), float(WALKER.seeds(40_000).max())],
     ),
     Table("at 10,000 decisions | mean return | lowest seed | highest seed", parts),
+    Table("half-cheetah | plain | per unit of variance | variance", signal),
 ]
 PLAIN = [
     # settings, and where the text points at a decision

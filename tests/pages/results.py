@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from pages.cited import Table, Text
-from pages.values import curve, number, p_value, read, returns
+from pages.values import curve, number, p_value, read
 
 PAGE = "docs/results/README.md"
 FILE = "sac_beside_sb3"
