@@ -82,11 +82,10 @@ class Ant:
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, STEPS)
         speed = (data.qpos[0] - state.data.qpos[0]) / DT
+        alive = ~self.ended(data.qpos[2:])
         if self.reward == "gymnasium":
-            alive = (data.qpos[2] >= 0.2) & (data.qpos[2] <= 1.0)
             reward = alive + speed - 0.5 * (action**2).sum()
         else:
-            alive = data.qpos[2] > 0.26
             reward = self._pybullet(data, action, alive, speed)
         return _state(data, reward, ~alive, speed)
 
@@ -98,7 +97,7 @@ class Ant:
         return pybullet_reward(alive, speed, action, angle, velocity, limits)
 
     def ended(self, obs: Array) -> Array:
-        """Whether [] an episode terminates at obs [27]."""
+        """Whether [] an episode terminates at obs [27], of which it needs the height."""
         if self.reward == "gymnasium":
             return ~((obs[0] >= 0.2) & (obs[0] <= 1.0))
         return ~(obs[0] > 0.26)

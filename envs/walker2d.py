@@ -62,9 +62,8 @@ class Walker2d:
         action = jnp.clip(action, -1.0, 1.0)
         data = self._body.step(state.data, action, STEPS)
         speed = (data.qpos[0] - state.data.qpos[0]) / DT
-        alive = (data.qpos[1] > 0.8) & (jnp.abs(data.qpos[2]) < 1.0)
+        alive = ~self.ended(data.qpos[1:])
         if self.reward == "gymnasium":
-            alive &= data.qpos[1] < 2.0
             reward = alive + speed - 0.001 * (action**2).sum()
         else:
             limits = jnp.asarray(self._body.model.jnt_range[3:], jnp.float32)
@@ -72,7 +71,7 @@ class Walker2d:
         return _state(data, reward, ~alive, speed)
 
     def ended(self, obs: Array) -> Array:
-        """Whether [] an episode terminates at obs [17]."""
+        """Whether [] an episode terminates at obs [17], of which it needs height and pitch."""
         highest = 2.0 if self.reward == "gymnasium" else jnp.inf
         return ~((obs[0] > 0.8) & (obs[0] < highest) & (jnp.abs(obs[1]) < 1.0))
 

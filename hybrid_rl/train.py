@@ -73,11 +73,11 @@ def _curve(run_dir: Path) -> None:
         (line,) = learning_curves.curves(run_dir, EVALUATION)
     except UsageError:  # there are none
         return
-    if len(line.x) < CURVE:
+    known = np.isfinite(line.iqm)
+    if known.sum() < CURVE:
         return
     save(*learning_curves.figure(run_dir, EVALUATION), run_dir / "curve.png")
     title = f"{learning_curves.LABELS[EVALUATION]} ({run_dir / 'curve.png'})"
-    known = np.isfinite(line.iqm)
     print(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))
 
 

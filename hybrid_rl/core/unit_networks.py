@@ -70,7 +70,8 @@ def init(net: UnitNet, key: Array, size: int) -> dict[str, Any]:
 def apply(net: UnitNet, params: dict[str, Any], x: Array) -> Array:
     """Outputs [..., out] at x [..., d], by the running statistics."""
     read = {"params": params["weights"], "batch_stats": params["statistics"]}
-    return net.apply(read, x, False)  # type: ignore[return-value]
+    y: Any = net.apply(read, x, False)
+    return y
 
 
 def apply_in_batch(net: UnitNet, params: dict[str, Any], x: Array) -> tuple[Array, dict[str, Any]]:
