@@ -24,7 +24,6 @@ from hybrid_rl.run import folder as run_folder
 from hybrid_rl.studies.curves import curves
 from hybrid_rl.training.rollout import evaluation_keys
 
-pytestmark = pytest.mark.xdist_group("commands")
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}
 NAME = re.compile(r"(train|eval|model|sac|planner|perf|world)/[a-z_]+")
 

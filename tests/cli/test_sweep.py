@@ -10,7 +10,6 @@ import time
 import pytest
 from tiny import TINY, call_train
 
-pytestmark = pytest.mark.xdist_group("sweep")
 SHORT = [*TINY, "algo=sac", "total_steps=200", "eval_every=200", "checkpoint_every=200"]
 
 
