@@ -14,7 +14,6 @@ from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
 
-
 MAINS = {
     "demonstrate": demonstrate.main,
     "evaluate": evaluate.main,
