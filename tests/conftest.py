@@ -12,13 +12,15 @@ from pathlib import Path
 import pytest
 
 CACHE = Path(__file__).resolve().parents[1] / ".cache" / "jax"
-# A third less to compile, same mathematics. One part per program: to split it costs more than
-# a second thread saves, since every core has a worker.
-FLAGS = ["--xla_backend_optimization_level=0", "--xla_cpu_parallel_codegen_split_count=1"]
-if version("jaxlib").startswith("0.10."):  # later releases end the process at this flag
+FLAGS = ["--xla_backend_optimization_level=0"]  # a third less to compile, same mathematics
+if version("jaxlib").startswith("0.10."):  # later releases end the process at flags they lack
     # The emitters would compute the frames of a long chain of bodies again and again: MJX's
-    # kinematics of an arm took 6 s instead of 2 ms.
-    FLAGS.append("--xla_cpu_use_fusion_emitters=false")
+    # kinematics of an arm took 6 s instead of 2 ms. Parts of a program compile in parallel, at
+    # a tenth more time in all, and every core has a worker already.
+    FLAGS += [
+        "--xla_cpu_use_fusion_emitters=false",
+        "--xla_cpu_parallel_codegen_split_count=1",
+    ]
 SETTINGS = {
     "JAX_PLATFORMS": "cpu",
     "JAX_NUMPY_RANK_PROMOTION": "raise",
@@ -32,7 +34,7 @@ SETTINGS = {
 for name, value in SETTINGS.items():
     os.environ.setdefault(name, value)
 
-gc.set_threshold(50_000, 50, 50)  # tracing makes many objects that live as long as the worker
+gc.set_threshold(50_000, 50, 50)  # tracing makes many objects that stay
 
 SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
     f"{task}-mjx"
@@ -63,6 +65,13 @@ def pytest_collection_modifyitems(config, items):
     slow = [item for item in items if any(name in item.nodeid for name in SLOW)]
     config.hook.pytest_deselected(items=slow)
     items[:] = [item for item in items if item not in slow]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def frozen():
+    """What the files before this one left is not searched for garbage again."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture
