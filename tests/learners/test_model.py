@@ -45,8 +45,12 @@ def trained(learner: ModelLearner, steps: int, batch: object = draw) -> Params:
         return learner.update(state, Params(), batch(key), key)[0], None
 
     keys = jax.random.split(jax.random.key(1), steps)
-    first = learner.init(jax.random.key(0), SPEC)
-    return Params(**learner.params(jax.jit(lambda s: jax.lax.scan(one, s, keys)[0])(first)))
+
+    @jax.jit
+    def run() -> object:
+        return jax.lax.scan(one, learner.init(jax.random.key(0), SPEC), keys)[0]
+
+    return Params(**learner.params(run()))
 
 
 def test_model_and_reward_are_learned() -> None:
@@ -54,11 +58,11 @@ def test_model_and_reward_are_learned() -> None:
     model, reward = Gaussian(hidden=(64,), activation="silu"), RewardNetwork(hidden=(64,))
     params = trained(ModelLearner(model, reward), 4000)
     test = draw(jax.random.key(9), 1000)
-    ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
+    ahead = jax.jit(jax.vmap(model.step, (None, 0, 0)))(params.model, test.obs, test.action)
     error = jnp.abs(ahead - test.next_obs).mean(0)
     change = jnp.abs(test.next_obs - test.obs).mean(0)
     assert (np.asarray(error) < 0.1 * np.asarray(change)).all()
-    got = jax.vmap(reward.outcome, (None, 0, 0, 0))(
+    got = jax.jit(jax.vmap(reward.outcome, (None, 0, 0, 0)))(
         params.reward, test.obs, test.action, test.next_obs
     )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05
@@ -146,7 +150,7 @@ def test_mean_and_standard_deviation_are_learned() -> None:
     loss = np.asarray(metrics["model/loss"])
     assert loss[-100:].mean() < loss[:100].mean() - 0.5
     test = draw_noisy(jax.random.key(9), 500)
-    ahead = jax.vmap(model.step, (None, 0, 0))(params, test.obs, test.action)
+    ahead = jax.jit(jax.vmap(model.step, (None, 0, 0)))(params, test.obs, test.action)
     wanted = test.obs + jnp.concatenate([0.5 * test.obs[:, 1:], test.action], 1)
     assert float(jnp.sqrt(jnp.mean((ahead - wanted) ** 2))) < 0.03
     std = jax.vmap(lambda x: model.std(params, x) * params["change"].std)(test.obs)
@@ -173,10 +177,10 @@ def test_direct_prediction_and_scaled_rewards_are_learned() -> None:
     reward = RewardNetwork(hidden=(64,), activation="silu", scale=True, layer_norm=True)
     params = trained(ModelLearner(model, reward, weight_decay=1e-4), 1000, draw_linear)
     test = draw_linear(jax.random.key(9), 500)
-    ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
+    ahead = jax.jit(jax.vmap(model.step, (None, 0, 0)))(params.model, test.obs, test.action)
     error = np.abs(ahead - test.next_obs).mean(0) / SCALE
     assert (error < 0.03).all()
-    got = jax.vmap(reward.outcome, (None, 0, 0, 0))(
+    got = jax.jit(jax.vmap(reward.outcome, (None, 0, 0, 0)))(
         params.reward, test.obs, test.action, test.next_obs
     )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05 * 80
