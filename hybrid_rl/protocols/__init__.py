@@ -9,6 +9,7 @@ from hybrid_rl.protocols.control import (
     Objective,
     PathTarget,
     Proposal,
+    ShapingProposal,
     Staged,
     Target,
 )
@@ -41,6 +42,7 @@ from hybrid_rl.protocols.learned import (
     Trainable,
     Uncertain,
     UnsquashedPolicy,
+    WorldModel,
 )
 from hybrid_rl.protocols.learning import (
     Demonstrations,
@@ -81,6 +83,7 @@ __all__ = [
     "Proposal",
     "Reward",
     "RewardedEnv",
+    "ShapingProposal",
     "StabilizingPolicy",
     "Staged",
     "Target",
@@ -89,4 +92,5 @@ __all__ = [
     "Uncertain",
     "UniformLearner",
     "UnsquashedPolicy",
+    "WorldModel",
 ]
