@@ -20,7 +20,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.adjoint import scan_unroll
-from hybrid_rl.types import Path
+from hybrid_rl.types import EnvState, Path
 
 
 class Samples(NamedTuple):
@@ -59,7 +59,7 @@ def imagine(
         forward,
         (start, carries),
         (plan, jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), noise)),
-        unroll=scan_unroll(len(plan)),
+        unroll=1 if isinstance(x, EnvState) else scan_unroll(len(plan)),  # physics compiles slowly
     )
     xs = jax.tree.map(
         lambda first, rest: jnp.concatenate([first[None], rest]).swapaxes(0, 1), start, xs

@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.protocols import Env
+from hybrid_rl.protocols import Simulator
 from hybrid_rl.types import EnvState, Params, Spec
 
 
@@ -20,7 +20,7 @@ from hybrid_rl.types import EnvState, Params, Spec
 class World:
     """The task's physics, as `world` steps it, with any of its implementations."""
 
-    world: Env
+    world: Simulator
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
         """No parameters."""
@@ -40,8 +40,8 @@ class World:
         """The observation [o] itself, for policies and critics."""
         return obs
 
-    def step(self, params: Any, x: EnvState, u: Array) -> EnvState:
-        """The next state; x itself once the episode is over.
+    def step(self, params: Any, x: Any, u: Array) -> Any:
+        """The EnvState after action u [m] at the EnvState x; x itself once the episode is over.
 
         Raises:
             ValueError: for an observation instead of a state.

@@ -20,6 +20,7 @@ from hybrid_rl.protocols.environments import (
     EndingEnv,
     Env,
     RewardedEnv,
+    Simulator,
     TrackingEnv,
 )
 from hybrid_rl.protocols.learned import (
@@ -84,6 +85,7 @@ __all__ = [
     "Reward",
     "RewardedEnv",
     "ShapingProposal",
+    "Simulator",
     "StabilizingPolicy",
     "Staged",
     "Target",

@@ -38,6 +38,7 @@ def advance(
 
     All N environments run in parallel; one that is done keeps its last state.
     """
+
     def unfinished(carry: tuple) -> Array:
         return (carry[0] < rounds) & ~jnp.all(carry[1].done)
 
