@@ -53,7 +53,8 @@ def by_hand(state: EnvState, u: float) -> list[float]:
 
 def test_plans_are_those_of_mujoco() -> None:
     """Action and planned return, from a state whose velocities are not zero."""
-    world = Episode(Cartpole(physics="native"), steps=100, action_repeat=2)
+    env: Any = Cartpole(physics="native")
+    world = Episode(env, steps=100, action_repeat=2)
     state = world.step(world.reset(jax.random.key(0)), jnp.full(1, 0.7))
     controller = SamplingController(
         World(world), WorldReturn(GAMMA), Grid(), horizon=T, samples=K, temperature=LAMBDA
