@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tiny import run
 
+pytestmark = pytest.mark.usefixtures("rolled")
 RANDOM = 400  # decisions: two episodes
 MODEL = [
     "model=gaussian",
