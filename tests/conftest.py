@@ -74,17 +74,6 @@ def frozen():
     gc.freeze()
 
 
-@pytest.fixture(scope="module")
-def rolled():
-    """Loops over a horizon are not unrolled, so that a long one compiles as fast as a short one."""
-    from hybrid_rl.core import adjoint, sampling
-
-    with pytest.MonkeyPatch.context() as patch:
-        for module in (adjoint, sampling):
-            patch.setattr(module, "scan_unroll", lambda length: 1)
-        yield
-
-
 @pytest.fixture
 def can_draw():
     """Whether this machine can draw; if not, it names the packages to install."""
