@@ -1,5 +1,7 @@
 """The model learner on environments with known dynamics and rewards."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -29,6 +31,7 @@ def pay(x: Array, u: Array) -> Array:
     return jnp.cos(x[0]) - 0.1 * u[0] ** 2
 
 
+@partial(jax.jit, static_argnums=1)
 def draw(key: Array, size: int = 128) -> Batch:
     """Random states and actions; the next action is the same."""
     of_x, of_u = jax.random.split(key)
@@ -123,6 +126,7 @@ def noise(x: Array) -> Array:
     return 0.02 + 0.09 * (1 + x[:, :1]) * jnp.ones(2)[None]
 
 
+@partial(jax.jit, static_argnums=1)
 def draw_noisy(key: Array, size: int = 200) -> Batch:
     """x' = x + (0.5 x_1, u) + noise(x) e, for x and u U(-1, 1)."""
     of_x, of_u, of_e = jax.random.split(key, 3)
@@ -163,6 +167,7 @@ def test_bad_rates_are_refused() -> None:
         ModelLearner(Gaussian(), learning_rate=0.0)
 
 
+@partial(jax.jit, static_argnums=1)
 def draw_linear(key: Array, size: int = 128) -> Batch:
     """x' = x + (0.1 x_1, 0.1 u), in units that differ; reward 500 + 80 x_0."""
     batch = draw(key, size)
@@ -212,7 +217,7 @@ HELD = ModelLearner(
     batch_size=128,
     holdout=0.2,
 )
-UPDATE = jax.jit(HELD.update)
+INIT, UPDATE = jax.jit(lambda key: HELD.init(key, SPEC)), jax.jit(HELD.update)
 
 
 def test_held_out_decisions_are_not_learned_from() -> None:
@@ -223,7 +228,7 @@ def test_held_out_decisions_are_not_learned_from() -> None:
     far = batch._replace(
         reward=batch.reward + 5 * held, next_obs=batch.next_obs + 9.0 * held[:, None]
     )
-    first = HELD.init(key, SPEC)
+    first = INIT(key)
     states, losses = [], []
     for given in (batch, far, batch._replace(reward=batch.reward + 5 * ~held)):
         state, metrics = UPDATE(first, Params(), given, key)
@@ -242,7 +247,7 @@ def test_held_out_decisions_are_not_learned_from() -> None:
 def test_held_out_losses_are_a_running_mean_that_ranks_the_members() -> None:
     """Against the members' own losses on the decisions that the hash selects."""
     loss = jax.jit(Gaussian(hidden=(8,)).loss)
-    state, want = HELD.init(jax.random.key(0), SPEC), np.zeros(3)
+    state, want = INIT(jax.random.key(0)), np.zeros(3)
     for n in range(1, 4):
         batch = draw(jax.random.key(n), 3 * 128)
         state, metrics = UPDATE(state, Params(), batch, jax.random.key(0))
