@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import evaluate, export
+from hybrid_rl import evaluate, export, pretrained
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
@@ -78,7 +78,7 @@ def trained(learned, monkeypatch):
     """A run of them."""
     modes = {"policy": PolicyController(POLICY, explore=False), "full": PLANNER.greedy()}
     run = evaluate.Trained("pendulum", Episode(Pendulum()), modes, learned, (3, 4), 7000, ())
-    monkeypatch.setattr(evaluate, "load", lambda folder: run)
+    monkeypatch.setattr(pretrained, "load", lambda folder: run)
     return run
 
 

@@ -13,6 +13,13 @@ def lift(model: Model | None, params: PyTree, obs: Array) -> Array:
     return obs if model is None else model.lift(params, obs)
 
 
+def is_identity(model: Model | None, params: PyTree, size: int) -> bool:
+    """Whether the planning state of an observation [size] is the observation."""
+    obs = jnp.arange(1.0, size + 1)
+    lifted = lift(model, params, obs)
+    return lifted.shape == obs.shape and bool((lifted == obs).all())
+
+
 def lifted_batch(model: Model | None, params: PyTree, batch: Batch) -> Batch:
     """`batch` with planning states [B, n] instead of its observations [B, o]."""
     if model is None:
