@@ -6,7 +6,7 @@ PYTHON ?= python3
 WORKERS ?= 2
 RUN := .venv/bin/python -m
 
-.PHONY: setup train test lint format lock clean
+.PHONY: setup train test lint format lock dist clean
 
 setup: .venv/.installed
 
@@ -35,6 +35,11 @@ lock: setup
 	$(RUN) uv pip compile --universal --python-version 3.11 --fork-strategy fewest \
 	  --generate-hashes --extra dev --default-index https://pypi.org/simple --upgrade \
 	  --custom-compile-command "make lock" --quiet --output-file requirements.lock pyproject.toml
+
+# The sdist, and the wheel that is built from it, in dist/.
+dist: setup
+	rm -rf dist
+	$(RUN) build --no-isolation --outdir dist
 
 clean:
 	rm -rf .venv .cache build dist .pytest_cache .ruff_cache
