@@ -30,10 +30,14 @@ PAGES = [
     "robots",
     "speed",
 ]
-WITH_COMMANDS = [
+WITH_COMMANDS = [  # those of the atlas are copied from other pages
     "README.md",
     "CONTRIBUTING.md",
-    *(str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").rglob("*.md"))),
+    *(
+        str(path.relative_to(ROOT))
+        for path in sorted((ROOT / "docs").rglob("*.md"))
+        if path.name != "atlas.md"
+    ),
 ]
 LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
 
