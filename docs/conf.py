@@ -2,6 +2,7 @@
 
 import inspect
 import re
+from pathlib import Path
 
 import hybrid_rl
 
@@ -24,7 +25,8 @@ myst_heading_anchors = 4  # GitHub's anchors, as the links of the pages have the
 myst_enable_extensions = ["dollarmath"]
 nb_execution_mode = "cache"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 180  # [s]
+nb_execution_timeout = 600  # [s] a cell, on a busy machine
+nb_execution_cache_path = str(Path(__file__).parents[1] / "build" / "docs" / "notebooks")
 
 autodoc_member_order = "bysource"
 autodoc_class_signature = "separated"

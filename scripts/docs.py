@@ -52,8 +52,10 @@ TREE = """
 PAGES
 ```
 """
+NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
 PAGES = {
     "Start": ["Getting started <self>", "docs/concepts", "docs/howto", "docs/faq", "CONTRIBUTING"],
+    "Notebooks": NOTEBOOKS,
     "Methods": ["docs/methods", "All methods <methods/index>"],
     "Results": ["docs/atlas", "docs/results/README"],
     "Reference": ["Reference <reference/index>", "CHANGELOG"],

@@ -1,11 +1,14 @@
 """The sources of the documentation site: every method has a section, the core alone plans."""
 
+import json
 import re
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
 
 def test_every_method_has_one_section():
@@ -31,3 +34,17 @@ def test_the_page_of_concepts_plans_with_the_adjoint_core():
     aims = np.concatenate([np.tile([1.0, 0.0], horizon + 1), np.zeros(horizon)])
     _, [least], *_ = np.linalg.lstsq(rows, aims, rcond=None)
     np.testing.assert_allclose(-names["J"](names["path"]), least, rtol=0.01)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_are_kept_without_outputs_and_name_what_exists(path):
+    """`make docs` runs them."""
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    code = [cell for cell in cells if cell["cell_type"] == "code"]
+    assert all(not cell["outputs"] and cell["execution_count"] is None for cell in code)
+    text = "".join("".join(cell["source"]) + "\n" for cell in cells)
+    experiments = ROOT / "conf" / "experiment"
+    for name in re.findall(r"experiment=([\w/]+)", text):
+        assert (experiments / f"{name}.yaml").is_file(), name
+    for link in re.findall(r"\]\(([^)#]+\.md)", text):
+        assert (path.parent / link).is_file(), link
