@@ -6,7 +6,11 @@ PYTHON ?= python3
 WORKERS ?= 2
 RUN := .venv/bin/python -m
 
+<<<<<<< HEAD
 .PHONY: setup train test lint format docs lock clean
+=======
+.PHONY: setup train test lint format lock dist clean
+>>>>>>> main
 
 setup: .venv/.installed
 
@@ -48,6 +52,11 @@ DOCS := import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["proje
 lock: setup
 	$(LOCK) --extra dev --output-file requirements.lock pyproject.toml
 	.venv/bin/python -c '$(DOCS)' | $(LOCK) --constraint requirements.lock --output-file docs/requirements.lock -
+
+# The sdist, and the wheel that is built from it, in dist/.
+dist: setup
+	rm -rf dist
+	$(RUN) build --no-isolation --outdir dist
 
 clean:
 	rm -rf .venv .venv-docs .cache build dist .pytest_cache .ruff_cache

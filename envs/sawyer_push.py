@@ -1,6 +1,8 @@
 """Sawyer pushes a block to a target on a table.
 
-    r = -5 |b - t| - 10 |e - b| - 0.01 |a|^2,   success: |b - t| < 0.05 m
+    thesis  r = -5 |b - t| - 10 |e - b| - 0.01 |a|^2
+    code    r = -1.25 |b - t| - |e - b| - 0.01 |a|^2
+    success: |b - t| < 0.05 m
 
 e, b, t: tip of the rod, block, target in the plane of the table [m]; o = scale (b - e, b - t) [4];
 a: velocity of the tip along x and y, as fractions of 0.15 m/s. The command is low-pass filtered,
@@ -11,7 +13,8 @@ small rotation; the target lies in a box, at a minimum distance from the block. 
 success.
 
 Source: thesis section 3.4 and Appendix B; state, rate, filter, workspace, success and the reward in
-metres from the author's HybridLearning, experiments/sawyer_pusher.py. The initial positions of
+metres from the author's HybridLearning, experiments/sawyer_pusher.py; reward=code: weights of his
+earlier code for the same robot, as we read its two distances. The initial positions of
 block and target are our choice.
 """
 
@@ -24,6 +27,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.options import one_of
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "sawyer_push.xml"
@@ -34,6 +38,7 @@ HOME = (-0.2353359, -0.4019111, 0.0032168, 1.7513965, -0.0631270, 0.1595469, 1.5
 HEIGHT = -0.154  # [m] of the block's centre
 TRIES = 32  # candidates from which block and target are chosen
 CLEARANCE = 0.06  # [m] between the rod and the block's centre at the start
+WEIGHTS = {"thesis": (5.0, 10.0), "code": (1.25, 1.0)}  # [1/m] of |b - t| and |e - b|
 TIP = Chain(ASSET, "tip")
 
 
@@ -42,6 +47,7 @@ class SawyerPush:
     """Sawyer pushes a block; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
+    reward: str = "thesis"  # or code
     state_scale: float = 10.0  # of the observation [1/m]
     speed: float = 0.15  # [m/s] of the tip at a = 1
     smoothing: float = 0.8  # weight of the previous command in the filter; 0: no filter
@@ -61,6 +67,7 @@ class SawyerPush:
 
     def __post_init__(self) -> None:
         check(self.physics)
+        one_of("reward", self.reward, tuple(WEIGHTS))
         for name in ("low", "high", "block", "target_low", "target_high"):
             pair = tuple(getattr(self, name))
             if len(pair) != 2:
@@ -129,7 +136,9 @@ class SawyerPush:
         tip, block = TIP.pose(data.qpos)[0][:2], data.qpos[7:9]
         reach, left = block - tip, block - info["target"]
         distance = jnp.sqrt((left**2).sum())
-        reward = -5 * distance - 10 * jnp.sqrt((reach**2).sum()) - 0.01 * (action**2).sum()
+        home, near = WEIGHTS[self.reward]
+        away = jnp.sqrt((reach**2).sum())
+        reward = -home * distance - near * away - 0.01 * (action**2).sum()
         success = distance < self.success_distance
         obs = self.state_scale * jnp.concatenate((reach, left))
         metrics = {"success": success.astype(jnp.float32), "distance": distance}

@@ -47,7 +47,7 @@ SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
-    *("matmul_precision", "distributed"),
+    *("matmul_precision", "distributed", "logger"),
 )
 
 NEEDS = {  # words of a part's message -> a method of the environments that it accepts

@@ -70,13 +70,21 @@ class Trained:
         Raises:
             UsageError: for a seed or a mode that the run does not have.
         """
+        return TrainedPolicy(self.episode.spec, *self.learner(seed, mode), key)
+
+    def learner(self, seed: int | None = None, mode: str = "full") -> tuple[Controller, Params]:
+        """The controller of `mode` and the parameters of the learner of `seed`; None: the first.
+
+        Raises:
+            UsageError: for a seed or a mode that the run does not have.
+        """
         seed = self.seeds[0] if seed is None else seed
         if seed not in self.seeds:
             raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
         if mode not in self.controllers:
             raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
         params: Any = jax.tree.map(lambda leaf: leaf[self.seeds.index(seed)], self.params)
-        return TrainedPolicy(self.episode.spec, self.controllers[mode], params, key)
+        return self.controllers[mode], params
 
 
 class TrainedPolicy:

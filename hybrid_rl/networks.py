@@ -6,12 +6,15 @@ have a third of the variance of LeCun's.
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from flax import linen as nn
 from jax import Array
+
+from hybrid_rl.core import statistics
 
 ACTIVATIONS = {
     "relu": nn.relu,
@@ -42,6 +45,33 @@ class MLP(nn.Module):
             x = ACTIVATIONS[self.activation](nn.LayerNorm()(x) if self.layer_norm else x)
         last = nn.initializers.zeros if self.zero else SPREAD
         return nn.Dense(self.out, kernel_init=last)(x)
+
+
+class Perceptron(NamedTuple):
+    """u = squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) as plain arrays."""
+
+    mean: np.ndarray  # [n]
+    scale: np.ndarray  # [n]
+    weights: tuple[np.ndarray, ...]  # W' [inputs, outputs] of each layer
+    biases: tuple[np.ndarray, ...]  # [outputs] of each layer
+    activation: str
+    squash: str  # tanh or clip (to [-1, 1])
+
+
+def perceptron(
+    params: Any, state: statistics.Running | None, n: int, m: int, activation: str, squash: str
+) -> Perceptron:
+    """The MLP that owns `params` {"Dense_0": ..., ...}, of n inputs and the first m outputs.
+
+    state: statistics that normalise the inputs; None: they are taken as they are.
+    """
+    layers = [params[f"Dense_{i}"] for i in range(len(params))]
+    weights, biases = ([np.asarray(one[name]) for one in layers] for name in ("kernel", "bias"))
+    weights[-1], biases[-1] = weights[-1][:, :m], biases[-1][:m]
+    mean, scale = np.zeros(n, np.float32), np.ones(n, np.float32)
+    if state is not None:
+        mean, scale = np.asarray(state.mean), np.asarray(state.scale)
+    return Perceptron(mean, scale, tuple(weights), tuple(biases), activation, squash)
 
 
 def check(name: str, hidden: Sequence[int], activation: str) -> None:

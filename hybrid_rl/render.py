@@ -90,6 +90,15 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
     return Film(np.asarray(poses)[: last + 1], float(returns[last]), succeeded)
 
 
+def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int = 480) -> None:
+    """Write an episode of `world` to a file of one of drawing.SUFFIXES, in real time."""
+    from hybrid_rl.run.drawing import draw
+
+    rate = 1 / world.spec.dt
+    stride = int(np.ceil(rate / FASTEST))
+    draw(world.env.scene(), shown.poses[::stride], out, rate / stride, width, height)
+
+
 def _shown(
     given: dict[str, str], changes: dict[str, str], seed: int | None, steps: int
 ) -> tuple[Any, str, Film]:
@@ -154,7 +163,7 @@ def main() -> None:
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
     from hybrid_rl.envs.mujoco import offscreen
-    from hybrid_rl.run.drawing import SUFFIXES, draw
+    from hybrid_rl.run.drawing import SUFFIXES
 
     default = f"{given['run']}/video.mp4" if given["run"] else f"{given['task']}.mp4"
     out = output("out", given["out"] or default, SUFFIXES)
@@ -168,9 +177,7 @@ def main() -> None:
         _training(Path(given["run"]), seed, steps, out, width, height)
         return
     world, by, shown = _shown(given, changes, seed, steps)
-    rate = 1 / world.spec.dt
-    stride = int(np.ceil(rate / FASTEST))
-    draw(world.env.scene(), shown.poses[::stride], out, rate / stride, width, height)
+    draw_film(world, shown, out, width, height)
     ended = {True: ", success", False: ", no success", None: ""}[shown.success]
     print(f"{out}: {len(shown.poses) - 1} decisions, return {shown.total:,.1f}{ended}, {by}")
 

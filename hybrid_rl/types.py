@@ -11,7 +11,8 @@ Actions u lie in [-1, 1]^m; an environment scales them to its own units. J is a 
 maximised. A key is always the last argument and is consumed.
 
 A model lifts an observation [o] to a planning state x [n]. Policies, critics, rewards and
-objectives see x.
+objectives see x. Where the model is the world itself, x is an EnvState, of which policies and
+critics see the observation.
 """
 
 from collections.abc import Callable
@@ -91,7 +92,7 @@ class Imagined(NamedTuple):
 class Path(NamedTuple):
     """A trajectory, real or imagined."""
 
-    x: Array  # [T+1, n]
+    x: Any  # [T+1, n]; EnvState [T+1, ...] on the world itself
     u: Array  # [T, m]
 
 
@@ -104,6 +105,7 @@ class Params(NamedTuple):
     critic: PyTree = None  # Q(x, u)
     belief: PyTree = None  # anything else that a method learns
     decisions: Array | None = None  # [] decisions of the run so far, during training
+    world: EnvState | None = None  # the state of the environment, for plans on the world itself
 
 
 Return = Callable[[Path], Array]  # path -> J []

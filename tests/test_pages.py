@@ -1,4 +1,4 @@
-"""Numbers on README.md and docs/results agree with their files; commands on all pages exist.
+"""Numbers on README.md, docs/results and the paper agree with their files; commands exist.
 
 python tests/test_pages.py    writes the numbers of the files onto the pages
 """
@@ -27,9 +27,11 @@ PAGES = [
     "chapter6",
     "chapter7",
     "lookahead",
+    "paper",
     "robots",
     "speed",
 ]
+OTHERS = {"README.md", "paper/paper.md"}  # pages that cite results
 WITH_COMMANDS = [  # those of the atlas are copied from other pages
     "README.md",
     "CONTRIBUTING.md",
@@ -54,7 +56,7 @@ def page(request):
 
 def test_every_page_of_results_is_checked():
     pages = {str(path.relative_to(ROOT)) for path in (ROOT / "docs" / "results").glob("*.md")}
-    assert {import_module(f"pages.{name}").PAGE for name in PAGES} == {*pages, "README.md"}
+    assert {import_module(f"pages.{name}").PAGE for name in PAGES} == {*pages, *OTHERS}
 
 
 def test_cited_numbers_are_those_of_the_files(page):

@@ -3,7 +3,7 @@
 Stochastic hybrid learning (thesis Algorithm 3) with proposals from the policy; MPPI on a
 learned model with proposals from noise. `execute` chooses the action from the weighted
 candidates: `mean` executes sum_k w_k v_k (the thesis); `sample` draws one of them, which keeps the
-policy's exploration in the data.
+policy's exploration in the data. With `model=world` candidates run through the world's states.
 
 An objective that is a sum over time weighs each decision of a candidate by the return from that
 decision on; any other objective weighs all of them by J (Williams et al. 2017).
@@ -11,15 +11,16 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, sampling
+from hybrid_rl.core import adjoint, lifting, sampling
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
-from hybrid_rl.types import Params, Path, Spec
+from hybrid_rl.types import EnvState, Params, Path, Spec
 
 EXECUTE = ("mean", "sample")
 ToGo = Callable[[Path], Array]  # path -> S [T+1], the return from each time on
@@ -40,7 +41,7 @@ class SamplingController:
 
     Raises:
         ValueError: for a horizon, a number of samples or a temperature that is not positive,
-            an unknown `execute`, or `log_density` of candidates from several distributions.
+            an unknown `execute`, or `log_density` of candidates without a density.
     """
 
     model: Model
@@ -65,9 +66,9 @@ class SamplingController:
             raise ValueError(f"planner.temperature={self.temperature}: must be above 0")
         if self.execute not in EXECUTE:
             raise ValueError(f"planner.execute={self.execute}: choose {' or '.join(EXECUTE)}")
-        if self.log_density and getattr(self.proposal, "mixed", False):
+        if self.log_density and not getattr(self.proposal, "density", True):
             raise ValueError(
-                "planner.log_density=True: needs candidates of one distribution; "
+                "planner.log_density=True: needs candidates with a density; "
                 "choose proposal=policy or proposal=noise, or false"
             )
 
@@ -83,15 +84,17 @@ class SamplingController:
     ) -> tuple[Array, SamplingState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
         rolling, choosing = jax.random.split(key)
-        x = self.model.lift(params.model, obs)
+        x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
         samples = sampling.imagine(
             lambda x, u: self.model.step(params.model, x, u),
-            lambda *a: self.proposal(params, *a),
+            lambda carry, x, *a: self.proposal(params, carry, lifting.seen(x), *a),
             state.carries,
             x,
             state.plan,
-            jax.random.normal(rolling, (self.samples, *state.plan.shape)),
+            jax.vmap(partial(sampling.shaped, self.proposal))(
+                jax.random.normal(rolling, (self.samples, *state.plan.shape))
+            ),
         )
         returns = jax.vmap(to_go)(samples.path)
         w = sampling.weights(
@@ -114,7 +117,7 @@ class SamplingController:
         return action, after, metrics
 
     def _to_go(
-        self, params: Params, state: SamplingState, x: Array, key: Array
+        self, params: Params, state: SamplingState, x: Any, key: Array
     ) -> tuple[ToGo, Any, Array]:
         """S of paths from x [n], the objective's memory, and a key for other uses."""
         objective: Any = self.objective
@@ -122,23 +125,24 @@ class SamplingController:
             return lambda path: objective.reward_to_go(params, path), state.memory, key
         key, preparing = jax.random.split(key)
         value, memory = objective.prepare(params, state.memory, x, state.u, preparing)
-        return lambda path: jnp.full(len(path.x), value(path)), memory, key
+        return lambda path: jnp.full(len(path.u) + 1, value(path)), memory, key
 
     def _planned_reward(self, params: Params, w: Array, paths: Path) -> dict[str, Array]:
         """The mean reward of the first decisions of paths [K, ...] with weights w [K]."""
         objective: Any = self.objective
         if not hasattr(objective, "rewards"):
             return {}
-        first = Path(paths.x[:, :2], paths.u[:, :1])
+        first = Path(jax.tree.map(lambda leaf: leaf[:, :2], paths.x), paths.u[:, :1])
         each = jax.vmap(lambda path: objective.rewards(params, path)[0])(first)
         return {"planner/planned_reward": w @ each}
 
-    def _agreement(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
+    def _agreement(self, params: Params, x: Any, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """Metrics of the difference between the weighted mean and the policy's action.
 
-        The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0.
+        The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0. None
+        on the world itself, which has no derivatives.
         """
-        if self.policy is None:
+        if self.policy is None or isinstance(x, EnvState):
             return {}
         policy = self.policy
 

@@ -1,16 +1,28 @@
 """From observations to planning states; without a model they are the same."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.protocols import Model
-from hybrid_rl.types import Batch, PyTree, Spec
+from hybrid_rl.types import Batch, EnvState, Params, PyTree, Spec
 
 
 def lift(model: Model | None, params: PyTree, obs: Array) -> Array:
     """The planning state x [n] of an observation [o]."""
     return obs if model is None else model.lift(params, obs)
+
+
+def start(model: Any, params: Params, obs: Array) -> Any:
+    """The planning state from which to plan at obs [o]; of a world model, the world's state."""
+    return model.start(params) if hasattr(model, "start") else model.lift(params.model, obs)
+
+
+def seen(x: Array | EnvState) -> Array:
+    """What policies and critics see of a planning state."""
+    return x.obs if isinstance(x, EnvState) else x
 
 
 def lifted_batch(model: Model | None, params: PyTree, batch: Batch) -> Batch:

@@ -20,7 +20,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.adjoint import scan_unroll
-from hybrid_rl.types import Path
+from hybrid_rl.types import EnvState, Path
 
 
 class Samples(NamedTuple):
@@ -31,22 +31,24 @@ class Samples(NamedTuple):
 
 
 def imagine(
-    step: Callable[[Array, Array], Array],
-    propose: Callable[[Any, Array, Array, Array], tuple[Array, Array, Any]],
+    step: Callable[[Any, Array], Any],
+    propose: Callable[[Any, Any, Array, Any], tuple[Array, Array, Any]],
     carries: Any,
-    x: Array,
+    x: Any,
     plan: Array,
-    noise: Array,
+    noise: Any,
 ) -> Samples:
     """K paths of the model `step` from x [n], with candidates around plan [T, m].
 
     `propose(carry, x, a_t, noise) -> (v, log_prob, carry)` makes the candidates from the
-    noise [K, T, m] ~ N(0, I); `carries` [K, ...] start the paths.
+    noise [K, T, m] ~ N(0, I), as `shaped` returns it; `carries` [K, ...] start the paths. x may be
+    any tree of arrays.
     """
-    start = jnp.broadcast_to(x, (noise.shape[0], *x.shape))
+    count = len(jax.tree.leaves(noise)[0])
+    start = jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, (count, *leaf.shape)), x)
     propose_all = jax.vmap(propose, in_axes=(0, 0, None, 0))
 
-    def forward(state: tuple[Array, Any], inputs: tuple[Array, Array]) -> tuple:
+    def forward(state: tuple[Any, Any], inputs: tuple[Array, Any]) -> tuple:
         x, carry = state
         a, noise = inputs
         v, log_prob, carry = propose_all(carry, x, a, noise)
@@ -54,10 +56,23 @@ def imagine(
         return (x, carry), (x, v, log_prob)
 
     _, (xs, vs, log_probs) = jax.lax.scan(
-        forward, (start, carries), (plan, noise.swapaxes(0, 1)), unroll=scan_unroll(len(plan))
+        forward,
+        (start, carries),
+        (plan, jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), noise)),
+        unroll=1 if isinstance(x, EnvState) else scan_unroll(len(plan)),  # physics compiles slowly
     )
-    xs = jnp.concatenate([start[None], xs]).swapaxes(0, 1)
+    xs = jax.tree.map(
+        lambda first, rest: jnp.concatenate([first[None], rest]).swapaxes(0, 1), start, xs
+    )
     return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)
+
+
+def shaped(proposal: Any, noise: Array) -> Any:
+    """What `proposal` receives decision by decision, for the noise [T, m] of one candidate.
+
+    The noise itself, unless the proposal shapes it over the horizon.
+    """
+    return proposal.shaped(noise) if hasattr(proposal, "shaped") else noise
 
 
 def weights(

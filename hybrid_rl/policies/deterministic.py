@@ -17,7 +17,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.networks import ACTIVATIONS, MLP, check
+from hybrid_rl.networks import ACTIVATIONS, MLP, Perceptron, check, perceptron
 from hybrid_rl.types import Spec
 
 SQUASHES = ("tanh", "clip")
@@ -79,6 +79,11 @@ class Deterministic:
         mu: Any = MLP((), last["bias"].size).apply({"params": {"Dense_0": last}}, x)
         return x, mu
 
+    def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
+        """The policy as plain arrays."""
+        net, state = params["weights"], params.get("state")
+        return perceptron(net, state, spec.n, spec.act, self.activation, self.squash)
+
     def mean(self, params: dict[str, Any], x: Array) -> Array:
         """The action [..., m] at x [..., n]."""
         return self._squashed(self.unsquashed(params, x))
@@ -133,8 +138,14 @@ class Clones(Deterministic):
 
     def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """Features and mu of the first member."""
-        first = jax.tree.map(lambda each: each[0], params["weights"])
-        return super().layers({**params, "weights": first}, x)
+        return super().layers(self._first(params), x)
+
+    def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
+        """The first member as plain arrays."""
+        return super().perceptron(self._first(params), spec)
+
+    def _first(self, params: dict[str, Any]) -> dict[str, Any]:
+        return {**params, "weights": jax.tree.map(lambda each: each[0], params["weights"])}
 
     def each(self, params: dict[str, Any], x: Array) -> Array:
         """The action of every member [members, ..., m] at x [..., n]."""

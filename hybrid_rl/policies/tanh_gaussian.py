@@ -17,7 +17,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.core.squashing import log_density
-from hybrid_rl.networks import MLP, check, outputs
+from hybrid_rl.networks import MLP, Perceptron, check, outputs, perceptron
 from hybrid_rl.types import Spec
 
 
@@ -109,3 +109,9 @@ class TanhGaussian:
         mu, sigma = self.gaussian(params, x)
         z = jnp.arctanh(u)
         return log_density(z, (z - mu) / sigma, sigma)
+
+    def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
+        """The mean as plain arrays."""
+        net = params["trunk" if self.log_std_activation is None else "mean"]["params"]
+        state = params.get("state")
+        return perceptron(net, state, spec.n, spec.act, self.activation, "tanh")

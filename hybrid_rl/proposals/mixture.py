@@ -16,6 +16,7 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import sampling
 from hybrid_rl.protocols import Proposal
 from hybrid_rl.types import Params, Spec
 
@@ -31,7 +32,7 @@ class MixtureProposal:
     first: Proposal
     second: Proposal
     share: float = 0.5
-    mixed: ClassVar[bool] = True  # its candidates have several distributions
+    density: ClassVar[bool] = False  # densities of two distributions cannot be compared
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -46,12 +47,16 @@ class MixtureProposal:
             self.second.init(spec, quantile),
         )
 
+    def shaped(self, noise: Array) -> tuple[Any, Any]:
+        """The noise [T, m] of a path, as each of the two shapes it."""
+        return sampling.shaped(self.first, noise), sampling.shaped(self.second, noise)
+
     def __call__(
-        self, params: Params, carry: tuple[Array, Any, Any], x: Array, plan: Array, noise: Array
+        self, params: Params, carry: tuple[Array, Any, Any], x: Array, plan: Array, noise: Any
     ) -> tuple[Array, Array, tuple[Array, Any, Any]]:
         """A candidate v [m], and its log-density [] under the proposal that drew it."""
         is_first, a, b = carry
-        v, log_prob, a = self.first(params, a, x, plan, noise)
-        other_v, other_log_prob, b = self.second(params, b, x, plan, noise)
+        v, log_prob, a = self.first(params, a, x, plan, noise[0])
+        other_v, other_log_prob, b = self.second(params, b, x, plan, noise[1])
         v = jnp.where(is_first, v, other_v)
         return v, jnp.where(is_first, log_prob, other_log_prob), (is_first, a, b)

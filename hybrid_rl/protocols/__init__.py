@@ -9,6 +9,7 @@ from hybrid_rl.protocols.control import (
     Objective,
     PathTarget,
     Proposal,
+    ShapingProposal,
     Staged,
     Target,
 )
@@ -19,6 +20,7 @@ from hybrid_rl.protocols.environments import (
     EndingEnv,
     Env,
     RewardedEnv,
+    Simulator,
     TrackingEnv,
 )
 from hybrid_rl.protocols.learned import (
@@ -41,6 +43,7 @@ from hybrid_rl.protocols.learned import (
     Trainable,
     Uncertain,
     UnsquashedPolicy,
+    WorldModel,
 )
 from hybrid_rl.protocols.learning import (
     Demonstrations,
@@ -81,6 +84,8 @@ __all__ = [
     "Proposal",
     "Reward",
     "RewardedEnv",
+    "ShapingProposal",
+    "Simulator",
     "StabilizingPolicy",
     "Staged",
     "Target",
@@ -89,4 +94,5 @@ __all__ = [
     "Uncertain",
     "UniformLearner",
     "UnsquashedPolicy",
+    "WorldModel",
 ]

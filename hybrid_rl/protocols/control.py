@@ -69,6 +69,13 @@ class Proposal(Protocol):
         """
 
 
+class ShapingProposal(Proposal, Protocol):
+    """A proposal whose noise depends on the whole horizon."""
+
+    def shaped(self, noise: Array) -> PyTree:
+        """[T, ...] what `__call__` receives in each decision, for the noise [T, m] of a path."""
+
+
 class Controller(Protocol):
     """obs -> action."""
 

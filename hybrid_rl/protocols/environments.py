@@ -7,6 +7,13 @@ from jax import Array
 from hybrid_rl.types import EnvState, Spec
 
 
+class Simulator(Protocol):
+    """What steps the state of an environment: the environment, or its episodes."""
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state one decision later. action: [m] in [-1, 1]."""
+
+
 class Env(Protocol):
     """An environment. Frozen and hashable; everything that changes is in EnvState."""
 

@@ -6,7 +6,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.protocols.environments import AnalyticEnv
-from hybrid_rl.types import PyTree, Spec, Step
+from hybrid_rl.types import EnvState, Params, PyTree, Spec, Step
 
 
 class Features(Protocol):
@@ -33,6 +33,13 @@ class Model(Protocol):
 
     def step(self, params: PyTree, x: Array, u: Array) -> Array:
         """Mean of the next planning state [n]."""
+
+
+class WorldModel(Model, Protocol):
+    """A model that is the world itself. Its planning state is an EnvState; `lift` is identity."""
+
+    def start(self, params: Params) -> EnvState:
+        """The state of the world, from which plans begin."""
 
 
 class Trainable(Model, Protocol):

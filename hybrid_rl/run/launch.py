@@ -13,7 +13,7 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import checkpoint, distributed, folder, integrity, memory, provenance
+from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, provenance
 from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.lock import locked
@@ -25,7 +25,7 @@ from hybrid_rl.training.loop import Loop
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have
-OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed")
+OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "logger")
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 
@@ -52,6 +52,7 @@ def train(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dic
     run = configuration.build(config)
     prepare(config)
     size = memory.replay(run)
+    loggers.check(config.get("logger"))
     with folder.fresh(config) as run_dir:
         return _run(run, run_dir, size, handled)
 
@@ -74,9 +75,11 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]
     """Run a session in `run_dir`; size: a line about the replay memory."""
     config = run.config
     label = f"{config.task} {config.algo}"
+    names = loggers.check(config.get("logger"))
+    settings: Any = OmegaConf.to_container(config)
     with (
         integrity.naming(run_dir),
-        RunLog(run_dir, run.seeds) as log,
+        RunLog(run_dir, run.seeds, loggers.made(names, run_dir, run.seeds, settings)) as log,
         _progress(run, label) as progress,
     ):
         progress.note(f"{label}: run folder {run_dir}\n{size}")

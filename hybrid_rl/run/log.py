@@ -1,4 +1,4 @@
-"""The records of a run: metrics.jsonl, tensorboard/, summary.json.
+"""The records of a run: metrics.jsonl, tensorboard/, summary.json, and loggers.
 
 A checkpoint stores the length of metrics.jsonl at that time; a resumed run truncates the file to
 that length, so that it has every row exactly once.
@@ -15,22 +15,22 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from hybrid_rl.run.integrity import write_text
+from hybrid_rl.run.loggers import Logger, scalars
 
 if TYPE_CHECKING:
     from hybrid_rl.run.board import Board
-
-COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
 
 
 class RunLog:
     """Writes rows of numbers to a run folder.
 
     tensorboard/ has one event file for a single learner, and one subfolder per seed for several,
-    so that a chart overlays the seeds.
+    so that a chart overlays the seeds. loggers: get the rows, too.
     """
 
-    def __init__(self, run_dir: Path, seeds: Sequence[int]) -> None:
+    def __init__(self, run_dir: Path, seeds: Sequence[int], loggers: Sequence[Logger] = ()) -> None:
         self.run_dir = run_dir
+        self.loggers = loggers
         self.seeds = tuple(seeds)
         run_dir.mkdir(parents=True, exist_ok=True)
         self._rows = (run_dir / "metrics.jsonl").open("ab")
@@ -46,8 +46,8 @@ class RunLog:
         problem: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for board in self._boards.values():
-            board.close()
+        for each in (*self._boards.values(), *self.loggers):
+            each.close()
         self._boards.clear()
         self._rows.close()
 
@@ -57,18 +57,15 @@ class RunLog:
             plain = {n: v if isinstance(v, str) else number(v) for n, v in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
             self._rows.write(json.dumps(plain, allow_nan=False).encode("ascii") + b"\n")
-            scalars: dict[str, float] = {
-                n: v
-                for n, v in plain.items()
-                if n not in COORDINATES and v is not None and not isinstance(v, str)
-            }
-            self._board(int(row["seed"])).write(int(row["step"]), scalars)
+            self._board(int(row["seed"])).write(int(row["step"]), scalars(plain))
+            for logger in self.loggers:
+                logger.write(plain)
         self._rows.flush()
 
     def flush(self) -> int:
         """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`."""
-        for board in self._boards.values():
-            board.flush()
+        for each in (*self._boards.values(), *self.loggers):
+            each.flush()
         self._rows.flush()
         os.fsync(self._rows.fileno())
         return self._rows.tell()
@@ -85,6 +82,8 @@ class RunLog:
         self._rows.truncate(len(whole))
         self._rows.seek(0, os.SEEK_END)
         self._purge_step = step + 1
+        for logger in self.loggers:
+            logger.rewind(map(json.loads, whole.splitlines()))
         if len(whole) == offset:
             return []
         return [f"{path} has changed: rows before step {step} are missing or edited"]

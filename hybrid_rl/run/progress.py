@@ -15,8 +15,11 @@ from rich.progress import BarColumn, Task, TextColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
+from hybrid_rl.run import curve
+
 WINDOW = 30.0  # [s] over which the speed is measured
 PAUSE = 8.0  # [s] between two plain lines
+DRAWN = "eval/return"  # whose latest values a terminal shows as a small curve
 SHOWN = {  # scalar -> its format
     "train/return": "return {:,.1f}",
     "eval/return": "eval {:,.1f}",
@@ -42,6 +45,7 @@ class Progress:
         self.total, self.step, self.label = total, start, label
         self.unit, self.steady = unit, steady
         self._scalars: dict[str, tuple[float, int]] = {}  # name -> value, step
+        self._drawn: list[float] = []  # values of DRAWN
         self._clock: deque[tuple[float, int]] = deque()  # ([s], step), the last WINDOW
         self._printed: float | None = None  # [s] latest plain line, or the start
         self._pending = False
@@ -61,6 +65,7 @@ class Progress:
                 console=console,
                 expand=True,
             )
+            self._draws = console.encoding.startswith("utf")
             self._task = self._bar.add_task(self.label, total=self.total, completed=self.step)
             self._live = Live(get_renderable=self._picture, console=console, refresh_per_second=4)
             self._live.start()
@@ -89,6 +94,7 @@ class Progress:
         """
         now = time.monotonic()
         self.step = step
+        self._drawn += [scalars[name] for name in (DRAWN,) if name in scalars]
         self._scalars |= {name: (value, step) for name, value in scalars.items()}
         if step >= self.steady:
             self._clock.append((now, step))
@@ -159,8 +165,11 @@ class Progress:
         return known
 
     def _picture(self) -> Group:
-        """The live display: the bar, and the numbers below it."""
-        return Group(self._bar, Text("  ".join(self._numbers(True)) or " ", style="cyan"))
+        """The live display: the bar, the numbers below it, and a curve of the evaluations."""
+        lines = [Text("  ".join(self._numbers(True)) or " ", style="cyan")]
+        if self._draws and len(self._drawn) > 1:
+            lines.append(Text(curve.small(self._drawn), style="green"))
+        return Group(self._bar, *lines)
 
 
 class _Count(TextColumn):

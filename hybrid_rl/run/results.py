@@ -24,7 +24,7 @@ NOT_ROWS = ("step", "seed", "wall_s", "diverged")  # of a row; every other name 
 NOT_SETTINGS = (
     *("task", "algo", "seed", "num_seeds", "run_dir", "resume", "total_steps", "log_every"),
     *("eval_every", "eval_episodes", "eval_modes", "checkpoint_every", "checkpoint_replay"),
-    *("compile_cache", "version", "distributed"),
+    *("compile_cache", "version", "distributed", "logger"),
 )
 NOT_SETTINGS_ANYWHERE = ("physics",)  # implementations of the same equations
 UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys

@@ -12,6 +12,7 @@ from jax import Array
 from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.protocols import Controller, Learner, UniformLearner
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import act
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
 
@@ -194,10 +195,9 @@ class Agent:
         self, params: Params, state: AgentState, step: Array, at_random: Array, keys: Array
     ) -> tuple[Array, Any, dict[str, Array]]:
         """Actions [E, m], controller states [E, ...], metrics [E]; random ones from `at_random`."""
-        act = jax.vmap(self.controller.act, in_axes=(None, 0, 0, 0))
 
         def plan() -> tuple[Array, Any, dict[str, Array]]:
-            return act(params, state.control, state.env.obs, keys)
+            return act(self.controller, params, state.control, state.env, keys)
 
         if not self.random_steps:
             return plan()

@@ -1,5 +1,7 @@
 """Episodes of a controller with fixed parameters."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -7,6 +9,17 @@ from jax import Array
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params
+
+
+def act(
+    controller: Controller, params: Params, control: Any, env: EnvState, keys: Array
+) -> tuple[Array, Any, dict[str, Array]]:
+    """Actions [N, m], controller states and metrics in N worlds `env`, with the same params."""
+
+    def one(control: Any, env: EnvState, key: Array) -> tuple[Array, Any, dict[str, Array]]:
+        return controller.act(params._replace(world=env), control, env.obs, key)
+
+    return jax.vmap(one)(control, env, keys)
 
 
 def begin(episode: Episode, controller: Controller, keys: Array) -> tuple:
@@ -25,7 +38,6 @@ def advance(
 
     All N environments run in parallel; one that is done keeps its last state.
     """
-    act = jax.vmap(controller.act, in_axes=(None, 0, 0, 0))
 
     def unfinished(carry: tuple) -> Array:
         return (carry[0] < rounds) & ~jnp.all(carry[1].done)
@@ -33,7 +45,7 @@ def advance(
     def decide(carry: tuple) -> tuple:
         i, env, control, keys = carry
         keys, now = _split(keys)
-        u, control, _ = act(params, control, env.obs, now)
+        u, control, _ = act(controller, params, control, env, now)
         after = jax.vmap(episode.step)(env, u)
         frozen = jax.tree.map(
             lambda old, new: jnp.where(
@@ -80,7 +92,7 @@ def rollout_with_actions(
 
     def decide(carry: tuple, key: Array) -> tuple:
         env, control = carry
-        u, control, _ = controller.act(params, control, env.obs, key)
+        u, control, _ = controller.act(params._replace(world=env), control, env.obs, key)
         after = episode.step(env, u)
         env = jax.tree.map(lambda old, new: jnp.where(env.done, old, new), env, after)
         return (env, control), (u, env)

@@ -81,10 +81,10 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
 
 
-def test_densities_of_several_distributions_are_refused() -> None:
-    """The weights would compare them."""
+def test_candidates_without_a_density_have_no_density_in_the_weight() -> None:
+    """Those of two distributions cannot be compared."""
     mixture = MixtureProposal(Grid(), Grid())
     objective = PredictedReturn(RewardNetwork())
     SamplingController(Cart(), objective, mixture)
-    with pytest.raises(ValueError, match="log_density=True: needs candidates of one distribution"):
+    with pytest.raises(ValueError, match="log_density=True: needs candidates with a density"):
         SamplingController(Cart(), objective, mixture, log_density=True)

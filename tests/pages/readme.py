@@ -21,7 +21,8 @@ def sac(label: str, x: float) -> list[float]:
 
 
 FALLS = chapter7_falls.methods("2")["koopman_active"]
-KLE3 = chapter6_values.SEARCHES["kle3_bayesopt"]
+AT_REST = FALLS["at_rest"]["4"][0] * FALLS["trials"]
+SEARCH = chapter6_values.search(chapter6_values.SEARCHES["kle3_bayesopt"], "trials that reach it")
 CITED = [
     Text("to a return of # (one run)", [results.LIGHT.at(30_000)[0]]),
     Table(" | hybrid_stochastic | nn_mppi | sac", main_table),
@@ -30,21 +31,14 @@ CITED = [
         [*sac("sac", 100_000), *sac(results.OURS, 100_000)],
     ),
     Text("over 30 seeds the default of `hybrid_stochastic` has # [#, #]", hopper.ALL["default"]),
-    Text(
-        "KL-E3 finds the highest peak in # of # trials",
-        chapter6_values.search(KLE3, "trials that reach it"),
-    ),
+    Text("KL-E3 finds the highest peak in # of # trials", SEARCH),
     Text(
         "it needs # measurements where LQR-Bayesian optimisation needs #;",
         [chapter6_values.KLE3, chapter6_values.LQR],
     ),
     Text(
         "stops in # of # falls, after # s",
-        [
-            FALLS["at_rest"]["4"][0] * FALLS["trials"],
-            FALLS["trials"],
-            FALLS["median_time_at_rest"],
-        ],
+        [AT_REST, FALLS["trials"], FALLS["median_time_at_rest"]],
     ),
     Text("(position weight 500) # against #", chapter6_values.QUICK[::-1]),
 ]

@@ -79,6 +79,11 @@ def plan(label: str, column: str) -> list[float]:
     return [rate / 1e6 if rate > 1e8 else significant(rate, 3)]
 
 
+def latency(label: str, column: str) -> list[float]:
+    """Median time [us] of a call."""
+    return [read("latency")["rows"][f"{label}, {column}"]["median_us"]]
+
+
 def seeds(label: str, column: str) -> list[float]:
     """The end of runs of 64 and of 5 seeds."""
     return curve(RUNS[label], column).at(40_000)
@@ -140,6 +145,7 @@ CITED = [
         "is # times as fast as the true one",
         [TRUE["1 learners"]["rate"] / TRUE["MPPI on the true model"]["rate"]],
     ),
+    Table("time of an action [us] | light | default", latency),
     Table("evaluation return at 40,000, IQM and 95% band | hybrid_stochastic | sac", seeds),
     Text("SAC in #% [#, #] of pairs", ahead(area("seeds_64"), area("seeds_64", "sac"))),
     Text(
@@ -185,6 +191,9 @@ PLAIN = [
     "for only 20 candidates",
     "One learner with K 16,384 and T 32",
     "seeds 0 to 9 ended",
+    "median of 2,000 calls",
+    "the 99th percentiles",
+    "takes 50 ms",
     "So 64 seeds show",
     # aims
     "the aim of 400, 64 reach",

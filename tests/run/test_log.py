@@ -230,10 +230,11 @@ def test_a_terminal_shows_a_bar(monkeypatch):
         "from hybrid_rl.run.progress import Progress\n"
         "with Progress(2000, 0, 'hopper sac') as shown:\n"
         "    shown.note('compiling [soon] ...')\n"
-        "    shown.update(1000, {'train/return': 12.3, 'eval/return': -4.0})\n"
+        "    for value in (-11.0, 10.0, -4.0):\n"
+        "        shown.update(1000, {'train/return': 12.3, 'eval/return': value})\n"
     )
     ours, theirs = os.openpty()
-    plain = {"TERM": "xterm", "COLUMNS": "60", "PATH": os.environ["PATH"]}
+    plain = {"TERM": "xterm", "COLUMNS": "60", "PATH": os.environ["PATH"], "PYTHONUTF8": "1"}
     child = subprocess.Popen([sys.executable, "-c", code], stdout=theirs, stderr=theirs, env=plain)
     os.close(theirs)
     text = b""
@@ -243,7 +244,9 @@ def test_a_terminal_shows_a_bar(monkeypatch):
     assert child.wait() == 0
     shown = re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", text.decode())
     assert "compiling [soon] ..." in shown
-    assert re.search(r"hopper sac .*1,000/2,000\s+return 12\.3  eval -4\.0", shown)
+    assert re.search(
+        r"hopper sac .*1,000/2,000\s+return 12\.3  eval -4\.0\s+\u2581\u2588\u2583", shown
+    )
     assert max(len(line) for line in re.split(r"[\r\n]+", shown)) <= 60
 
 

@@ -1,0 +1,207 @@
+"""A trained policy or planner as a file that runs without hybrid_rl.
+
+    python -m hybrid_rl.export run=DIR out=policy.stablehlo
+    python -m hybrid_rl.export run=DIR out=policy.npz
+    python -m hybrid_rl.export run=DIR mode=full out=planner.stablehlo
+
+A .stablehlo is a program of JAX that runs where jax is installed, f = jax.export.deserialize(bytes)
+with action = f.call(obs) for a policy. A controller that plans is
+
+    action, state = f.call(obs, state, key)
+
+state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at each decision. A
+.npz holds the layers of a policy that is a multilayer perceptron; the Python file next to it has
+its function act(obs), in NumPy. Both formats include the parameters and the normalisation of the
+observations [o]. Actions are [m] in [-1, 1], without exploration.
+"""
+
+if __name__ == "__main__":
+    from hybrid_rl.cli import interrupt
+
+    interrupt.install()
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl import evaluate
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, output, read, several, whole
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.core import archive
+from hybrid_rl.core.lifting import lift
+from hybrid_rl.errors import UsageError
+from hybrid_rl.networks import Perceptron
+from hybrid_rl.protocols import Controller
+from hybrid_rl.types import Params, Spec
+
+SUFFIXES = (".stablehlo", ".npz")
+PLATFORMS = ("cpu", "cuda", "rocm", "tpu")
+ARGUMENTS = (
+    Argument("run", "", "folder of the run", needed="run=DIR, a folder that training wrote"),
+    Argument("out", "", "the file: .stablehlo or .npz", needed="out=policy.stablehlo or .npz"),
+    Argument("mode", "policy", "policy: alone; full or planner: one that plans (.stablehlo)"),
+    Argument("seed", None, "of a learner of the run; empty: the first", whole(least=0)),
+    Argument("platforms", ["cpu"], f"of a .stablehlo: {', '.join(PLATFORMS)}", several(*PLATFORMS)),
+)
+NUMPY = {  # activation or squashing -> NumPy's expression of z
+    "relu": "np.maximum({}, 0)",
+    "sin": "np.sin({})",
+    "tanh": "np.tanh({})",
+    "silu": "silu({})",
+    "elu": "elu({})",
+    "clip": "np.clip({}, -1, 1)",
+}
+DEFINED = {  # those that NumPy lacks
+    "silu": "def silu(z):\n    return z / (1 + np.exp(-z))\n\n\n",
+    "elu": "def elu(z):\n    return np.where(z > 0, z, np.expm1(np.minimum(z, 0)))\n\n\n",
+}
+CODE = '''"""The policy of {task}: observation [{o}] -> action [{m}] in [-1, 1], every {dt:g} s."""
+
+from pathlib import Path
+
+import numpy as np
+
+P = dict(np.load(Path(__file__).with_suffix(".npz")))
+
+
+{defined}def act(obs):
+    """The action [{m}] at obs [{o}]; or [N, {m}] at [N, {o}]."""
+    x = (np.asarray(obs, np.float32) - P["mean"]) / P["scale"]
+    for i in range(1, {last}):
+        x = {activation}
+    return {squash}
+'''
+
+
+def program(
+    spec: Spec, controller: Controller, params: Params, platforms: Sequence[str] = ("cpu",)
+) -> jax.export.Exported:
+    """The controller with `params` as a program of the form that this module's docstring gives."""
+    obs = jax.ShapeDtypeStruct((spec.obs,), jnp.float32)
+    if isinstance(controller, PolicyController):
+
+        def act(obs: Array) -> Array:
+            return controller.act(params, (), obs, jax.random.key(0))[0]
+
+        return jax.export.export(jax.jit(act), platforms=platforms)(obs)
+    first = controller.init(spec)
+    words = _words((jnp.zeros((), jnp.uint32), first))
+
+    def decide(obs: Array, state: Array, key: Array) -> tuple[Array, Array]:
+        count, now = _tree(state, (jnp.zeros((), jnp.uint32), first))
+        now = jax.tree.map(lambda begin, later: jnp.where(count == 0, begin, later), first, now)
+        u, now, _ = controller.act(params, now, obs, jax.random.wrap_key_data(key))
+        return u, _words((count + 1, now))
+
+    two = jax.ShapeDtypeStruct((2,), jnp.uint32)
+    state = jax.ShapeDtypeStruct(words.shape, jnp.uint32)
+    return jax.export.export(jax.jit(decide), platforms=platforms)(obs, state, two)
+
+
+def _words(tree: Any) -> Array:
+    """The leaves of 32 bits or bool, one after the other, as uint32 [w]."""
+
+    def one(leaf: Array) -> Array:
+        leaf = leaf.astype(jnp.uint32) if leaf.dtype == bool else leaf
+        return jax.lax.bitcast_convert_type(leaf, jnp.uint32).reshape(-1)
+
+    return jnp.concatenate([one(jnp.asarray(leaf)) for leaf in jax.tree.leaves(tree)])
+
+
+def _tree(words: Array, like: Any) -> Any:
+    """The inverse of `_words`, for a tree like `like`."""
+    leaves, structure = jax.tree.flatten(jax.tree.map(jnp.asarray, like))
+    parts = jnp.split(words, np.cumsum([leaf.size for leaf in leaves])[:-1])
+
+    def one(part: Array, leaf: Array) -> Array:
+        part = part.reshape(leaf.shape)
+        if leaf.dtype == bool:
+            return part != 0
+        return jax.lax.bitcast_convert_type(part, leaf.dtype)
+
+    return jax.tree.unflatten(structure, map(one, parts, leaves))
+
+
+def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
+    """The policy that acts as plain arrays.
+
+    Raises:
+        UsageError: if it plans, is no multilayer perceptron, or sees features of observations.
+    """
+    other = "; choose out=FILE.stablehlo"
+    if not isinstance(controller, PolicyController):
+        raise UsageError(f"mode: .npz holds a policy, {type(controller).__name__} plans{other}")
+    policy: Any = controller.policy
+    if not hasattr(policy, "perceptron"):
+        name = type(policy).__name__
+        raise UsageError(f"out: .npz holds a multilayer perceptron, the policy is {name}{other}")
+    x = jnp.arange(1.0, spec.obs + 1)
+    if not np.array_equal(lift(controller.model, params.model, x), x):
+        raise UsageError(f"out: .npz holds a policy of observations, this one has features{other}")
+    return policy.perceptron(params.policy, spec)
+
+
+def save_layers(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
+    """Write OUT.npz and OUT.py, which has a function `act` of NumPy; returns the latter."""
+    numbered = zip(net.weights, net.biases, strict=True)
+    arrays = {"mean": net.mean, "scale": net.scale}
+    for i, (weights, bias) in enumerate(numbered, 1):
+        arrays |= {f"W{i}": weights, f"b{i}": bias}
+    archive.write(out, task, spec, arrays)
+    last, layer = len(net.weights), 'x @ P[f"W{i}"] + P[f"b{i}"]'
+    code = CODE.format(
+        task=task,
+        o=spec.obs,
+        m=spec.act,
+        dt=spec.dt,
+        last=last,
+        defined=DEFINED.get(net.activation, ""),
+        activation=NUMPY[net.activation].format(layer),
+        squash=NUMPY[net.squash].format(f'x @ P["W{last}"] + P["b{last}"]'),
+    )
+    script = out.with_suffix(".py")
+    script.write_text(code, encoding="utf-8")
+    return script
+
+
+def _check_script(out: Path) -> None:
+    """Raise UsageError if OUT.py is a file of the user's."""
+    script = out.with_suffix(".py")
+    if script.exists() and not script.read_text(encoding="utf-8").startswith(CODE[:16]):
+        raise UsageError(f"out={out}: {script} would be replaced; choose another name")
+
+
+def main() -> None:
+    """The command."""
+    given, _ = read(__doc__, ARGUMENTS)
+    others = (".py",) if given["out"].endswith(".npz") else ()
+    out = output("out", given["out"], SUFFIXES, *others)
+    trained = evaluate.load(Path(given["run"]))
+    controller, params = trained.learner(given["seed"], given["mode"])
+    spec = trained.episode.spec
+    if out.suffix == ".npz":
+        _check_script(out)
+        script = save_layers(out, trained.task, spec, layers(spec, controller, params))
+        print(f"{out} and {script}: from {script.stem} import act; action = act(obs)")
+        return
+    made = program(spec, controller, params, given["platforms"])
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_bytes(made.serialize())
+    print(f"{out}: {trained.task}, {given['mode']}, {', '.join(given['platforms'])}")
+    print(f'  f = jax.jit(jax.export.deserialize(open("{out.name}", "rb").read()).call)')
+    if len(made.in_avals) == 1:
+        print(f"  action = f(obs)  # [{spec.obs}] -> [{spec.act}], float32")
+        return
+    size = made.in_avals[1].shape[0]
+    print(f"  state = numpy.zeros({size}, numpy.uint32)  # at the start of an episode")
+    print("  action, state = f(obs, state, numpy.array([seed, decision], numpy.uint32))")
+
+
+if __name__ == "__main__":
+    command.guarded(main)

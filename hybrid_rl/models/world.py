@@ -1,0 +1,52 @@
+"""x' = f(x, u) is the environment's own step: nothing is learned.
+
+The planning state is the whole EnvState, which the planner gets in `params.world`: positions,
+velocities, filters, reward. It stays the same once an episode is over. Randomness that an
+environment keeps in its state, such as the noise of sensors, is that of the true future.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.protocols import Simulator
+from hybrid_rl.types import EnvState, Params, Spec
+
+
+@dataclass(frozen=True)
+class World:
+    """The task's physics, as `world` steps it, with any of its implementations."""
+
+    world: Simulator
+
+    def init(self, key: Array, spec: Spec) -> tuple[()]:
+        """No parameters."""
+        return ()
+
+    def start(self, params: Params) -> EnvState:
+        """The state of the world.
+
+        Raises:
+            ValueError: where only observations are known.
+        """
+        if params.world is None:
+            raise ValueError("model=world: plans from the world's state, not from observations")
+        return params.world
+
+    def lift(self, params: Any, obs: Array) -> Array:
+        """The observation [o] itself, for policies and critics."""
+        return obs
+
+    def step(self, params: Any, x: Any, u: Array) -> Any:
+        """The EnvState after action u [m] at the EnvState x; x itself once the episode is over.
+
+        Raises:
+            ValueError: for an observation instead of a state.
+        """
+        if not isinstance(x, EnvState):
+            raise ValueError("model=world: needs a planner that samples, such as algo=mppi has")
+        after = self.world.step(x, u)
+        return jax.tree.map(lambda old, new: jnp.where(x.done, old, new), x, after)

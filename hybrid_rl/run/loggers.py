@@ -1,0 +1,157 @@
+"""Copies of a run's rows for other tools, next to metrics.jsonl and tensorboard/.
+
+    csv      metrics.csv, a line step,seed,wall_s,metric,value for each number
+    wandb    Weights & Biases, a run of theirs for each seed, in a group for each run folder
+
+W&B's own variables apply: WANDB_PROJECT, WANDB_ENTITY and, without a network, WANDB_MODE=offline.
+A resumed run continues the runs of W&B, which drop steps that they have already.
+"""
+
+import csv
+import uuid
+from collections.abc import Iterable, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Protocol
+
+from hybrid_rl.errors import UsageError
+
+Row = dict[str, Any]  # of metrics.jsonl
+COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
+HEADER = (*COORDINATES, "metric", "value")
+NAMES = ("csv", "wandb")
+INSTALL = 'not installed; pip install "hybrid_rl[wandb]"'
+
+
+class Logger(Protocol):
+    """A copy of the rows."""
+
+    def rewind(self, rows: Iterable[Row]) -> None:
+        """Keep these rows only: the run continues after them."""
+
+    def write(self, row: Row) -> None:
+        """Add a row."""
+
+    def flush(self) -> None:
+        """Pass on all rows."""
+
+    def close(self) -> None:
+        """End the copy."""
+
+
+def scalars(row: Row) -> dict[str, float]:
+    """The finite numbers of a row."""
+    return {
+        name: value
+        for name, value in row.items()
+        if name not in COORDINATES and value is not None and not isinstance(value, str)
+    }
+
+
+class CSV:
+    """metrics.csv in `folder`."""
+
+    def __init__(self, folder: Path) -> None:
+        self._path = folder / "metrics.csv"
+        new = not self._path.exists()
+        self._file = self._path.open("a", 1, "ascii", newline="")
+        self._lines = csv.writer(self._file)
+        if new:
+            self._lines.writerow(HEADER)
+
+    def rewind(self, rows: Iterable[Row]) -> None:
+        """Write the file again, with these rows."""
+        self._file.truncate(0)
+        self._lines.writerow(HEADER)
+        for row in rows:
+            self.write(row)
+
+    def write(self, row: Row) -> None:
+        """Add a line for each number."""
+        at = [row[name] for name in COORDINATES]
+        self._lines.writerows([*at, name, value] for name, value in scalars(row).items())
+
+    def flush(self) -> None:
+        """Nothing: the file has each line when it is written."""
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+class WandB:
+    """Runs of Weights & Biases for `seeds`, with the settings `config`; started by their first row.
+
+    folder: of the run; it holds what they write, and an id for each of them.
+    """
+
+    def __init__(self, folder: Path, seeds: Sequence[int], config: dict[str, Any]) -> None:
+        self._folder, self._config, self._several = folder, config, len(seeds) > 1
+        self._runs: dict[int, Any] = {}  # by seed
+
+    def rewind(self, rows: Iterable[Row]) -> None:
+        """Nothing: they drop steps that they have."""
+
+    def write(self, row: Row) -> None:
+        """Log the numbers of a row at its step."""
+        if values := scalars(row):
+            run = self._run(int(row["seed"]))
+            run.log(values | {"wall_s": row["wall_s"]}, step=int(row["step"]))
+
+    def _run(self, seed: int) -> Any:
+        if seed not in self._runs:
+            wandb: Any = import_module("wandb")
+            name = self._folder.name + (f" seed {seed}" if self._several else "")
+            self._runs[seed] = wandb.init(
+                id=self._id(seed),
+                resume="allow",
+                name=name,
+                group=str(self._folder),
+                job_type=f"{self._config['task']} {self._config['algo']}",
+                dir=str(self._folder),
+                config=self._config | {"seed": seed},
+                reinit="create_new",
+                settings=wandb.Settings(console="off"),
+            )
+        return self._runs[seed]
+
+    def _id(self, seed: int) -> str:
+        """The id of the run of a seed, the same when it is resumed."""
+        file = self._folder / "wandb" / f"seed_{seed}.id"
+        if not file.exists():
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(uuid.uuid4().hex[:12], encoding="ascii")
+        return file.read_text(encoding="ascii")
+
+    def flush(self) -> None:
+        """Nothing: they send rows from a process of their own."""
+
+    def close(self) -> None:
+        """End the runs."""
+        for run in self._runs.values():
+            run.finish()
+        self._runs.clear()
+
+
+def check(given: Any) -> tuple[str, ...]:
+    """The loggers that the key `logger` of a configuration names; null: none.
+
+    Raises:
+        UsageError: for an unknown name, or one whose package is not installed.
+    """
+    names = () if given is None else (given,) if isinstance(given, str) else tuple(given)
+    if unknown := [name for name in names if name not in NAMES]:
+        raise UsageError(f"logger={unknown[0]}: choose of {', '.join(NAMES)}, or null")
+    if "wandb" in names:
+        try:
+            import_module("wandb")
+        except ImportError as error:
+            raise UsageError(f"logger=wandb: {INSTALL}") from error
+    return names
+
+
+def made(
+    names: Iterable[str], folder: Path, seeds: Sequence[int], config: dict[str, Any]
+) -> list[Logger]:
+    """The loggers `names` of the run in `folder`."""
+    return [CSV(folder) if n == "csv" else WandB(folder, seeds, config) for n in names]

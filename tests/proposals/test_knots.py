@@ -1,0 +1,57 @@
+"""Noise through knots against SciPy's interpolation."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline, interp1d
+
+from hybrid_rl.proposals.knots import KnotsProposal
+from hybrid_rl.proposals.mixture import MixtureProposal
+from hybrid_rl.proposals.noise import NoiseProposal
+from hybrid_rl.types import Params, Spec
+
+M = 2
+NOISE = np.random.default_rng(0).normal(size=(20, M)).astype(np.float32)
+
+
+@pytest.mark.parametrize(("knots", "steps"), [(2, 20), (3, 7), (5, 20), (9, 20), (20, 20)])
+@pytest.mark.parametrize("order", ["linear", "cubic"])
+def test_noise_is_interpolated_between_its_knots(order: str, knots: int, steps: int) -> None:
+    """Piecewise linear, or the natural cubic spline, with knots from the first to the last step."""
+    got = KnotsProposal(knots, order).shaped(jnp.asarray(NOISE[:steps]))
+    t = np.linspace(0, steps - 1, knots)
+    if order == "linear" or knots == 2:
+        curve = interp1d(t, NOISE[:knots], axis=0)
+    else:
+        curve = CubicSpline(t, NOISE[:knots], bc_type="natural")
+    np.testing.assert_allclose(got, curve(np.arange(steps)), atol=2e-6)
+
+
+def test_one_knot_holds_and_many_are_white() -> None:
+    """One knot is constant over the horizon; with a knot per step nothing is interpolated."""
+    noise = jnp.asarray(NOISE)
+    np.testing.assert_array_equal(KnotsProposal(1).shaped(noise), np.tile(NOISE[:1], (20, 1)))
+    np.testing.assert_allclose(KnotsProposal(50).shaped(noise), NOISE, atol=1e-6)
+
+
+def test_a_mixture_shapes_the_noise_of_each() -> None:
+    """One half of the candidates is smooth, the other white."""
+    knots, white = KnotsProposal(2, std=0.1), NoiseProposal(std=0.1)
+    both = MixtureProposal(knots, white)
+    shaped, spec = both.shaped(jnp.asarray(NOISE)), Spec(obs=1, act=M, dt=0.1)
+    for quantile, want in ((0.0, np.asarray(knots.shaped(jnp.asarray(NOISE)))), (0.9, NOISE)):
+        carry = both.init(spec, jnp.float32(quantile))
+        now = jax.tree.map(lambda leaf: leaf[3], shaped)
+        v, _, _ = both(Params(), carry, jnp.zeros(1), jnp.full(M, 0.2), now)
+        np.testing.assert_allclose(v, np.clip(0.2 + 0.1 * want[3], -1, 1), rtol=1e-5)
+
+
+def test_bad_fields_of_knots() -> None:
+    """One line that names the field."""
+    with pytest.raises(ValueError, match=r"proposal.knots=0: must be a whole number, 1 or more"):
+        KnotsProposal(0)
+    with pytest.raises(ValueError, match=r"proposal.order=quintic: choose linear or cubic"):
+        KnotsProposal(order="quintic")
+    with pytest.raises(ValueError, match=r"proposal.std=0: must be positive"):
+        KnotsProposal(std=0)
