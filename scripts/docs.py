@@ -30,8 +30,17 @@ AT_TOP = ("CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
 TASKS = ("pendulum", "cart_double_pendulum", "quadcopter_se3", "sprk_sand", "contact_plane")
 TASKS += ("sawyer_torque", "cart_swing_up", "lander", "no_dynamics", "halfcheetah")
 PACKAGES = {  # page of the reference -> folders and modules
-    "Commands": ("train", "evaluate", "render", "figures", "demonstrate", "export", "report")
-    + ("list", "config"),
+    "Commands": (
+        "train",
+        "evaluate",
+        "render",
+        "figures",
+        "demonstrate",
+        "export",
+        "report",
+        "list",
+    ),
+    "Configuration": ("config", "overrides"),
     "Data structures": ("types", "errors"),
     "Protocols": ("protocols",),
     "Core mathematics": ("core",),
