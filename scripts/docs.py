@@ -68,7 +68,7 @@ PAGES = {
     "Notebooks": NOTEBOOKS,
     "Methods": ["docs/methods", "All methods <methods/index>"],
     "Results": ["docs/atlas", "docs/results/README"],
-    "Reference": ["Reference <reference/index>", "CHANGELOG"],
+    "Reference": ["Reference <reference/index>", "CHANGELOG", "Software paper <paper/paper>"],
 }
 
 
@@ -77,6 +77,7 @@ def copy() -> None:
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(ROOT / "docs", SOURCE / "docs", ignore=shutil.ignore_patterns("conf.py"))
     shutil.move(SOURCE / "docs" / "static", SOURCE / "static")
+    shutil.copytree(ROOT / "paper", SOURCE / "paper")
     for name in AT_TOP:
         shutil.copy(ROOT / name, SOURCE / name)
     trees = "".join(tree(caption, pages) for caption, pages in PAGES.items())
@@ -200,9 +201,9 @@ def main() -> None:
     methods()
     reference()
     command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
-    command += ["-c", str(ROOT / "docs"), "-d", str(BUILD / "cache"), str(SOURCE), str(HTML)]
+    command += ["--fresh-env", "-c", str(ROOT / "docs"), "-d", str(BUILD / "doctrees")]
     shutil.rmtree(HTML, ignore_errors=True)
-    code = subprocess.run([*command, "--jobs", "2"], cwd=ROOT).returncode
+    code = subprocess.run([*command, "--jobs", "2", SOURCE, HTML], cwd=ROOT).returncode
     if code:
         sys.exit(code)
     print(HTML / "index.html")
