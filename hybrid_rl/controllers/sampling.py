@@ -73,6 +73,11 @@ class SamplingController:
                 "choose proposal=policy or proposal=noise, or false"
             )
 
+    @property
+    def needs_world(self) -> bool:
+        """Whether plans begin at the state of the world, `params.world`."""
+        return hasattr(self.model, "start")
+
     def init(self, spec: Spec) -> SamplingState:
         """The plan of `rest`, and the initial carries and memory."""
         quantiles = jnp.arange(self.samples) / self.samples
