@@ -78,13 +78,19 @@ class Trained:
         """The controller of `mode` and the parameters of the learner of `seed`; None: the first.
 
         Raises:
-            UsageError: for a seed or a mode that the run does not have.
+            UsageError: for a seed or a mode that the run does not have, or a mode that does not
+                act by observations.
         """
         seed = self.seeds[0] if seed is None else seed
         if seed not in self.seeds:
             raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
         if mode not in self.controllers:
             raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
+        if getattr(self.controllers[mode], "needs_world", False):
+            raise UsageError(
+                f"mode={mode}: plans from the state of the world (model=world), which observations "
+                "do not give; use evaluate or render"
+            )
         params: Any = jax.tree.map(lambda leaf: leaf[self.seeds.index(seed)], self.params)
         return self.controllers[mode], params
 

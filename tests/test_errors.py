@@ -14,9 +14,6 @@ from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
 
-pytestmark = pytest.mark.xdist_group("errors")
-
-
 MAINS = {
     "demonstrate": demonstrate.main,
     "evaluate": evaluate.main,

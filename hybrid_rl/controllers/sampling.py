@@ -40,8 +40,8 @@ class SamplingController:
     """A planner over K candidates and T decisions.
 
     Raises:
-        ValueError: for a horizon, a number of samples or a temperature that is not positive,
-            an unknown `execute`, or `log_density` of candidates without a density.
+        ValueError: for a horizon, a count or a temperature that is not positive, an unknown
+            `execute`, or `log_density` of candidates without a density.
     """
 
     model: Model
@@ -55,10 +55,11 @@ class SamplingController:
     log_density: bool = False  # the thesis' p(v) in the weight
     execute: str = "mean"
     rest: float = 0.0  # [u] initial plan, and the last action of a shifted one
+    agreement_every: int = 1  # decisions between comparisons with `policy`
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("horizon", "samples"):
+        for name in ("horizon", "samples", "agreement_every"):
             value = getattr(self, name)
             if not isinstance(value, int) or value < 1:
                 raise ValueError(f"planner.{name}={value}: must be a whole number, 1 or more")
@@ -71,6 +72,11 @@ class SamplingController:
                 "planner.log_density=True: needs candidates with a density; "
                 "choose proposal=policy or proposal=noise, or false"
             )
+
+    @property
+    def needs_world(self) -> bool:
+        """Whether plans begin at the state of the world, `params.world`."""
+        return hasattr(self.model, "start")
 
     def init(self, spec: Spec) -> SamplingState:
         """The plan of `rest`, and the initial carries and memory."""
@@ -139,12 +145,25 @@ class SamplingController:
     def _agreement(self, params: Params, x: Any, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """Metrics of the difference between the weighted mean and the policy's action.
 
-        The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0. None
-        on the world itself, which has no derivatives.
+        The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0. NaN
+        between multiples of `agreement_every`. None on the world itself, which has no derivatives.
         """
         if self.policy is None or isinstance(x, EnvState):
             return {}
-        policy = self.policy
+
+        def compare() -> dict[str, Array]:
+            return self._comparison(params, x, plan, to_go)
+
+        decisions = params.decisions
+        if self.agreement_every == 1 or decisions is None:
+            return compare()
+        nothing = jax.tree.map(lambda m: jnp.full(m.shape, jnp.nan), jax.eval_shape(compare))
+        due = jnp.asarray(decisions) % self.agreement_every == 0
+        return jax.lax.cond(due, compare, lambda: nothing)
+
+    def _comparison(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
+        """The metrics of `_agreement`."""
+        policy: Any = self.policy
 
         def step(x: Array, u: Array) -> Array:
             return self.model.step(params.model, x, u)

@@ -25,7 +25,7 @@ def returns(paths: Imagined, alpha: Array, discount: float, last: Array) -> Arra
 
     along = paths.reward, paths.goes_on, paths.log_prob[:-1]
     value = last - alpha * paths.log_prob[-1]
-    return jax.lax.scan(back, value, along, reverse=True)[1]
+    return jax.lax.scan(back, value, along, reverse=True, unroll=True)[1]
 
 
 def reached(paths: Imagined) -> Array:

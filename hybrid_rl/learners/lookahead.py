@@ -45,22 +45,22 @@ class Lookahead:
         length = self.steps
         for_policy = jax.random.normal(acting, (length + 1, len(x), m))
         for_model = jax.random.normal(moving, (length, *x.shape))
-        outcome = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
 
         def forward(x: Array, at: Any) -> Any:
             noise, model_noise, key = at
             u, log_prob = self.policy.sample(params.policy, x, noise)
             after = self.model.draw(params.model, x, u, model_noise, key)
-            r, end = outcome(params.reward, x, u, after)
-            return after, (x, u, log_prob, r, jax.nn.sigmoid(-end))
+            return after, (x, u, log_prob, after)
 
         along = for_policy[:-1], for_model, jax.random.split(choosing, length)
-        last, (xs, us, log_probs, rewards, goes_on) = jax.lax.scan(forward, x, along, unroll=length)
+        last, (xs, us, log_probs, after) = jax.lax.scan(forward, x, along, unroll=length)
+        outcome = jax.vmap(jax.vmap(self.reward.outcome, (None, 0, 0, 0)), (None, 0, 0, 0))
+        rewards, ends = outcome(params.reward, xs, us, after)  # of all decisions at once
         u, log_prob = self.policy.sample(params.policy, last, for_policy[-1])
         return Imagined(
             x=jnp.concatenate([xs, last[None]]),
             u=jnp.concatenate([us, u[None]]),
             log_prob=jnp.concatenate([log_probs, log_prob[None]]),
             reward=rewards,
-            goes_on=goes_on,
+            goes_on=jax.nn.sigmoid(-ends),
         )

@@ -55,6 +55,10 @@ class Closing:
         """No action."""
         return jnp.zeros(1)
 
+    def variance(self, params: Any, x: Array) -> Array:
+        """Of the action."""
+        return jnp.full(1, 0.25)
+
     def value(self, params: Any, x: Array, u: Array) -> Array:
         """A constant."""
         return jnp.full((), 250.0)
@@ -79,6 +83,26 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     controller = SamplingController(Cart(), objective, Grid(), horizon=T, samples=K)
     metrics = controller.act(params, controller.init(SPEC), X, jax.random.key(1))[2]
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
+
+
+def test_agreement_is_measured_now_and_then() -> None:
+    """At multiples of `agreement_every` decisions, and in evaluations; the plan is the same."""
+    reward = RewardNetwork(hidden=(8,))
+    params = Params(reward=reward.init(jax.random.key(0), SPEC))
+
+    def act(every: int, decisions: int | None) -> tuple[float, float]:
+        parts = Cart(), PredictedReturn(reward), Grid(), Closing()
+        controller = SamplingController(*parts, horizon=T, samples=K, agreement_every=every)
+        count = None if decisions is None else jnp.int32(decisions)
+        known = params._replace(decisions=count)
+        u, _, metrics = controller.act(known, controller.init(SPEC), X, jax.random.key(1))
+        return float(u[0]), float(metrics["planner/insertion_per_variance"])
+
+    always = act(1, 20)
+    assert abs(always[1]) > 1e-4
+    assert act(10, 20) == pytest.approx(always, rel=1e-5)
+    assert act(10, None) == pytest.approx(always, rel=1e-5)
+    assert act(10, 21) == pytest.approx((always[0], np.nan), rel=1e-5, nan_ok=True)
 
 
 def test_candidates_without_a_density_have_no_density_in_the_weight() -> None:

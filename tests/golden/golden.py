@@ -115,11 +115,11 @@ def outcome(overrides: list[str]) -> dict[str, Any]:
         for name, value in params._asdict().items()
         if jax.tree.leaves(value)
     }
-    obs = state.env.obs[0, 0]
-    actions = {}
+    env = jax.tree.map(lambda leaf: leaf[0, 0], state.env)
+    params, actions = params._replace(world=env), {}
     for mode, controller in run.controllers.items():
         first = controller.init(run.agent.spec)
-        u = jax.jit(controller.act)(params, first, obs, jax.random.key(7))[0]
+        u = jax.jit(controller.act)(params, first, env.obs, jax.random.key(7))[0]
         actions[mode] = [float(value) for value in u]
     return {"metrics": means, "learned": learned, "actions": actions}
 

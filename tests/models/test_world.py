@@ -13,6 +13,8 @@ from jax import Array
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.envs.cartpole import ASSET, Cartpole
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.errors import UsageError
+from hybrid_rl.evaluate import Trained
 from hybrid_rl.models.world import World
 from hybrid_rl.objectives.world_return import WorldReturn
 from hybrid_rl.training.episode import Episode
@@ -52,7 +54,10 @@ def by_hand(state: EnvState, u: float) -> list[float]:
 
 
 def test_plans_are_those_of_mujoco() -> None:
-    """Action and planned return, from a state whose velocities are not zero."""
+    """Action and planned return, from a state whose velocities are not zero.
+
+    Without the world the planner cannot act.
+    """
     env: Any = Cartpole(physics="native")
     world = Episode(env, steps=100, action_repeat=2)
     state = world.step(world.reset(jax.random.key(0)), jnp.full(1, 0.7))
@@ -67,6 +72,9 @@ def test_plans_are_those_of_mujoco() -> None:
     w /= w.sum()
     np.testing.assert_allclose(action, [w @ np.arange(K) / K], rtol=1e-3)
     np.testing.assert_allclose(metrics["planner/planned_return"], w @ each, rtol=1e-3)
+    trained = Trained("cartpole", world, {"full": controller}, Params(), (0,), 0, ())
+    with pytest.raises(UsageError, match=r"mode=full: plans from the state of the world"):
+        trained.policy()
 
 
 @dataclass(frozen=True)

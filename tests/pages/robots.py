@@ -36,7 +36,11 @@ def compared(name: str, physics: str) -> dict[str, Any]:
     return next(row for row in rows if (row["name"], row["physics"]) == (name, physics))
 
 
-WORLD = {"Sawyer, env.reward=code": "sawyer_code", "Panda, env.reward=joined": "panda_joined"}
+WORLD = {
+    "Sawyer, env.reward=code": "sawyer_code",
+    "Sawyer, the printed reward": "sawyer_thesis",
+    "Panda, env.reward=joined": "panda_joined",
+}
 
 
 def planned(label: str, column: str) -> list[float]:
