@@ -6,7 +6,11 @@ PYTHON ?= python3
 WORKERS ?= 2
 RUN := .venv/bin/python -m
 
+<<<<<<< HEAD
+.PHONY: setup train test lint format docs lock clean
+=======
 .PHONY: setup train test lint format lock dist clean
+>>>>>>> main
 
 setup: .venv/.installed
 
@@ -30,11 +34,24 @@ format: setup
 	$(RUN) ruff check --fix
 	$(RUN) ruff format
 
-# One lock for Python 3.11 to 3.13, Linux and macOS; JAX for the CPU.
+# The site in build/docs/html. Sphinx is in .venv-docs; everything else is imported from .venv.
+docs: setup .venv-docs/.installed
+	PYTHONPATH=$(CURDIR):$$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
+	  .venv-docs/bin/python scripts/docs.py
+
+.venv-docs/.installed: docs/requirements.lock
+	$(RUN) uv venv --quiet --clear --python .venv/bin/python .venv-docs
+	$(RUN) uv pip install --quiet --python .venv-docs --require-hashes -r docs/requirements.lock
+	touch $@
+
+# One lock for Python 3.11 to 3.13, Linux and macOS; JAX for the CPU. The extra docs has its own.
+LOCK := $(RUN) uv pip compile --universal --python-version 3.11 --fork-strategy fewest \
+  --generate-hashes --default-index https://pypi.org/simple --upgrade --custom-compile-command "make lock" --quiet
+DOCS := import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["docs"], sep="\n")
+
 lock: setup
-	$(RUN) uv pip compile --universal --python-version 3.11 --fork-strategy fewest \
-	  --generate-hashes --extra dev --default-index https://pypi.org/simple --upgrade \
-	  --custom-compile-command "make lock" --quiet --output-file requirements.lock pyproject.toml
+	$(LOCK) --extra dev --output-file requirements.lock pyproject.toml
+	.venv/bin/python -c '$(DOCS)' | $(LOCK) --constraint requirements.lock --output-file docs/requirements.lock -
 
 # The sdist, and the wheel that is built from it, in dist/.
 dist: setup
@@ -42,5 +59,5 @@ dist: setup
 	$(RUN) build --no-isolation --outdir dist
 
 clean:
-	rm -rf .venv .cache build dist .pytest_cache .ruff_cache
+	rm -rf .venv .venv-docs .cache build dist .pytest_cache .ruff_cache
 	find . -name __pycache__ -prune -exec rm -rf {} +

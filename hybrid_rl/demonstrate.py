@@ -11,7 +11,8 @@ episode.KEY=VALUE, expert.KEY=VALUE. With run=DIR it is the trained controller (
 or planner; the first seed), without exploration. Episode i starts from key i of `seed`.
 
 With policy=FILE it writes no episodes but the parameters of the run's policy (the first seed),
-which expert=trained and policy=trained read.
+which expert=trained, policy=trained and policy=started read, and `evaluate`, `render` and `export`
+with policy=FILE. It holds command=TEXT and what `evaluate run=DIR mode=policy` wrote.
 """
 
 if __name__ == "__main__":
@@ -45,6 +46,7 @@ ARGUMENTS = (
     Argument("run", "", "instead: folder of a trained run"),
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
     Argument("policy", "", "with run=DIR: the file for its policy's parameters"),
+    Argument("command", "", "with policy=FILE: how it was trained, kept in the file"),
     Argument("episodes", 10, "how many", whole()),
     Argument("seed", 0, "of the first states", whole(least=0)),
     Argument("out", "", "the file; empty: demonstrations/TASK.npz"),
@@ -99,14 +101,10 @@ def _expert(
     given: dict[str, Any], changes: dict[str, str]
 ) -> tuple[str, Episode, Controller, Params]:
     """(task, episode, controller, parameters) that the arguments name."""
-    if given["expert"]:
-        changes = {"expert": given["expert"], **changes}
-    if bool(given["task"]) == bool(given["run"]):
-        raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
+    _check(given, changes)
     if given["task"]:
+        changes = {"expert": given["expert"], **changes} if given["expert"] else changes
         return given["task"], *scripted(given["task"], changes)
-    if changes:
-        raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     from hybrid_rl.evaluate import load
 
     run, mode = load(Path(given["run"])), given["mode"]
@@ -116,20 +114,34 @@ def _expert(
     return run.task, run.episode, run.controllers[mode], params
 
 
+def _check(given: dict[str, Any], changes: dict[str, str]) -> None:
+    """Raise UsageError unless the arguments name a task or a run, and fit it."""
+    if bool(given["task"]) == bool(given["run"]):
+        raise UsageError("task, run: give one of them; task=T has its own expert, run=DIR learned")
+    if given["run"] and (changes or given["expert"]):
+        raise UsageError("env, episode, expert: a run has its own; give them with task=T")
+
+
 def _write_policy(given: dict[str, Any], changes: dict[str, str]) -> None:
     """Write the parameters of the policy of run=DIR to policy=FILE."""
     if not given["run"]:
         raise UsageError(f"policy={given['policy']}: writes a trained policy; give run=DIR")
     file = output("policy", given["policy"], (".npz",))
-    task, episode, _, params = _expert(given, changes)
+    _check(given, changes)
+    from hybrid_rl import evaluate, pretrained
+
+    folder = Path(given["run"])
+    run = evaluate.load(folder)
+    params: Any = jax.tree.map(lambda leaf: leaf[0], run.params)
     if not jax.tree.leaves(params.policy):
-        raise UsageError(f"run={given['run']}: has no policy with parameters")
+        raise UsageError(f"run={folder}: has no policy with parameters")
     try:
-        trained.save(file, task, episode.spec, params.policy)
+        about = pretrained.description(folder, run, given["command"])
+        trained.save(file, run.task, run.episode.spec, params.policy, about)
     except ValueError as error:
         raise UsageError(str(error)) from error
     count = sum(leaf.size for leaf in jax.tree.leaves(params.policy))
-    print(f"{file}: the policy of {given['run']}, {count:,} parameters, task {task}")
+    print(f"{file}: the policy of {given['run']}, {count:,} parameters, task {run.task}")
 
 
 def main() -> None:

@@ -1,6 +1,7 @@
 """Returns of a trained run, as a table and in DIR/evaluation_<mode>.json.
 
     python -m hybrid_rl.evaluate run=runs/hopper/sac/TIME mode=policy episodes=20
+    python -m hybrid_rl.evaluate policy=halfcheetah
 
 Without exploration, with the learners as they were at the newest checkpoint. From Python, `load`
 reads a run back, `evaluate` gives its returns, and `Trained.policy` its actions, in any loop that
@@ -44,7 +45,8 @@ from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params, Spec
 
 ARGUMENTS = (
-    Argument("run", "", "folder of the run", needed="run=DIR, a folder that training wrote"),
+    Argument("run", "", "folder of the run"),
+    Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file"),
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )
@@ -219,16 +221,21 @@ def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str,
 
 def main() -> None:
     """The command."""
+    from hybrid_rl import pretrained
+
     given, _ = read(__doc__, ARGUMENTS)
-    episodes = given["episodes"]
+    episodes, name = given["episodes"], given["run"] or given["policy"]
+    trained = pretrained.chosen(given)
     folder = Path(given["run"])
-    trained = load(folder)
-    run_folder.writable(folder, "run")  # before minutes of work
+    if given["run"]:
+        run_folder.writable(folder, "run")  # before minutes of work
     for note in trained.notes:
         print(note)
     values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
-    print(f"{folder}, mode {given['mode']}, step {trained.step:,}")  # whole, also in a pipe
+    print(f"{name}, mode {given['mode']}, step {trained.step:,}")  # whole, also in a pipe
     Console().print(_table(values))
+    if not given["run"]:
+        return
     out = folder / f"evaluation_{given['mode']}.json"
     write_text(out, json.dumps(values, indent=1) + "\n")
     print(f"{episodes} episodes a seed; written to {out}")

@@ -3,6 +3,7 @@
     python -m hybrid_rl.export run=DIR out=policy.stablehlo
     python -m hybrid_rl.export run=DIR out=policy.npz
     python -m hybrid_rl.export run=DIR mode=full out=planner.stablehlo
+    python -m hybrid_rl.export policy=halfcheetah out=policy.npz
 
 A .stablehlo is a program of JAX that runs where jax is installed, f = jax.export.deserialize(bytes)
 with action = f.call(obs) for a policy. A controller that plans is
@@ -29,12 +30,12 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl import evaluate
+from hybrid_rl import pretrained
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, several, whole
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core import archive
-from hybrid_rl.core.lifting import lift
+from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.protocols import Controller
@@ -43,7 +44,8 @@ from hybrid_rl.types import Params, Spec
 SUFFIXES = (".stablehlo", ".npz")
 PLATFORMS = ("cpu", "cuda", "rocm", "tpu")
 ARGUMENTS = (
-    Argument("run", "", "folder of the run", needed="run=DIR, a folder that training wrote"),
+    Argument("run", "", "folder of the run"),
+    pretrained.POLICY,
     Argument("out", "", "the file: .stablehlo or .npz", needed="out=policy.stablehlo or .npz"),
     Argument("mode", "policy", "policy: alone; full or planner: one that plans (.stablehlo)"),
     Argument("seed", None, "of a learner of the run; empty: the first", whole(least=0)),
@@ -141,8 +143,7 @@ def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
     if not hasattr(policy, "perceptron"):
         name = type(policy).__name__
         raise UsageError(f"out: .npz holds a multilayer perceptron, the policy is {name}{other}")
-    x = jnp.arange(1.0, spec.obs + 1)
-    if not np.array_equal(lift(controller.model, params.model, x), x):
+    if not is_identity(controller.model, params.model, spec.obs):
         raise UsageError(f"out: .npz holds a policy of observations, this one has features{other}")
     return policy.perceptron(params.policy, spec)
 
@@ -182,7 +183,7 @@ def main() -> None:
     given, _ = read(__doc__, ARGUMENTS)
     others = (".py",) if given["out"].endswith(".npz") else ()
     out = output("out", given["out"], SUFFIXES, *others)
-    trained = evaluate.load(Path(given["run"]))
+    trained = pretrained.chosen(given)
     controller, params = trained.learner(given["seed"], given["mode"])
     spec = trained.episode.spec
     if out.suffix == ".npz":
@@ -190,7 +191,10 @@ def main() -> None:
         script = save_layers(out, trained.task, spec, layers(spec, controller, params))
         print(f"{out} and {script}: from {script.stem} import act; action = act(obs)")
         return
-    made = program(spec, controller, params, given["platforms"])
+    try:
+        made = program(spec, controller, params, given["platforms"])
+    except ValueError as error:  # it plans from more than the observation
+        raise UsageError(f"mode={given['mode']}: {error}") from error
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(made.serialize())
     print(f"{out}: {trained.task}, {given['mode']}, {', '.join(given['platforms'])}")

@@ -1,13 +1,14 @@
 """A video of one episode of a trained run, without a display.
 
     python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
+    python -m hybrid_rl.render policy=NAME [out=NAME.mp4] [episode_steps=]
     python -m hybrid_rl.render run=DIR mode=training [seed=] [out=X.mp4]
     python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
 `out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode.
 
-The episode is the first of the run's own evaluation: same key, no exploration. With task=T it is
-played by the task's expert, which is scripted.
+The episode is the first of the run's own evaluation: same key, no exploration. policy=NAME is a
+trained policy of policies/, or a file. With task=T the task's expert acts, which is scripted.
 
 mode=training is the first episode of training of a method that learns a belief over two
 coordinates, such as a map of contacts. A panel, as wide as the picture is high, shows what the
@@ -32,6 +33,7 @@ from hybrid_rl.errors import UsageError
 
 ARGUMENTS = (
     Argument("run", "", "folder of a trained run"),
+    Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file"),
     Argument("task", "", "instead: a task with a scripted expert"),
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
     Argument("mode", "", "of run=DIR: full, policy, planner or training; empty: full"),
@@ -117,9 +119,9 @@ def _shown(
             "scripted expert",
             film(world, controller, params, evaluation_keys(seed or 0, 1)[0]),
         )
-    from hybrid_rl.evaluate import load
+    from hybrid_rl.pretrained import chosen
 
-    trained = load(Path(given["run"]))
+    trained = chosen(given)
     _check(check_drawable, trained.episode.env)
     shown = episode(trained, given["mode"] or "full", seed, steps)
     return trained.episode, f"step {trained.step:,}", shown
@@ -153,19 +155,20 @@ def _training(
 def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
-    if bool(given["run"]) == bool(given["task"]):
+    named = [given[name] for name in ("run", "policy", "task") if given[name]]
+    if len(named) != 1:
         raise UsageError(
-            "run, task: give one of them; run=DIR is a folder that training wrote, "
-            "task=T shows the task's scripted expert"
+            "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
+            "policy=NAME a trained policy, task=T shows the task's scripted expert"
         )
-    if given["run"] and changes:
+    if not given["task"] and changes:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.run.drawing import SUFFIXES
 
-    default = f"{given['run']}/video.mp4" if given["run"] else f"{given['task']}.mp4"
+    default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
     out = output("out", given["out"] or default, SUFFIXES)
     width, height, steps, seed = (
         given[name] for name in ("width", "height", "episode_steps", "seed")
@@ -173,7 +176,7 @@ def main() -> None:
     offscreen.backend()  # raises before minutes of work
     _check(offscreen.check_size, width, height)
 
-    if given["mode"] == "training":
+    if given["mode"] == "training" and given["run"]:
         _training(Path(given["run"]), seed, steps, out, width, height)
         return
     world, by, shown = _shown(given, changes, seed, steps)

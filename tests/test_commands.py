@@ -24,7 +24,6 @@ from hybrid_rl.run import folder as run_folder
 from hybrid_rl.studies.curves import curves
 from hybrid_rl.training.rollout import evaluation_keys
 
-pytestmark = pytest.mark.xdist_group("commands")
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}
 NAME = re.compile(r"(train|eval|model|sac|planner|perf|world)/[a-z_]+")
 
@@ -186,16 +185,6 @@ def test_a_sweep_makes_a_folder_each(swept):
     ]
     assert all(each["finished"] for each in values)
     assert [each["algo"] for each in values] == [folder.parent.name for folder in folders]
-
-
-def test_a_sweep_goes_to_a_cluster_by_one_override(tmp_path, monkeypatch):
-    """Submitit's local executor stands for Slurm: a process each, the same run folders."""
-    monkeypatch.chdir(tmp_path)
-    line = [*TINY, "algo=sac", "total_steps=300", "seed=0,1", "hydra/launcher=submitit_local"]
-    assert call_train("-m", *line) == 0
-    result = [summary(path) for path in (tmp_path / "runs" / "pendulum" / "sac").iterdir()]
-    assert sorted(printed["seeds"] for printed in result) == [[0], [1]]
-    assert all(printed["finished"] for printed in result)
 
 
 def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:

@@ -16,8 +16,6 @@ from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
-pytestmark = pytest.mark.xdist_group("demonstrate")
-
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory) -> Path:

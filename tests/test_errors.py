@@ -14,9 +14,6 @@ from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
 
-pytestmark = pytest.mark.xdist_group("errors")
-
-
 MAINS = {
     "demonstrate": demonstrate.main,
     "evaluate": evaluate.main,
@@ -158,7 +155,8 @@ USAGE = [  # overrides of train, words of the line
 
 
 OTHERS = [  # command and its arguments, exit code, words of the line
-    ("evaluate", 2, "run: not given"),
+    ("evaluate", 2, "run, policy: give one of them"),
+    ("evaluate policy=cheetah", 2, "policy=cheetah: no such file; choose a file, or one of "),
     ("evaluate run=nowhere", 2, "run=nowhere: no run folder there"),
     ("evaluate run={begun}", 2, "holds no checkpoint yet"),
     ("evaluate run={trained} mode=both", 2, "mode=both: the run has full, policy"),

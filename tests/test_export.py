@@ -13,12 +13,13 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import evaluate, export
+from hybrid_rl import evaluate, export, pretrained
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
+from hybrid_rl.models.world import World
 from hybrid_rl.networks import ACTIVATIONS
 from hybrid_rl.objectives.known_reward import KnownReward
 from hybrid_rl.policies.deterministic import Clones
@@ -78,7 +79,7 @@ def trained(learned, monkeypatch):
     """A run of them."""
     modes = {"policy": PolicyController(POLICY, explore=False), "full": PLANNER.greedy()}
     run = evaluate.Trained("pendulum", Episode(Pendulum()), modes, learned, (3, 4), 7000, ())
-    monkeypatch.setattr(evaluate, "load", lambda folder: run)
+    monkeypatch.setattr(pretrained, "load", lambda folder: run)
     return run
 
 
@@ -156,6 +157,10 @@ def test_a_state_of_several_types_comes_back():
         ("mode=full out=a.npz", "mode: .npz holds a policy, SamplingController plans; choose out="),
         ("mode=unit out=a.npz", "out: .npz holds a multilayer perceptron, the policy is UnitGauss"),
         ("mode=lifted out=a.npz", "out: .npz holds a policy of observations, this one has featur"),
+        (
+            "mode=world out=a.stablehlo",
+            "mode=world: model=world: plans from the world's state, not",
+        ),
         ("mode=both out=a.npz", "mode=both: the run has policy, full"),
         ("seed=5 out=a.npz", "seed=5: the run has 3, 4"),
         ("platforms=gpu out=a.stablehlo", "platforms=gpu: unknown; choose of cpu, cuda"),
@@ -167,6 +172,7 @@ def test_what_cannot_be_exported_is_one_line(trained, tmp_path, monkeypatch, cap
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.py").write_text("print(1)\n")
     squares = SimpleNamespace(lift=lambda params, obs: obs**2)
+    trained.controllers["world"] = replace(PLANNER, model=World(Pendulum()))
     trained.controllers["unit"] = PolicyController(UnitGaussian())
     trained.controllers["lifted"] = PolicyController(POLICY, squares)
     assert main(*given.split()) == 2

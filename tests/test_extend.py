@@ -17,7 +17,6 @@ from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.run.drawing import draw
 
-pytestmark = pytest.mark.xdist_group("extend")
 PAGE = (Path(__file__).resolve().parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
 IMPORTS = (
     "from dataclasses import dataclass\n\nimport jax.numpy as jnp\n\n\n"  # the page omits them

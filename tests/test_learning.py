@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from tiny import run
 
+from hybrid_rl.core import adjoint, sampling
+
 RANDOM = 400  # decisions: two episodes
 MODEL = [
     "model=gaussian",
@@ -41,6 +43,14 @@ CASES = {  # method -> decisions, settings
 }
 
 
+@pytest.fixture
+def rolled(monkeypatch):
+    """Loops over a horizon are not unrolled: a long one compiles as fast as a short one."""
+    for module in (adjoint, sampling):
+        monkeypatch.setattr(module, "scan_unroll", lambda length: 1)
+
+
+@pytest.mark.usefixtures("rolled")
 @pytest.mark.parametrize("algo", CASES)
 def test_a_pendulum_is_swung_up(algo, tmp_path):
     """The last evaluations of both learners exceed -400; their random episodes are far below."""

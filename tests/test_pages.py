@@ -32,10 +32,14 @@ PAGES = [
     "speed",
 ]
 OTHERS = {"README.md", "paper/paper.md"}  # pages that cite results
-WITH_COMMANDS = [
+WITH_COMMANDS = [  # those of the atlas are copied from other pages
     "README.md",
     "CONTRIBUTING.md",
-    *(str(path.relative_to(ROOT)) for path in sorted((ROOT / "docs").rglob("*.md"))),
+    *(
+        str(path.relative_to(ROOT))
+        for path in sorted((ROOT / "docs").rglob("*.md"))
+        if path.name != "atlas.md"
+    ),
 ]
 LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
 

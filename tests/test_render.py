@@ -63,8 +63,8 @@ def trained(monkeypatch):
         seeds=(3, 4),
         step=7000,
     )
-    module = SimpleNamespace(load=lambda path: run)
-    monkeypatch.setitem(sys.modules, "hybrid_rl.evaluate", module)
+    module = SimpleNamespace(chosen=lambda given: run)
+    monkeypatch.setitem(sys.modules, "hybrid_rl.pretrained", module)
     return run
 
 
@@ -157,8 +157,8 @@ def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsy
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ([], "run, task: give one of them"),
-        (["run=x", "task=sawyer_push"], "run, task: give one of them"),
+        ([], "run, policy, task: give one of them"),
+        (["run=x", "task=sawyer_push"], "run, policy, task: give one of them"),
         (["run=x", "env.reward=thesis"], "env, episode, expert: a run has its own"),
         (["task=sawyer_push", "mode=full"], "mode: a scripted expert has none"),
         (["task=pendulum"], "task=pendulum: has no scripted expert"),

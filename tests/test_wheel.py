@@ -14,7 +14,6 @@ from hybrid_rl.data.demonstrations import load
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORDED = ROOT / "demonstrations" / "ant.npz"
-pytestmark = pytest.mark.xdist_group("wheel")
 
 
 def run(*command, cwd):

@@ -1,4 +1,4 @@
-"""Runs that take seconds, and commands called in this process."""
+"""Runs that take seconds, and commands called in this process; equal runs share their programs."""
 
 import hashlib
 import sys
@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hydra.utils import instantiate
 from omegaconf import DictConfig
+from programs import shared
 
 from hybrid_rl import config, train
 from hybrid_rl.cli import command
@@ -22,7 +23,8 @@ SMALL = [CONF, "settings=small"]
 
 def run(folder: Path, *overrides: str) -> dict:
     """The summary of a tiny run into `folder`, as a notebook makes it."""
-    return train.train(config.load([*TINY, f"run_dir={folder}", *overrides]))
+    with shared():
+        return train.train(config.load([*TINY, f"run_dir={folder}", *overrides]))
 
 
 def demonstrate(folder: Path, given: DictConfig, episodes: int = 10) -> str:
@@ -50,7 +52,8 @@ def call(main: Callable[[], None], *arguments: str | Path) -> int:
 
 def call_train(*arguments: str | Path) -> int:
     """Exit code of `python -m hybrid_rl.train`."""
-    return call(lambda: command.hydra_main(train._job), *arguments)
+    with shared():
+        return call(lambda: command.hydra_main(train._job), *arguments)
 
 
 def contents(folder: Path) -> dict[str, str]:

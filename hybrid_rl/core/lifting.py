@@ -15,6 +15,13 @@ def lift(model: Model | None, params: PyTree, obs: Array) -> Array:
     return obs if model is None else model.lift(params, obs)
 
 
+def is_identity(model: Model | None, params: PyTree, size: int) -> bool:
+    """Whether the planning state of an observation [size] is the observation."""
+    obs = jnp.arange(1.0, size + 1)
+    lifted = lift(model, params, obs)
+    return lifted.shape == obs.shape and bool((lifted == obs).all())
+
+
 def start(model: Any, params: Params, obs: Array) -> Any:
     """The planning state from which to plan at obs [o]; of a world model, the world's state."""
     return model.start(params) if hasattr(model, "start") else model.lift(params.model, obs)

@@ -1,17 +1,17 @@
 """A trained policy from a file: a teacher, or a fixed controller.
 
 The file is a NumPy .npz without pickles, with the header of core/archive and every array of the
-policy's parameters by its path, such as policy/trunk/params/Dense_0/kernel.
+policy's parameters by its path, such as policy/trunk/params/Dense_0/kernel. `about` describes it.
 `python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes it.
 """
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
@@ -19,31 +19,21 @@ from hybrid_rl.core import archive
 from hybrid_rl.protocols import Env, Policy
 from hybrid_rl.types import PyTree, Spec
 
-WRITE = "`python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes one"
 
-
-def _name(path: Any) -> str:
-    """The name of the parameter at `path` in the file."""
-    return "/".join(["policy", jax.tree_util.keystr(path, simple=True, separator="/")])
-
-
-def save(file: Path | str, task: str, spec: Spec, params: PyTree) -> None:
+def save(
+    file: Path | str, task: str, spec: Spec, params: PyTree, about: Mapping[str, Any] | None = None
+) -> None:
     """Write the parameters of a policy for `task`, whose decisions have `spec`.
+
+    about: what JSON can hold about its origin.
 
     Raises:
         ValueError: for parameters that are not finite.
     """
-    leaves = jax.tree_util.tree_leaves_with_path(params)
-    arrays = {_name(path): np.asarray(leaf) for path, leaf in leaves}
-    _check_finite(f"policy={file}:", arrays)
+    arrays = archive.policy_arrays(f"policy={file}:", params)
+    if about is not None:
+        arrays[archive.ABOUT] = np.array(json.dumps(about))
     archive.write(file, task, spec, arrays)
-
-
-def _check_finite(prefix: str, arrays: Mapping[str, np.ndarray]) -> None:
-    """Raise ValueError for an array that is not finite."""
-    for name, array in arrays.items():
-        if not np.isfinite(array).all():
-            raise ValueError(f"{prefix} {name} is not finite")
 
 
 @dataclass(frozen=True)
@@ -68,24 +58,8 @@ class TrainedPolicy:
 
     def load(self) -> PyTree:
         """The parameters of `policy`, as they were saved."""
-        prefix, spec = f"policy.file={self.file}:", self.world.spec
-        arrays = archive.read(prefix, self.file, hint=WRITE)
-        archive.check_task(prefix, arrays, self.task, self.world, self.episode)
-        expected = jax.eval_shape(lambda: self.policy.init(jax.random.key(0), spec))
-        leaves, tree = jax.tree_util.tree_flatten_with_path(expected)
-        shapes = {_name(path): leaf.shape for path, leaf in leaves}
-        for name in sorted({*shapes, *arrays} - {*archive.HEADER}):
-            if name not in arrays:
-                raise ValueError(f"{prefix} lacks {name}, which this policy has")
-            if name not in shapes:
-                raise ValueError(f"{prefix} has {name}, which this policy lacks")
-            if arrays[name].shape != shapes[name]:
-                raise ValueError(
-                    f"{prefix} {name} is {arrays[name].shape}, this policy's is {shapes[name]}"
-                )
-        kept = {name: arrays[name] for name in shapes}
-        _check_finite(prefix, kept)
-        return jax.tree.unflatten(tree, map(jnp.asarray, kept.values()))
+        expected = jax.eval_shape(lambda: self.policy.init(jax.random.key(0), self.world.spec))
+        return archive.policy(self.file, expected, self.task, self.world, self.episode)
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
         """No parameters of its own."""

@@ -6,8 +6,11 @@ One trunk with two heads, or two networks (thesis appendix B: a sine layer for t
 rectified layer for the standard deviation) if `log_std_activation` is set. With `normalise` their
 inputs are states divided by their running standard deviation in the learner's data: the
 demonstrations for behaviour cloning, the batches for SAC and DDPG.
+
+`StartedGaussian` is one whose parameters begin as those of a trained policy in a file.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,9 +18,10 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import statistics
+from hybrid_rl.core import archive, statistics
 from hybrid_rl.core.squashing import log_density
 from hybrid_rl.networks import MLP, Perceptron, check, outputs, perceptron
+from hybrid_rl.protocols import Env
 from hybrid_rl.types import Spec
 
 
@@ -115,3 +119,30 @@ class TanhGaussian:
         net = params["trunk" if self.log_std_activation is None else "mean"]["params"]
         state = params.get("state")
         return perceptron(net, state, spec.n, spec.act, self.activation, "tanh")
+
+
+@dataclass(frozen=True)
+class StartedGaussian(TanhGaussian):
+    """A policy that learns and begins with the parameters in `file`, of `task` in `world`.
+
+    Raises:
+        ValueError: for an unusable file, or one of another task or another policy.
+    """
+
+    file: str = ""
+    task: str = ""
+    world: Env | None = None
+    episode: Mapping[str, int] | None = None  # with `action_repeat`; None: 1
+
+    def __post_init__(self) -> None:
+        """Check the fields and the file."""
+        super().__post_init__()
+        if self.world is None:
+            raise ValueError("policy.world=None: must be the environment")
+        self.init(jax.random.key(0), self.world.spec)
+
+    def init(self, key: Array, spec: Spec) -> dict[str, Any]:
+        """The parameters of the file."""
+        world: Any = self.world
+        like = jax.eval_shape(lambda: super(StartedGaussian, self).init(key, spec))
+        return archive.policy(self.file, like, self.task, world, self.episode)

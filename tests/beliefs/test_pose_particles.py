@@ -1,6 +1,7 @@
 """The pose of objects by particles, against a Bayes filter on a grid and against enumeration."""
 
 from dataclasses import replace
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -148,9 +149,11 @@ def test_information_follows_its_formulas(few) -> None:
     steps = h * np.eye(3)
     g = [(chance(theta + d, s[None]) - chance(theta - d, s[None]))[:, 0] / (2 * h) for d in steps]
     g = np.stack(g, -1) / [1, 1, 0.3] / np.sqrt(p * (1 - p))[:, None]
-    assert float(belief.information(state, at)) == pytest.approx((g**2).sum(1).mean(), rel=1e-3)
+    assert float(jax.jit(belief.information)(state, at)) == pytest.approx(
+        (g**2).sum(1).mean(), rel=1e-3
+    )
     det = np.linalg.det(np.mean(g[:, :, None] * g[:, None], 0))
-    got = replace(belief, measure="det").information(state, at)
+    got = jax.jit(replace(belief, measure="det").information)(state, at)
     assert float(got) == pytest.approx(det, rel=1e-2)
 
     def entropy(w):
@@ -160,8 +163,8 @@ def test_information_follows_its_formulas(few) -> None:
     for outcome in (p, 1 - p):
         chance_of_it = outcome.mean()
         gain -= chance_of_it * entropy(outcome / outcome.sum())
-    assert float(belief.gain(state, at)) == pytest.approx(gain, rel=1e-3)
-    got = replace(belief, measure="mutual").information(state, at)
+    assert float(jax.jit(belief.gain)(state, at)) == pytest.approx(gain, rel=1e-3)
+    got = jax.jit(replace(belief, measure="mutual").information)(state, at)
     assert float(got) == pytest.approx(gain, rel=1e-3)
 
 
@@ -176,7 +179,7 @@ def test_the_gain_along_a_way_is_that_of_its_expected_measurements(few, trust) -
         w *= (each if each.mean() > 0.5 else 1 - each) ** trust
         w /= w.sum()
     assert {bool(each.mean() > 0.5) for each in p.T} == {True, False}
-    got = replace(belief, trust=trust).gain_along(state, jnp.asarray(path, jnp.float32))
+    got = jax.jit(replace(belief, trust=trust).gain_along)(state, jnp.asarray(path, jnp.float32))
     assert float(got) == pytest.approx(np.log(50) + np.sum(w * np.log(w)), rel=1e-3)
 
 
@@ -186,10 +189,10 @@ def test_one_or_two_particles_have_a_determinant_of_zero(few) -> None:
     at = jnp.array([0.42, 0.63])
     for count in (1, 2):
         same = state._replace(theta=jnp.tile(state.theta[:count], (50 // count, 1)))
-        det = replace(belief, measure="det").information(same, at)
-        assert float(det) < 1e-6 * float(belief.information(same, at)) ** 3
+        det = jax.jit(replace(belief, measure="det").information)(same, at)
+        assert float(det) < 1e-6 * float(jax.jit(belief.information)(same, at)) ** 3
     one = state._replace(theta=jnp.tile(state.theta[:1], (50, 1)))
-    assert float(belief.gain(one, at)) < 1e-6
+    assert float(jax.jit(belief.gain)(one, at)) < 1e-6
 
 
 def test_a_disc_in_the_middle_does_not_tell_the_angle() -> None:
@@ -202,9 +205,13 @@ def test_a_disc_in_the_middle_does_not_tell_the_angle() -> None:
     def one(state, measured):
         return belief.add(state, *measured), None
 
-    first = belief.init(jax.random.key(0), SPEC)
     data = jnp.asarray(s, jnp.float32), jnp.asarray(y), jax.random.split(jax.random.key(1), len(y))
-    report = belief.report(jax.jit(lambda: jax.lax.scan(one, first, data)[0])())
+
+    @jax.jit
+    def run():
+        return belief.report(jax.lax.scan(one, belief.init(jax.random.key(0), SPEC), data)[0])
+
+    report = run()
     position = [float(report[f"belief/mean_{axis}"]) for axis in "xy"]
     np.testing.assert_allclose(position, TRUE[:2], atol=0.03)
     assert float(report["belief/spread_angle"]) > 2  # [rad]; of a uniform angle it is unbounded
@@ -212,7 +219,7 @@ def test_a_disc_in_the_middle_does_not_tell_the_angle() -> None:
 
 def test_a_full_memory_takes_no_more_measurements() -> None:
     belief = replace(BELIEF, particles=20, capacity=2)
-    state = belief.init(jax.random.key(0), SPEC)
+    state = jax.jit(partial(belief.init, spec=SPEC))(jax.random.key(0))
     add = jax.jit(belief.add)
     for i in range(4):
         before = state

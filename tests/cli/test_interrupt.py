@@ -13,7 +13,6 @@ from tiny import TINY
 
 from hybrid_rl.cli import interrupt
 
-pytestmark = pytest.mark.xdist_group("interrupt")
 ROOT = Path(__file__).parents[2]
 WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 BEGIN = """

@@ -59,7 +59,8 @@ class Half:
 def act(controller: AdjointController, decisions: int = 0, key: int = 0) -> tuple:
     """One decision of a cart at rest."""
     params = Params(decisions=jnp.asarray(decisions))
-    return controller.act(params, controller.init(SPEC), jnp.zeros(2), jax.random.key(key))
+    key = jax.random.key(key)
+    return jax.jit(controller.act)(params, controller.init(SPEC), jnp.zeros(2), key)
 
 
 def actions(controller: AdjointController, keys: int, decisions: int = 0) -> Array:
@@ -101,8 +102,9 @@ def test_corrections_decay_with_the_decisions_of_the_episode() -> None:
     """W is multiplied by decay^decisions of the episode, not of the run."""
     controller = AdjointController(Cart(), Speed(), Half(), 1, gain_decay=0.5)
     state, params = controller.init(SPEC), Params(decisions=jnp.asarray(1000))
+    decide = jax.jit(controller.act)
     for decision in range(3):
-        u, state, _ = controller.act(params, state, jnp.zeros(2), jax.random.key(0))
+        u, state, _ = decide(params, state, jnp.zeros(2), jax.random.key(0))
         assert float(u[0]) == pytest.approx(-0.2 + 0.5**decision * 0.25 * 0.1, abs=1e-6)
 
 
@@ -128,10 +130,10 @@ def test_the_objective_gets_the_previous_action() -> None:
             return super().prepare(params, (), x, u_before, key)[0], u_before
 
     controller = AdjointController(Cart(), Before(), Half(), 2)
-    state, u = controller.init(SPEC), jnp.zeros(1)
+    state, u, decide = controller.init(SPEC), jnp.zeros(1), jax.jit(controller.act)
     for _ in range(3):
         before = u
-        u, state, _ = controller.act(Params(), state, jnp.zeros(2), jax.random.key(0))
+        u, state, _ = decide(Params(), state, jnp.zeros(2), jax.random.key(0))
         np.testing.assert_array_equal(state.memory, before)
 
 

@@ -17,6 +17,10 @@ A = np.array([[1.0, 0.1], [-0.2, 0.9]])
 B = np.array([[0.0], [0.5]])
 Q, R = np.diag([2.0, 0.3]), np.array([[0.7]])
 X = np.array([0.8, -0.4])
+roll = jax.jit(adjoint.roll, static_argnums=(0, 1))
+gradients = jax.jit(adjoint.adjoint, static_argnums=(0, 1, 2))
+insertion_gradient = jax.jit(adjoint.mode_insertion_gradient, static_argnums=(0, 1))
+insertion_ahead = jax.jit(adjoint.insertion_ahead, static_argnums=(0, 1, 2, 5))
 
 
 @pytest.fixture(autouse=True)
@@ -53,19 +57,19 @@ def test_gradient_is_reverse_mode(objective) -> None:
     v = 0.3 * jnp.cos(jnp.arange(T, dtype=float))[:, None]
 
     def value(v: Array) -> Array:
-        return objective(adjoint.roll(bent, feedback, X, v))
+        return objective(roll(bent, feedback, X, v))
 
-    result = adjoint.adjoint(bent, feedback, objective, adjoint.roll(bent, feedback, X, v))
-    np.testing.assert_allclose(result.gradient, jax.grad(value)(v), rtol=0, atol=1e-13)
+    result = gradients(bent, feedback, objective, roll(bent, feedback, X, v))
+    np.testing.assert_allclose(result.gradient, jax.jit(jax.grad(value))(v), rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("objective", [staged, coupled])
 def test_costate_is_the_gradient_at_the_first_state(objective) -> None:
     """rho_0 is dJ/dx_0 under the policy, by central differences."""
     v = jnp.zeros((T, 1))
-    result = adjoint.adjoint(bent, feedback, objective, adjoint.roll(bent, feedback, X, v))
+    result = gradients(bent, feedback, objective, roll(bent, feedback, X, v))
     for i, e in enumerate(1e-6 * np.eye(2)):
-        up, down = (objective(adjoint.roll(bent, feedback, X + s * e, v)) for s in (1, -1))
+        up, down = (objective(roll(bent, feedback, X + s * e, v)) for s in (1, -1))
         assert float(result.costate[0, i]) == pytest.approx(float(up - down) / 2e-6, rel=1e-6)
 
 
@@ -85,12 +89,12 @@ def test_linear_quadratic_optimum() -> None:
     def step(x: Array, u: Array) -> Array:
         return A @ x + B @ u
 
-    path = adjoint.roll(step, regulator, X, jnp.zeros((T, 1)))
-    result = adjoint.adjoint(step, regulator, value, path)
+    path = roll(step, regulator, X, jnp.zeros((T, 1)))
+    result = gradients(step, regulator, value, path)
     np.testing.assert_allclose(result.costate, -path.x @ p, rtol=0, atol=1e-13)
     np.testing.assert_allclose(result.gradient, 0, rtol=0, atol=1e-13)
-    astray = adjoint.roll(step, regulator, X, 0.1 + 0 * path.u)
-    off = adjoint.adjoint(step, regulator, value, astray)
+    astray = roll(step, regulator, X, 0.1 + 0 * path.u)
+    off = gradients(step, regulator, value, astray)
     assert float(off.gradient[0, 0]) < -1e-3  # back to the optimum
 
 
@@ -99,21 +103,21 @@ def test_linear_quadratic_optimum() -> None:
 def test_mode_insertion_gradient_is_the_derivative_of_a_short_switch(objective, other) -> None:
     """dJ/ds at s = 0, where the other action acts for a share s of the first decision."""
     u = jnp.array([other])
-    path = adjoint.roll(bent, feedback, X, jnp.zeros((T, 1)))
-    result = adjoint.adjoint(bent, feedback, objective, path)
+    path = roll(bent, feedback, X, jnp.zeros((T, 1)))
+    result = gradients(bent, feedback, objective, path)
 
     def switched(s: float) -> float:
         x = jnp.asarray(X)
         after = x + (1 - s) * (bent(x, path.u[0]) - x) + s * (bent(x, u) - x)
-        rest = adjoint.roll(bent, feedback, after, jnp.zeros((T - 1, 1)))
+        rest = roll(bent, feedback, after, jnp.zeros((T - 1, 1)))
         joined = Path(jnp.concatenate([x[None], rest.x]), jnp.concatenate([path.u[:1], rest.u]))
         jump = objective(path._replace(u=path.u.at[0].set(u))) - objective(path)
         return float(objective(joined) + s * jump)
 
     slope = (switched(1e-6) - switched(-1e-6)) / 2e-6
-    got = adjoint.mode_insertion_gradient(bent, objective, result, u)
+    got = insertion_gradient(bent, objective, result, u)
     assert float(got) == pytest.approx(slope, rel=1e-6)
-    ahead = adjoint.insertion_ahead(bent, feedback, objective, jnp.asarray(X), u, T)
+    ahead = insertion_ahead(bent, feedback, objective, jnp.asarray(X), u, T)
     assert float(ahead) == pytest.approx(float(got), rel=1e-12)
 
 
@@ -125,22 +129,22 @@ def test_insertion_into_a_single_decision() -> None:
 
     x, u = jnp.asarray(X), jnp.array([0.9])
     one, other = (Path(jnp.stack([x, bent(x, v)]), v[None]) for v in (feedback(x), u))
-    got = adjoint.insertion_ahead(bent, feedback, linear, x, u, 1)
+    got = insertion_ahead(bent, feedback, linear, x, u, 1)
     assert float(got) == pytest.approx(float(linear(other) - linear(one)), rel=1e-12)
 
 
 def test_mode_insertion_gradient_of_the_policys_own_action_is_zero() -> None:
     """Both actions are equal."""
-    path = adjoint.roll(bent, feedback, X, jnp.zeros((T, 1)))
-    result = adjoint.adjoint(bent, feedback, staged, path)
-    assert float(adjoint.mode_insertion_gradient(bent, staged, result, path.u[0])) == 0
+    path = roll(bent, feedback, X, jnp.zeros((T, 1)))
+    result = gradients(bent, feedback, staged, path)
+    assert float(insertion_gradient(bent, staged, result, path.u[0])) == 0
 
 
 def test_bound_clips_the_costate() -> None:
     """With a bound, rho is clipped, and g follows from the clipped rho."""
-    path = adjoint.roll(bent, feedback, X, jnp.zeros((T, 1)))
-    free = adjoint.adjoint(bent, feedback, staged, path)
-    result = adjoint.adjoint(bent, feedback, staged, path, bound=0.5)
+    path = roll(bent, feedback, X, jnp.zeros((T, 1)))
+    free = gradients(bent, feedback, staged, path)
+    result = gradients(bent, feedback, staged, path, bound=0.5)
     np.testing.assert_array_equal(result.costate, np.clip(free.costate, -0.5, 0.5))
     last = (
         jax.grad(staged)(path).u[0] + jax.vjp(bent, path.x[0], path.u[0])[1](result.costate[1])[1]
@@ -150,12 +154,12 @@ def test_bound_clips_the_costate() -> None:
 
 def test_the_mode_insertion_gradient_scales_with_the_variance_and_its_ratio_does_not() -> None:
     """For u = mu + Sigma g the insertion gradient is g' Sigma g to first order (Corollary 1)."""
-    path = adjoint.roll(bent, feedback, X, jnp.zeros((T, 1)))
-    g = adjoint.adjoint(bent, feedback, staged, path).gradient[0]
+    path = roll(bent, feedback, X, jnp.zeros((T, 1)))
+    g = gradients(bent, feedback, staged, path).gradient[0]
     result = []
     for variance in (jnp.array([4e-4]), jnp.array([1e-4])):
         u = feedback(X) + variance * g
-        insertion = adjoint.insertion_ahead(bent, feedback, staged, X, u, T)
+        insertion = insertion_ahead(bent, feedback, staged, X, u, T)
         result.append((insertion, adjoint.per_variance(insertion, variance)))
     (wide, of_wide), (narrow, of_narrow) = result
     assert float(wide / narrow) == pytest.approx(4, rel=1e-2)

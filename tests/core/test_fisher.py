@@ -1,6 +1,7 @@
 """Fisher information: closed forms, reverse mode, NumPy, and the variance of estimates."""
 
 from collections.abc import Iterator
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -18,6 +19,7 @@ SIGMA = np.array([0.3, 0.7])
 RNG = np.random.default_rng(0)
 V = RNG.uniform(-1, 1, (T, M))
 MODEL = Gaussian(hidden=(3,), activation="tanh", normalise=False)
+along = jax.jit(fisher.along, static_argnums=(0, 3))
 
 
 def policy(x: Array) -> Array:
@@ -42,6 +44,7 @@ def network(model: Gaussian = MODEL) -> tuple:
     return step, fisher.weights_of(params)
 
 
+@partial(jax.jit, static_argnums=0)
 def rolled(step, theta, v) -> Path:
     return adjoint.roll(lambda x, u: step(theta, x, u), policy, jnp.array([0.4, -0.2]), v)
 
@@ -50,7 +53,7 @@ def test_information_of_a_linear_model_is_that_of_its_regression() -> None:
     """diag kron(1 / sigma^2, Z'Z), the rows of Z are (1, x, u): here [bias [n], kernel [., n]]."""
     step, theta = network(Gaussian(hidden=(), normalise=False))
     x, u = RNG.normal(size=(T + 1, N)), RNG.normal(size=(T, M))
-    F = fisher.along(step, theta, Path(jnp.asarray(x), jnp.asarray(u)), "step")
+    F = along(step, theta, Path(jnp.asarray(x), jnp.asarray(u)), "step")
     z = np.column_stack([np.ones(T), x[:-1], u])
     expected = np.kron((z**2).sum(0), 1 / SIGMA**2)
     np.testing.assert_allclose(fisher.diagonal(F, jnp.asarray(SIGMA)).sum(0), expected, rtol=1e-12)
@@ -70,7 +73,7 @@ def test_information_of_a_decay_by_path_has_a_closed_form() -> None:
     """x' = a x: I = sum_t (t a^(t-1) x_0)^2 / sigma^2."""
     a, x0, sigma = 0.9, 1.5, 0.2
     path = Path(jnp.asarray(x0 * a ** np.arange(T + 1))[:, None], jnp.zeros((T, 1)))
-    F = fisher.along(lambda a, x, u: a * x, jnp.asarray([a]), path, "path")
+    F = along(lambda a, x, u: a * x, jnp.asarray([a]), path, "path")
     t = np.arange(1, T + 1)
     expected = ((t * a ** (t - 1) * x0) ** 2).sum() / sigma**2
     total = fisher.diagonal(F, jnp.array([sigma])).sum()
@@ -89,8 +92,8 @@ def test_sensitivities_by_path_are_derivatives_of_the_rolled_out_states() -> Non
 
         return jax.lax.scan(forward, path.x[0], path.u)[1]
 
-    F = fisher.along(step, theta, path, "path")
-    np.testing.assert_allclose(F, jax.jacfwd(states)(flat), atol=1e-13)
+    F = along(step, theta, path, "path")
+    np.testing.assert_allclose(F, jax.jit(jax.jacfwd(states))(flat), atol=1e-13)
 
 
 @pytest.mark.parametrize("kind", fisher.KINDS)
@@ -98,8 +101,9 @@ def test_products_are_those_of_the_derivatives(kind) -> None:
     step, theta = network()
     path, (flat, unravel) = rolled(step, theta, V), ravel_pytree(theta)
     v = jnp.asarray(RNG.normal(size=flat.size))
-    F = fisher.along(step, theta, path, kind)
-    product = fisher.products(step, theta, path, kind, unravel(v))
+    F = along(step, theta, path, kind)
+    products = jax.jit(fisher.products, static_argnums=(0, 3))
+    product = products(step, theta, path, kind, unravel(v))
     np.testing.assert_allclose(product, F @ v, atol=1e-12)
 
 
@@ -110,7 +114,7 @@ def test_costate_gradient_is_reverse_mode_through_the_path(kind) -> None:
     prior = jnp.asarray(RNG.uniform(0.5, 2.0, ravel_pytree(theta)[0].size))
 
     def objective(name: str, path: Path) -> Array:
-        F = fisher.along(step, theta, path, kind)
+        F = along(step, theta, path, kind)
         return fisher.criterion(name, F, jnp.asarray(SIGMA), prior)
 
     def by_costate(name: str, v: Array) -> Array:
@@ -146,7 +150,8 @@ def test_criteria_are_those_of_numpy(name) -> None:
         "T": np.log(np.trace(total)),
         "full": np.linalg.slogdet(total)[1] - np.linalg.slogdet(known)[1],
     }
-    value = fisher.criterion(name, jnp.asarray(F), jnp.asarray(SIGMA), jnp.asarray(prior))
+    criterion = jax.jit(fisher.criterion, static_argnums=0)
+    value = criterion(name, jnp.asarray(F), jnp.asarray(SIGMA), jnp.asarray(prior))
     np.testing.assert_allclose(value, expected[name], rtol=1e-12)
 
 
@@ -156,11 +161,11 @@ def test_an_unstable_path_does_not_overflow() -> None:
 
     def total(u: Array) -> Array:
         path = Path(x, u)
-        F = fisher.along(lambda a, x, u: 1e4 * a * x + u, jnp.ones(1, jnp.float32), path, "path")
+        F = along(lambda a, x, u: 1e4 * a * x + u, jnp.ones(1, jnp.float32), path, "path")
         each = [fisher.criterion(n, F, jnp.ones(1), jnp.ones(1)) for n in fisher.CRITERIA]
         return jnp.stack(each).sum()
 
-    value, slope = jax.value_and_grad(total)(jnp.zeros((20, 1), jnp.float32))
+    value, slope = jax.jit(jax.value_and_grad(total))(jnp.zeros((20, 1), jnp.float32))
     assert np.isfinite(value)
     assert np.isfinite(slope).all()
 
@@ -212,9 +217,7 @@ def test_variance_of_estimates_is_the_inverse_of_the_information() -> None:
     path = Path(jnp.asarray(x)[:, None], jnp.asarray(u)[:, None])
     predicted = {}
     for kind in fisher.KINDS:
-        F = fisher.along(
-            lambda theta, x, u: theta[0] * x + theta[1] * u, jnp.asarray(LINEAR), path, kind
-        )
+        F = along(lambda theta, x, u: theta[0] * x + theta[1] * u, jnp.asarray(LINEAR), path, kind)
         rows = np.asarray(F)[:, 0] / NOISE
         predicted[kind] = np.diag(np.linalg.inv(rows.T @ rows))
     one, whole = one_step_estimates(u, rng).var(0), output_error_estimates(u, rng).var(0)

@@ -10,15 +10,16 @@ import numpy as np
 import pytest
 from tiny import call, only_line, run
 
-from hybrid_rl import config, demonstrate, evaluate
+from hybrid_rl import config, demonstrate, evaluate, pretrained
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.data.trained import TrainedPolicy, save
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
-from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.policies.tanh_gaussian import StartedGaussian, TanhGaussian
 
 POLICY = TanhGaussian((8, 4), "sin", normalise=True)
+KEY = jax.random.key(4)
 PARAMS = POLICY.init(jax.random.key(3), Pendulum().spec)
 BIAS = "policy/trunk/params/Dense_0/bias"
 
@@ -49,6 +50,21 @@ def test_parameters_come_back_bit_for_bit(file: Path) -> None:
     for a, b in zip(trained.sample((), x, noise), POLICY.sample(PARAMS, x, noise), strict=True):
         np.testing.assert_array_equal(a, b)
     np.testing.assert_array_equal(trained.variance((), x), POLICY.variance(PARAMS, x))
+
+
+def test_a_started_policy_begins_with_the_parameters_of_the_file_and_acts_by_its_own(
+    file: Path,
+) -> None:
+    """So it learns."""
+    where = {"file": str(file), "task": "pendulum", "world": Pendulum()}
+    started = StartedGaussian(POLICY.hidden, "sin", normalise=True, **where)
+    got = jax.vmap(lambda key: started.init(key, Pendulum().spec))(jax.random.split(KEY, 2))
+    for a, b in zip(jax.tree.leaves(got), jax.tree.leaves(PARAMS), strict=True):
+        np.testing.assert_array_equal(a, jnp.stack((b, b)))
+    other, x = POLICY.init(KEY, Pendulum().spec), jnp.array([0.3, -0.2, 1.5])
+    np.testing.assert_array_equal(started.mean(other, x), POLICY.mean(other, x))
+    with pytest.raises(ValueError, match="this policy's is"):
+        StartedGaussian((4, 4), "sin", normalise=True, **where)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +126,7 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     """The first seed's, whose actions are those of the run; other requests are refused."""
     monkeypatch.chdir(tmp_path)
     run(tmp_path / "run", "algo=sac", "num_seeds=2")
-    write = [f"run={tmp_path / 'run'}", "policy=policy.npz"]
+    write = [f"run={tmp_path / 'run'}", "policy=policy.npz", "command=as above"]
     assert call(lambda: command.guarded(demonstrate.main), *write) == 0
     given = evaluate.load(tmp_path / "run")
     hidden = f"hidden={list(given.controllers['policy'].policy.hidden)}".replace(" ", "")
@@ -122,6 +138,13 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     first = jax.tree.map(lambda leaf: leaf[0], given.params)
     want = given.controllers["policy"].act(first, (), x, jax.random.key(0))[0]
     np.testing.assert_array_equal(got, want)
+    read = pretrained.read("policy.npz")
+    assert (read.task, read.seeds, read.step, read.notes) == (
+        *("pendulum", (0,), given.step),
+        ("trained by: as above",),
+    )
+    assert read.episode == given.episode
+    np.testing.assert_allclose(read.policy()(x), want, atol=1e-6)
     capfd.readouterr()
     for words, wrong in (
         ("give run=DIR", ["task=pendulum", "policy=policy.npz"]),

@@ -21,6 +21,8 @@ from worlds import (
 
 from hybrid_rl.envs.mujoco import mjcf
 
+pytestmark = pytest.mark.xdist_group("worlds")  # both read `rollout`
+
 # Largest difference of an observation over 20 decisions in contact. Measured: cheetah 5e-6
 # native, 4e-4 mjx; hopper 4e-6, 5e-6; walker 1e-5, 6e-5; cart and pole 2e-6, 2e-6 (no contact);
 # ant 2e-5, 3e-4; quadcopter 8e-7, 9e-7 (no contact); Sawyer, in 0.1 m, 3e-6, 9e-3;

@@ -12,6 +12,8 @@ from hybrid_rl.envs.analytic.contact_plane import ContactPlane, rounded_box
 from hybrid_rl.envs.analytic.point_mass import PointMass
 
 WORLD = ContactPlane()
+reset = jax.jit(ContactPlane.reset, static_argnums=0)
+distance = jax.jit(ContactPlane.distance, static_argnums=0)
 
 
 @partial(jax.jit, static_argnums=0)
@@ -27,7 +29,7 @@ def follow(env, state, actions):
 
 def at(env, x, pose=None):
     """The state at x [4], with the objects at `pose` [3]."""
-    state = env.reset(jax.random.key(0))
+    state = reset(env, jax.random.key(0))
     pose = state.data.pose if pose is None else jnp.asarray(pose, jnp.float32)
     x = jnp.asarray(x, jnp.float32)
     return state.replace(data=state.data._replace(x=x, pose=pose), obs=x)
@@ -59,8 +61,8 @@ def test_the_pose_moves_all_objects_about_the_middle() -> None:
     for s in rng.uniform(0, 1, (5, 2)):
         c, d = np.cos(0.8), np.sin(0.8)
         moved = np.array([[c, -d], [d, c]]) @ (s - 0.5) + pose[:2]
-        want = WORLD.distance(jnp.asarray(s, jnp.float32))
-        got = WORLD.distance(jnp.asarray(moved, jnp.float32), jnp.asarray(pose, jnp.float32))
+        want = distance(WORLD, jnp.asarray(s, jnp.float32))
+        got = distance(WORLD, jnp.asarray(moved, jnp.float32), jnp.asarray(pose, jnp.float32))
         assert float(got) == pytest.approx(float(want), abs=1e-6)
 
 
@@ -70,9 +72,9 @@ def test_without_contact_it_is_the_point_mass(drag) -> None:
     env, free = ContactPlane(objects=(), drag=drag), PointMass(1.0, drag)
     actions = np.random.default_rng(0).uniform(-1, 1, (30, 2)).astype(np.float32)
     states = follow(env, at(env, [0.2, 0.3, 0.5, -0.4]), jnp.asarray(actions))
-    x = jnp.array([0.2, 0.3, 0.5, -0.4])
+    x, dynamics = jnp.array([0.2, 0.3, 0.5, -0.4]), jax.jit(free.dynamics)
     for u, after in zip(actions, states.obs, strict=True):
-        x = free.dynamics(x, jnp.asarray(u))
+        x = dynamics(x, jnp.asarray(u))
         np.testing.assert_allclose(after, x, atol=1e-5)
     assert not states.reward.any()
 
@@ -94,14 +96,14 @@ def test_the_ball_never_enters_an_object() -> None:
     states = []
     while len(states) < 100:
         s = rng.uniform(0, 1, 2).astype(np.float32)
-        if float(WORLD.distance(jnp.asarray(s))) > 0.05:
+        if float(distance(WORLD, jnp.asarray(s))) > 0.05:
             way = shapes[rng.integers(3), :2] - s
             states.append(at(WORLD, [*s, *(2 * way / np.linalg.norm(way))]))
     stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves), *states)
     actions = np.asarray(stacked.data.x[:, 2:])[:, None].repeat(20, 1) / 2
     after = jax.vmap(partial(follow, WORLD))(stacked, jnp.asarray(actions))
-    distance = jax.vmap(jax.vmap(WORLD.distance))(after.obs[..., :2])
-    assert float(distance.min()) > WORLD.radius - 1e-3
+    apart = jax.jit(jax.vmap(jax.vmap(WORLD.distance)))(after.obs[..., :2])
+    assert float(apart.min()) > WORLD.radius - 1e-3
     assert after.metrics["touch"].any(1).mean() > 0.9
 
 
@@ -147,8 +149,8 @@ def test_the_sensor_errs_as_often_as_its_rates_say() -> None:
 
 def test_resets_draw_a_clear_start_and_a_pose() -> None:
     env = ContactPlane(theta=(0.5, 0.5, 0.0), spread=(0.1, 0.1, 3.1416))
-    states = jax.vmap(env.reset)(jax.random.split(jax.random.key(0), 200))
-    clear = jax.vmap(env.distance)(states.obs[:, :2], states.data.pose)
+    states = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), 200))
+    clear = jax.jit(jax.vmap(env.distance))(states.obs[:, :2], states.data.pose)
     assert float(clear.min()) > env.radius
     poses = np.asarray(states.data.pose)
     low, high = poses.min(0), poses.max(0)
@@ -167,13 +169,13 @@ def test_the_scene_has_a_disc_where_the_distance_says() -> None:
     geom = np.zeros(1, np.int32)
     hits = 0
     for s in np.random.default_rng(2).uniform(0.02, 0.98, (300, 2)):
-        distance = float(env.distance(jnp.asarray(s, jnp.float32), state.data.pose))
-        if abs(distance) < 0.005 or np.hypot(*(s - np.asarray(state.obs[:2]))) < 0.04:
+        apart = float(distance(env, jnp.asarray(s, jnp.float32), state.data.pose))
+        if abs(apart) < 0.005 or np.hypot(*(s - np.asarray(state.obs[:2]))) < 0.04:
             continue
         mujoco.mj_ray(model, data, np.array([*s, 1.0]), np.array([0, 0, -1.0]), None, 1, -1, geom)
         body = model.body(model.geom_bodyid[geom[0]]).name if geom[0] >= 0 else ""
-        assert (body == "objects") == (distance < 0), s
-        hits += distance < 0
+        assert (body == "objects") == (apart < 0), s
+        hits += apart < 0
     assert hits > 10
 
 

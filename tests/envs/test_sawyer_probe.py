@@ -23,7 +23,7 @@ TRIALS = 4
 @pytest.fixture(scope="module")
 def paths():
     """The first states [TRIALS], actions [TRIALS, 30, 2] to and fro, and the states after them."""
-    first = jax.vmap(WORLD.reset)(jax.random.split(jax.random.key(3), TRIALS))
+    first = jax.jit(jax.vmap(WORLD.reset))(jax.random.split(jax.random.key(3), TRIALS))
     to_middle = np.array([0.55, 0.0]) - np.asarray(first.obs[:, :2])
     to_middle /= np.linalg.norm(to_middle, axis=1, keepdims=True)
     to_and_fro = np.repeat([1.0, -1.0], 15)
@@ -41,7 +41,7 @@ def paths():
 
 def test_it_starts_where_the_contact_plane_does(paths) -> None:
     """By inverse kinematics, within 0.5 mm."""
-    want = jax.vmap(PLANE.reset)(jax.random.split(jax.random.key(3), TRIALS))
+    want = jax.jit(jax.vmap(PLANE.reset))(jax.random.split(jax.random.key(3), TRIALS))
     np.testing.assert_allclose(paths[0].obs, want.obs, atol=5e-4)
 
 
@@ -50,23 +50,23 @@ def test_the_tip_moves_as_the_free_point_mass_until_it_touches(paths) -> None:
     first, actions, states = paths
     free = PointMass(WORLD.acceleration, WORLD.drag)
     before = jnp.concatenate([first.obs[:, None], states.obs[:, :-1]], 1)
-    want = jax.vmap(jax.vmap(free.dynamics))(before, actions)
+    want = jax.jit(jax.vmap(jax.vmap(free.dynamics)))(before, actions)
     p = np.asarray(states.obs[..., :2])
     inside = ((p > WORLD.low) & (p < WORLD.high)).all(-1)
     apart = inside & (np.cumsum(np.asarray(states.reward), 1) == 0)
     assert apart.sum() > 20
     error = np.abs(np.asarray(states.obs - want))[apart]
     assert (error.max(0) < [2e-3, 2e-3, 2e-2, 2e-2]).all()
-    tip, rotation, _ = jax.vmap(jax.vmap(TIP.pose))(states.data.qpos)
+    tip, rotation, _ = jax.jit(jax.vmap(jax.vmap(TIP.pose)))(states.data.qpos)
     assert np.ptp(np.asarray(tip[..., 2])) < 5e-3
-    down = jax.vmap(rotate, (0, None))(rotation[apart], jnp.array([0.0, 0.0, 1.0]))
+    down = jax.jit(jax.vmap(rotate, (0, None)))(rotation[apart], jnp.array([0.0, 0.0, 1.0]))
     assert float(down[:, 2].max()) < -np.cos(0.02)  # [rad]
 
 
 def test_what_it_feels_is_a_rod_at_an_object(paths) -> None:
     """The rod stays within 2 mm of what it presses, and the command leads by `lead` at most."""
     _, _, states = paths
-    distance = jax.vmap(jax.vmap(partial(PLANE.distance, pose=jnp.array(POSE))))
+    distance = jax.jit(jax.vmap(jax.vmap(partial(PLANE.distance, pose=jnp.array(POSE)))))
     gap = np.asarray(distance(states.obs[..., :2])) - WORLD.radius
     assert gap.min() > -2e-3
     felt = np.asarray(states.reward) == 1
@@ -88,12 +88,13 @@ def test_the_objects_of_the_model_are_those_of_the_distance() -> None:
     data = mujoco.MjData(model)
     parts = [i for i in range(model.ngeom) if model.geom(i).name.startswith("object")]
     reached = jax.jit(lambda p: WORLD._reached(p, jnp.array(HOME)))
+    distance = jax.jit(WORLD.distance)
     for s in np.random.default_rng(0).uniform(WORLD.low, WORLD.high, (10, 2)):
         data.qpos[:] = reached(jnp.asarray(s, jnp.float32))
         mujoco.mj_kinematics(model, data)
         rod = model.geom("rod").id
         got = min(mujoco.mj_geomDistance(model, data, rod, i, 9.0, None) for i in parts)
-        want = float(WORLD.distance(jnp.asarray(s, jnp.float32), jnp.array(POSE))) - WORLD.radius
+        want = float(distance(jnp.asarray(s, jnp.float32), jnp.array(POSE))) - WORLD.radius
         if want > 0:
             assert got == pytest.approx(want, abs=5e-4)
 
@@ -103,7 +104,7 @@ def test_it_is_drawn_where_the_tip_was_observed(paths) -> None:
     _, _, states = paths
     here, there = (jax.tree.map(lambda a, t=t: a[0, t], states) for t in (5, 10))
     np.testing.assert_allclose(WORLD.pose(here), here.data.qpos, atol=0.02)
-    moved = TIP.pose(WORLD.pose(here.replace(obs=there.obs)))[0]
+    moved = jax.jit(TIP.pose)(WORLD.pose(here.replace(obs=there.obs)))[0]
     np.testing.assert_allclose(moved[:2], there.obs[:2], atol=5e-4)
     model = mujoco.MjModel.from_xml_string(WORLD.scene())
     assert model.nq == 7

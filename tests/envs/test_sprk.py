@@ -33,8 +33,8 @@ def follow(env, state, actions):
 
 def at(env, x):
     """The state at x [4], with the objects in their reference arrangement."""
-    state, x = env.reset(jax.random.key(0)), jnp.asarray(x, jnp.float32)
-    return state.replace(data=env._at(x[:2], x[2:]), obs=x)
+    state, x = jax.jit(env.reset)(jax.random.key(0)), jnp.asarray(x, jnp.float32)
+    return state.replace(data=jax.jit(env._at)(x[:2], x[2:]), obs=x)
 
 
 @pytest.mark.parametrize("rolling", [False, True])
@@ -93,14 +93,14 @@ def test_objects_are_turned_and_the_start_is_that_of_the_contact_plane() -> None
     fields = {"theta": POSE, "spread": (0.1, 0.1, 3.0), "radius": 0.0365}
     env, plane = Sprk("native", **fields), ContactPlane(**fields)
     keys = jax.random.split(jax.random.key(0), 20)
-    first, same = jax.vmap(env.reset)(keys), jax.vmap(plane.reset)(keys)
+    first, same = (jax.jit(jax.vmap(world.reset))(keys) for world in (env, plane))
     np.testing.assert_allclose(first.obs, same.obs, atol=1e-6)
     np.testing.assert_array_equal(first.info["pose"], same.data.pose)
     middle = 0.5 - first.obs[:, :2]
     u = middle / jnp.linalg.norm(middle, axis=1, keepdims=True)
     after = jax.vmap(partial(follow, env))(first, jnp.repeat(u[:, None], 15, 1))
     pose = after.info["pose"]
-    distance = jax.vmap(jax.vmap(plane.distance))(after.obs[..., :2], pose)
+    distance = jax.jit(jax.vmap(jax.vmap(plane.distance)))(after.obs[..., :2], pose)
     assert float(distance.min()) > env.radius - 3e-3
     touched = np.asarray(after.metrics["touch"]).any(1)
     assert touched.sum() > 5

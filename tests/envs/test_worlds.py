@@ -22,6 +22,8 @@ from worlds import (
     task_of,
 )
 
+pytestmark = pytest.mark.xdist_group("worlds")  # both read `rollout`
+
 CASES = [
     *((t, i) for t in SIMULATED for i in IMPLEMENTATIONS),
     *((t, "analytic") for t in ANALYTIC),

@@ -1,6 +1,7 @@
 """The policy by the gradient of a known return: against finite differences, and on a task."""
 
 import dataclasses
+from functools import partial
 from typing import Any
 
 import jax
@@ -23,6 +24,7 @@ LEARNER = AnalyticGradient(
 NOTHING = Batch(*(jnp.zeros(1) for _ in Batch._fields[:-1]))
 
 
+@partial(jax.jit, static_argnums=0)
 def updated(learner: AnalyticGradient, state: Any, key: jax.Array) -> tuple:
     return learner.update(state, Params(model=(), policy=state.policy), NOTHING, key)
 

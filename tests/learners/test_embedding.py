@@ -38,21 +38,29 @@ def linear_world(rounds: int, worlds: int = 1, length: int = 25) -> Decisions:
     )
 
 
-def learn(learner: EmbeddingLearner, decisions: Decisions, spec: Spec = SPEC) -> Any:
-    """The learner's state after the decisions [rounds, worlds, ...], and metrics [rounds]."""
+def learn(
+    learner: EmbeddingLearner, decisions: Decisions, spec: Spec = SPEC, every: bool = False
+) -> Any:
+    """The learner's state after the decisions [rounds, worlds, ...], and metrics [rounds].
+
+    every: the states after each decision instead of the metrics.
+    """
     rounds, worlds = decisions.ended.shape
 
     def one(state: Any, each: Any) -> Any:
         new, t, key = each
         nothing = jnp.zeros(worlds)
         batch = Batch(new.obs, new.action, nothing, nothing, new.ended, new.next_obs)
-        return learner.update(state, Params(decisions=t * worlds), batch, key)
+        state, metrics = learner.update(state, Params(decisions=t * worlds), batch, key)
+        return state, state if every else metrics
 
-    keys = jax.random.split(jax.random.key(1), rounds)
-    times = jnp.arange(rounds)
-    return jax.jit(lambda state: jax.lax.scan(one, state, (decisions, times, keys)))(
-        learner.init(jax.random.key(0), spec)
-    )
+    @jax.jit
+    def run() -> Any:
+        keys = jax.random.split(jax.random.key(1), rounds)
+        first = learner.init(jax.random.key(0), spec)
+        return jax.lax.scan(one, first, (decisions, jnp.arange(rounds), keys))
+
+    return run()
 
 
 def windows(decisions: Decisions, size: int) -> Decisions:
@@ -63,7 +71,7 @@ def windows(decisions: Decisions, size: int) -> Decisions:
 
 def root_mean_square(learner: EmbeddingLearner, model: Any, decisions: Decisions) -> Any:
     """Of the entries of z at the decisions."""
-    z = jax.vmap(learner.model.lift, (None, 0))(model, decisions.obs[:, 0])
+    z = jax.jit(jax.vmap(learner.model.lift, (None, 0)))(model, decisions.obs[:, 0])
     return jnp.sqrt(jnp.mean(z**2))
 
 
@@ -90,7 +98,8 @@ def test_without_the_state_in_z_the_loss_falls_with_the_norm_of_z(fit):
         first = learner.init(jax.random.key(0), SPEC).model
         last = learn(learner, decisions)[0].model
         each = [root_mean_square(learner, model, decisions) for model in (first, last)]
-        losses = [learner.loss(model, windows(decisions, 5)) for model in (first, last)]
+        loss, part = jax.jit(learner.loss), windows(decisions, 5)
+        losses = [loss(model, part) for model in (first, last)]
         assert losses[1] < 0.1 * losses[0]
         lengths[include_state] = each[1] / each[0]
     assert lengths[False] < 0.1 < 0.5 < lengths[True]
@@ -179,10 +188,10 @@ def test_features_operator_and_gain_change_together_at_the_end_of_an_iteration()
     action = jnp.asarray(rng.uniform(-1, 1, (20, 1, 1)), jnp.float32)
     decisions = Decisions(obs[:-1], action, jnp.zeros((20, 1)), obs[1:])
     each = []
+    states, solve = learn(learner, decisions, world.spec, every=True)[1], jax.jit(regulator.solve)
     for count in (9, 10, 19, 20):
-        first = jax.tree.map(lambda x, n=count: x[:n], decisions)
-        params = learner.params(learn(learner, first, world.spec)[0])
-        solved = regulator.solve(params["model"], params["policy"])
+        params = learner.params(jax.tree.map(lambda x, n=count: x[n - 1], states))
+        solved = solve(params["model"], params["policy"])
         each.append((params["model"]["features"]["weights"], params["policy"]["gain"]))
         if count > 9:
             np.testing.assert_allclose(params["policy"]["gain"], solved["gain"], rtol=1e-4)

@@ -1,6 +1,7 @@
 """The soft return over several decisions, against a loop in NumPy and the adjoint core."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import jax
@@ -66,6 +67,7 @@ def looped(gain: np.ndarray, steps: int) -> np.ndarray:
     raise AssertionError
 
 
+@partial(jax.jit, static_argnums=(1, 3))
 def returned(gain: Array, steps: int, alpha: float = ALPHA, part: Any = PART) -> Array:
     """R [4] of the part."""
     ahead = Lookahead(part, part, part, steps=steps)
@@ -80,7 +82,7 @@ def test_the_return_and_its_slope_are_those_of_a_loop(steps: int) -> None:
     """R, and its gradient by central differences."""
     gain = np.asarray(GAIN, np.float64)
     np.testing.assert_allclose(returned(GAIN, steps), looped(gain, steps), rtol=1e-5)
-    slope = jax.grad(lambda k: returned(k, steps).sum())(GAIN)
+    slope = jax.jit(jax.grad(lambda k: returned(k, steps).sum()))(GAIN)
     for i in range(2):
         h = np.eye(1, 2, i) * 1e-6
         difference = looped(gain + h, steps).sum() - looped(gain - h, steps).sum()
@@ -99,7 +101,7 @@ def test_the_costate_gives_the_same_gradient() -> None:
             return x @ params.T, jnp.zeros(x.shape[:-1])
 
     steps, part = 3, Plain(noise=0.0)
-    slope = jax.grad(lambda k: returned(k, steps, 0.0, part).sum())(GAIN)
+    slope = jax.jit(jax.grad(lambda k: returned(k, steps, 0.0, part).sum()))(GAIN)
     weights = DISCOUNT ** jnp.arange(steps + 1)
 
     def value(path: Path) -> Array:

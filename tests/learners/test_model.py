@@ -1,5 +1,7 @@
 """The model learner on environments with known dynamics and rewards."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -29,6 +31,7 @@ def pay(x: Array, u: Array) -> Array:
     return jnp.cos(x[0]) - 0.1 * u[0] ** 2
 
 
+@partial(jax.jit, static_argnums=1)
 def draw(key: Array, size: int = 128) -> Batch:
     """Random states and actions; the next action is the same."""
     of_x, of_u = jax.random.split(key)
@@ -45,8 +48,12 @@ def trained(learner: ModelLearner, steps: int, batch: object = draw) -> Params:
         return learner.update(state, Params(), batch(key), key)[0], None
 
     keys = jax.random.split(jax.random.key(1), steps)
-    first = learner.init(jax.random.key(0), SPEC)
-    return Params(**learner.params(jax.jit(lambda s: jax.lax.scan(one, s, keys)[0])(first)))
+
+    @jax.jit
+    def run() -> object:
+        return jax.lax.scan(one, learner.init(jax.random.key(0), SPEC), keys)[0]
+
+    return Params(**learner.params(run()))
 
 
 def test_model_and_reward_are_learned() -> None:
@@ -54,11 +61,11 @@ def test_model_and_reward_are_learned() -> None:
     model, reward = Gaussian(hidden=(64,), activation="silu"), RewardNetwork(hidden=(64,))
     params = trained(ModelLearner(model, reward), 4000)
     test = draw(jax.random.key(9), 1000)
-    ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
+    ahead = jax.jit(jax.vmap(model.step, (None, 0, 0)))(params.model, test.obs, test.action)
     error = jnp.abs(ahead - test.next_obs).mean(0)
     change = jnp.abs(test.next_obs - test.obs).mean(0)
     assert (np.asarray(error) < 0.1 * np.asarray(change)).all()
-    got = jax.vmap(reward.outcome, (None, 0, 0, 0))(
+    got = jax.jit(jax.vmap(reward.outcome, (None, 0, 0, 0)))(
         params.reward, test.obs, test.action, test.next_obs
     )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05
@@ -119,6 +126,7 @@ def noise(x: Array) -> Array:
     return 0.02 + 0.09 * (1 + x[:, :1]) * jnp.ones(2)[None]
 
 
+@partial(jax.jit, static_argnums=1)
 def draw_noisy(key: Array, size: int = 200) -> Batch:
     """x' = x + (0.5 x_1, u) + noise(x) e, for x and u U(-1, 1)."""
     of_x, of_u, of_e = jax.random.split(key, 3)
@@ -146,7 +154,7 @@ def test_mean_and_standard_deviation_are_learned() -> None:
     loss = np.asarray(metrics["model/loss"])
     assert loss[-100:].mean() < loss[:100].mean() - 0.5
     test = draw_noisy(jax.random.key(9), 500)
-    ahead = jax.vmap(model.step, (None, 0, 0))(params, test.obs, test.action)
+    ahead = jax.jit(jax.vmap(model.step, (None, 0, 0)))(params, test.obs, test.action)
     wanted = test.obs + jnp.concatenate([0.5 * test.obs[:, 1:], test.action], 1)
     assert float(jnp.sqrt(jnp.mean((ahead - wanted) ** 2))) < 0.03
     std = jax.vmap(lambda x: model.std(params, x) * params["change"].std)(test.obs)
@@ -159,6 +167,7 @@ def test_bad_rates_are_refused() -> None:
         ModelLearner(Gaussian(), learning_rate=0.0)
 
 
+@partial(jax.jit, static_argnums=1)
 def draw_linear(key: Array, size: int = 128) -> Batch:
     """x' = x + (0.1 x_1, 0.1 u), in units that differ; reward 500 + 80 x_0."""
     batch = draw(key, size)
@@ -173,10 +182,10 @@ def test_direct_prediction_and_scaled_rewards_are_learned() -> None:
     reward = RewardNetwork(hidden=(64,), activation="silu", scale=True, layer_norm=True)
     params = trained(ModelLearner(model, reward, weight_decay=1e-4), 1000, draw_linear)
     test = draw_linear(jax.random.key(9), 500)
-    ahead = jax.vmap(model.step, (None, 0, 0))(params.model, test.obs, test.action)
+    ahead = jax.jit(jax.vmap(model.step, (None, 0, 0)))(params.model, test.obs, test.action)
     error = np.abs(ahead - test.next_obs).mean(0) / SCALE
     assert (error < 0.03).all()
-    got = jax.vmap(reward.outcome, (None, 0, 0, 0))(
+    got = jax.jit(jax.vmap(reward.outcome, (None, 0, 0, 0)))(
         params.reward, test.obs, test.action, test.next_obs
     )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05 * 80
@@ -208,7 +217,7 @@ HELD = ModelLearner(
     batch_size=128,
     holdout=0.2,
 )
-UPDATE = jax.jit(HELD.update)
+INIT, UPDATE = jax.jit(lambda key: HELD.init(key, SPEC)), jax.jit(HELD.update)
 
 
 def test_held_out_decisions_are_not_learned_from() -> None:
@@ -219,7 +228,7 @@ def test_held_out_decisions_are_not_learned_from() -> None:
     far = batch._replace(
         reward=batch.reward + 5 * held, next_obs=batch.next_obs + 9.0 * held[:, None]
     )
-    first = HELD.init(key, SPEC)
+    first = INIT(key)
     states, losses = [], []
     for given in (batch, far, batch._replace(reward=batch.reward + 5 * ~held)):
         state, metrics = UPDATE(first, Params(), given, key)
@@ -238,7 +247,7 @@ def test_held_out_decisions_are_not_learned_from() -> None:
 def test_held_out_losses_are_a_running_mean_that_ranks_the_members() -> None:
     """Against the members' own losses on the decisions that the hash selects."""
     loss = jax.jit(Gaussian(hidden=(8,)).loss)
-    state, want = HELD.init(jax.random.key(0), SPEC), np.zeros(3)
+    state, want = INIT(jax.random.key(0)), np.zeros(3)
     for n in range(1, 4):
         batch = draw(jax.random.key(n), 3 * 128)
         state, metrics = UPDATE(state, Params(), batch, jax.random.key(0))

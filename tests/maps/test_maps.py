@@ -23,7 +23,7 @@ def test_the_known_map_steps_where_the_robot_touches() -> None:
     s = 0.5 + r[:, None] * np.array([0.6, 0.8])
     logit = (0.03 + 0.01 - (r - 0.2)) / 0.01
     want = 0.02 + 0.88 / (1 + np.exp(-logit))
-    got = jax.vmap(known.chance)(jnp.asarray(s, jnp.float32))
+    got = jax.jit(jax.vmap(known.chance))(jnp.asarray(s, jnp.float32))
     np.testing.assert_allclose(got, want, rtol=1e-3)
     radii = np.hypot(*(known.outline - 0.5).T)
     np.testing.assert_allclose(radii, 0.23, atol=2e-4)
@@ -53,9 +53,9 @@ def test_the_learned_map_interpolates_f(file: Path) -> None:
     s = np.random.default_rng(0).uniform([0, 0], [2, 1], (50, 2))
     x, y = s.T
     f = 1 - 2 * x + y - 3 * x * y
-    got = jax.vmap(made.decision)(jnp.asarray(s, jnp.float32))
+    got = jax.jit(jax.vmap(made.decision))(jnp.asarray(s, jnp.float32))
     np.testing.assert_allclose(got, f, atol=1e-5)
-    p = jax.vmap(made.chance)(jnp.asarray(s, jnp.float32))
+    p = jax.jit(jax.vmap(made.chance))(jnp.asarray(s, jnp.float32))
     np.testing.assert_allclose(p, 0.1 + 0.7 / (1 + np.exp(-2 * f)), rtol=1e-4)
     assert float(made.decision(jnp.array([2.1, 0.5]))) == -1
     x, y = made.outline.T

@@ -22,15 +22,16 @@ def member(params: dict, i: int) -> dict:
 
 @pytest.fixture
 def params():
-    return MODEL.init(jax.random.key(0), SPEC)
+    return jax.jit(lambda key: MODEL.init(key, SPEC))(jax.random.key(0))
 
 
 def test_members_differ_and_are_averaged(params) -> None:
     """`step` is the mean of the members' predictions, which differ."""
-    each = np.stack([ONE.step(member(params, i), X, U) for i in range(4)])
+    step = jax.jit(ONE.step)
+    each = np.stack([step(member(params, i), X, U) for i in range(4)])
     assert each.std(0).min() > 1e-3
-    np.testing.assert_allclose(MODEL.each(params, X, U), each, rtol=1e-6)
-    np.testing.assert_allclose(MODEL.step(params, X, U), each.mean(0), rtol=1e-5)
+    np.testing.assert_allclose(jax.jit(MODEL.each)(params, X, U), each, rtol=1e-6)
+    np.testing.assert_allclose(jax.jit(MODEL.step)(params, X, U), each.mean(0), rtol=1e-5)
 
 
 def test_every_member_has_its_own_batch(params) -> None:
@@ -39,8 +40,9 @@ def test_every_member_has_its_own_batch(params) -> None:
         jax.random.normal(jax.random.key(i), (8, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
     shares = [slice(2 * i, 2 * i + 2) for i in range(4)]
-    losses = [ONE.loss(member(params, i), x[s], u[s], after[s]) for i, s in enumerate(shares)]
-    np.testing.assert_allclose(MODEL.loss(params, x, u, after), np.mean(losses), rtol=1e-5)
+    loss, whole = jax.jit(ONE.loss), jax.jit(MODEL.loss)
+    losses = [loss(member(params, i), x[s], u[s], after[s]) for i, s in enumerate(shares)]
+    np.testing.assert_allclose(whole(params, x, u, after), np.mean(losses), rtol=1e-5)
     gradient = jax.jit(jax.grad(lambda w, after: MODEL.loss({**params, "weights": w}, x, u, after)))
     moved = jax.tree.map(
         lambda a, b: np.abs(np.asarray(a - b)).reshape(4, -1).max(1) > 0,
@@ -58,10 +60,11 @@ def test_all_members_draw_equally_many_states(params) -> None:
     x, u, noise = (
         jax.random.normal(jax.random.key(i), (count, n)) for i, n in ((1, 3), (2, 2), (3, 3))
     )
-    each = np.stack([ONE.draw(member(params, i), x, u, noise, None) for i in range(4)])
+    alone, draw = jax.jit(ONE.draw), jax.jit(MODEL.draw)
+    each = np.stack([alone(member(params, i), x, u, noise, None) for i in range(4)])
     members = []
     for seed in range(20):
-        got = np.asarray(MODEL.draw(params, x, u, noise, jax.random.key(seed)))
+        got = np.asarray(draw(params, x, u, noise, jax.random.key(seed)))
         assert got.shape == (count, 3)
         apart = np.abs(each - got).max(-1)  # [4, count]
         assert (apart.min(0) < 1e-5).all()
@@ -69,7 +72,7 @@ def test_all_members_draw_equally_many_states(params) -> None:
         members.append(apart.argmin(0))
     assert all(len(set(each)) == 4 for each in np.transpose(members))
     std = np.exp(np.asarray(params["weights"]["log_std"][0]))
-    mean = ONE.draw(member(params, 0), x, u, 0 * noise, None)
+    mean = alone(member(params, 0), x, u, 0 * noise, None)
     np.testing.assert_allclose(each[0] - mean, std * np.asarray(noise), rtol=1e-3, atol=1e-5)
 
 

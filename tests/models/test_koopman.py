@@ -54,7 +54,7 @@ def test_pykoopman_agrees() -> None:
     with jax.enable_x64(True):
         learner = LeastSquares(Koopman(Monomials()), prior=1e-13)
         state = learner.init(jax.random.key(0), SPEC)
-        state, _ = learner.update(state, Params(), batch(x, u, after), jax.random.key(0))
+        state, _ = jax.jit(learner.update)(state, Params(), batch(x, u, after), jax.random.key(0))
     theirs = pk.Koopman(observables=pk.observables.Identity(), regressor=pk.regression.EDMDc())
     theirs.fit(x, after, u=u)
     np.testing.assert_allclose(state.model["K"], np.hstack([theirs.A, theirs.B]), atol=1e-10)
@@ -63,7 +63,7 @@ def test_pykoopman_agrees() -> None:
 def test_learning_ends_and_k0_is_random_in_continuous_time() -> None:
     """`until` counts decisions of the run; K_0 - [I 0] has deviation s dt, or K_0 is zero."""
     learner = LeastSquares(CLOSED, deviation=2.0, until=1)
-    many = jax.vmap(lambda k: learner.init(k, SPEC).model["K"])(
+    many = jax.jit(jax.vmap(lambda k: learner.init(k, SPEC).model["K"]))(
         jax.random.split(jax.random.key(0), 500)
     )
     np.testing.assert_allclose(many.std(0), 2.0 * SPEC.dt, rtol=0.2)
@@ -72,7 +72,7 @@ def test_learning_ends_and_k0_is_random_in_continuous_time() -> None:
     data = batch(*(np.ones((1, n)) for n in (2, 1, 2)))
     for decision, learns in ((0, True), (1, False)):
         params = Params(decisions=jnp.int32(decision))
-        after, _ = learner.update(state, params, data, jax.random.key(0))
+        after, _ = jax.jit(learner.update)(state, params, data, jax.random.key(0))
         assert (np.abs(after.model["K"] - state.model["K"]).max() > 0) == learns
     nothing = LeastSquares(CLOSED, mean="zero").init(jax.random.key(0), SPEC).model["K"]
     np.testing.assert_allclose(nothing, 0, atol=1e-7)
@@ -97,7 +97,7 @@ def test_products_make_the_model_bilinear() -> None:
     with jax.enable_x64(True):
         learner = LeastSquares(model, prior=1e-12)
         state = learner.init(jax.random.key(0), SPEC)
-        state, _ = learner.update(state, Params(), batch(x, u, after), jax.random.key(0))
+        state, _ = jax.jit(learner.update)(state, Params(), batch(x, u, after), jax.random.key(0))
         np.testing.assert_allclose(state.model["K"], truth, atol=1e-9)
 
 
@@ -111,7 +111,10 @@ def test_the_regulator_of_a_known_system_is_scipys() -> None:
     """The point mass, in coordinates of the observation: gain, goal and feed-forward."""
     world = PointMass()
     with jax.enable_x64(True):
-        A, B = (np.asarray(m) for m in jax.jacobian(world.dynamics, (0, 1))(*world.equilibrium()))
+        A, B = (
+            np.asarray(m)
+            for m in jax.jit(jax.jacobian(world.dynamics, (0, 1)))(*world.equilibrium())
+        )
         learner = RegulatorLearner(
             Koopman(Monomials()), Linear(), world, (3.0, 2.0, 1.0, 1.0), (0.5,), horizon=4096
         )
@@ -145,8 +148,10 @@ def test_any_model_with_derivatives_has_a_regulator() -> None:
     world = Pendulum()
     learner = RegulatorLearner(Exact(world), Linear(), world, (1.0,), (0.1,), horizon=200)
     state = learner.init(jax.random.key(0), world.spec)
-    state, metrics = learner.update(state, Params(), None, jax.random.key(0))
-    A, B = (np.asarray(m) for m in jax.jacobian(world.dynamics, (0, 1))(*world.equilibrium()))
+    state, metrics = jax.jit(learner.update)(state, Params(), None, jax.random.key(0))
+    A, B = (
+        np.asarray(m) for m in jax.jit(jax.jacobian(world.dynamics, (0, 1)))(*world.equilibrium())
+    )
     P = np.zeros((3, 3))
     for _ in range(200):
         K = np.linalg.solve(0.1 * np.eye(1) + B.T @ P @ B, B.T @ P @ A)
@@ -163,9 +168,10 @@ def test_a_solution_that_is_not_finite_is_rejected() -> None:
     state = learner.init(jax.random.key(0), world.spec)
     good = learner.model.init(jax.random.key(0), world.spec)
     good = {**good, "K": good["K"].at[:, 4:].set(0.3 * jnp.eye(4, 2, -2))}
-    state, _ = learner.update(state, Params(model=good), None, jax.random.key(0))
+    update = jax.jit(learner.update)
+    state, _ = update(state, Params(model=good), None, jax.random.key(0))
     bad = {**good, "K": good["K"] * jnp.nan}
-    after, metrics = learner.update(state, Params(model=bad), None, jax.random.key(0))
+    after, metrics = update(state, Params(model=bad), None, jax.random.key(0))
     np.testing.assert_array_equal(after.policy["gain"], state.policy["gain"])
     assert np.abs(after.policy["gain"]).max() > 0
     assert metrics["policy/rejected_solutions"] == 1
@@ -253,12 +259,12 @@ def test_a_hovering_quadcopter_has_the_gain_and_the_thrust_of_its_linearisation(
         hover = world.equilibrium()[1]
         local = np.zeros((2000, 12))
         local[:, 3:] = 1e-3 * RNG.uniform(-1, 1, (2000, 9))
-        obs = jax.vmap(world.from_local)(jnp.asarray(local))
+        obs = jax.jit(jax.vmap(world.from_local))(jnp.asarray(local))
         u = hover[None] + 1e-3 * RNG.uniform(-1, 1, (2000, 4))
         after = jax.jit(jax.vmap(world.dynamics))(obs, u)
         learner = LeastSquares(model, prior=1e-14)
         state = learner.init(jax.random.key(0), world.spec)
-        state, _ = learner.update(state, Params(), batch(obs, u, after), jax.random.key(0))
+        state, _ = jax.jit(learner.update)(state, Params(), batch(obs, u, after), jax.random.key(0))
         regulator = RegulatorLearner(
             model, Linear(), world, tuple(np.diag(Q)), tuple(np.diag(R)), horizon=1024
         )

@@ -1,6 +1,7 @@
 """Ergodic objectives against finite differences, grids, and known optima."""
 
 from dataclasses import replace
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -36,8 +37,12 @@ def after(objective, past: np.ndarray):
     memory, remember = objective.init(SPEC), remembering(objective)
     for x in past[:-1]:
         memory = remember(memory, jnp.asarray(x))
-    x, key = jnp.asarray(past[-1]), jax.random.key(0)
-    return objective.prepare(Params(), memory, x, jnp.zeros(1), key)[0]
+
+    @jax.jit
+    def value(memory, x, path):
+        return objective.prepare(Params(), memory, x, jnp.zeros(1), jax.random.key(0))[0](path)
+
+    return partial(value, memory, jnp.asarray(past[-1]))
 
 
 def remembering(objective):

@@ -7,6 +7,7 @@ import shutil
 
 import jax
 import jax.numpy as jnp
+import programs
 import pytest
 from tiny import TINY, call, call_train, contents, only_line, run
 
@@ -15,8 +16,6 @@ from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.run import checkpoint, integrity, memory, rows, session
 from hybrid_rl.run.evaluations import Evaluations
-
-pytestmark = pytest.mark.xdist_group("damage")
 
 
 @pytest.fixture(scope="module")
@@ -120,6 +119,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
     folder = copied.with_name("broken")
     with monkeypatch.context() as patch:
         patch.setattr(Pendulum, "step", step)
+        patch.setattr(programs, "KEPT", [])
         line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
         assert call_train(*line) == 1
     assert only_line(capfd) == (

@@ -18,7 +18,6 @@ from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop
 
-pytestmark = pytest.mark.xdist_group("session")
 SAC = ["algo=sac", "num_seeds=2"]
 
 

@@ -20,8 +20,6 @@ from hybrid_rl.targets.policy_information import PolicyInformation
 from hybrid_rl.training.rollout import evaluation_keys
 from hybrid_rl.types import Params, Spec
 
-pytestmark = pytest.mark.xdist_group("backflips")
-
 
 def draw(*arguments) -> int:
     """Exit code of the command."""

@@ -1,0 +1,178 @@
+"""Trained policies in files: those of policies/, which come with the package, or one's own.
+
+A file is that of hybrid_rl.data.trained. Its `about` is JSON with the world, the episode and the
+policy as in config.yaml of the run, and with the command, the seed and the evaluation.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import is_dataclass
+from pathlib import Path
+from typing import Any
+
+import jax
+from hydra.utils import instantiate
+from omegaconf import DictConfig, OmegaConf
+
+from hybrid_rl import config as configuration
+from hybrid_rl.cli.arguments import Argument
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.core import archive
+from hybrid_rl.core.lifting import is_identity
+from hybrid_rl.data.trained import TrainedPolicy
+from hybrid_rl.envs.mujoco.physics import resolve
+from hybrid_rl.errors import UsageError
+from hybrid_rl.evaluate import Trained, load
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import Params
+
+PARTS = ("env", "episode", "policy")  # of `about`
+POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file")
+
+
+def names() -> list[str]:
+    """The policies that come with the package."""
+    return sorted(path.stem for each in archive.PARENTS for path in each.glob("policies/*.npz"))
+
+
+def chosen(given: Mapping[str, Any]) -> Trained:
+    """What the arguments run=DIR or policy=NAME name.
+
+    Raises:
+        UsageError: if both or none are given, or what they name is unusable.
+    """
+    if bool(given["run"]) == bool(given["policy"]):
+        raise UsageError(
+            "run, policy: give one of them; run=DIR is a folder that training wrote, "
+            f"policy=NAME one of {', '.join(names())} or a file"
+        )
+    return read(given["policy"]) if given["policy"] else load(Path(given["run"]))
+
+
+def read(name: str) -> Trained:
+    """The policy NAME of the package, or that in a file whose name ends in .npz.
+
+    Raises:
+        UsageError: if there is none, or it is unusable.
+    """
+    file = Path(name) if name.endswith(".npz") else Path("policies", f"{name}.npz")
+    prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
+    try:
+        arrays = archive.read(prefix, file, hint=known)
+        if archive.ABOUT not in arrays:
+            raise UsageError(f"{prefix} has no description; write it again with `demonstrate`")
+        about = _described(prefix, str(arrays[archive.ABOUT]))
+        prepare(configuration.load([]))
+        env, policy = (_built(prefix, about[part]) for part in ("env", "policy"))
+        task = str(arrays["task"])
+        params = TrainedPolicy(policy, str(file), task, env, about["episode"]).load()
+    except UsageError:
+        raise
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    controller = PolicyController(policy, explore=False)
+    return Trained(
+        task,
+        Episode(env, **about["episode"]),
+        {"full": controller, "policy": controller},
+        Params(policy=jax.tree.map(lambda leaf: leaf[None], params)),
+        (int(about["seed"]),),
+        int(about["step"]),
+        tuple(_origin(about)),
+    )
+
+
+def _described(prefix: str, text: str) -> dict[str, Any]:
+    """`about` of a file."""
+    try:
+        about = json.loads(text)
+        missing = [key for key in (*PARTS, "seed", "step") if key not in about]
+    except (ValueError, TypeError) as error:
+        raise UsageError(f"{prefix} its description is damaged") from error
+    if missing:
+        raise UsageError(f"{prefix} its description lacks {', '.join(missing)}")
+    return about
+
+
+def _built(prefix: str, node: Any) -> Any:
+    """The part that a description names; only classes of hybrid_rl are called."""
+    config: Any = OmegaConf.create(node)
+    _check_classes(prefix, config)
+    if isinstance(config.get("physics"), str):
+        config.physics = resolve(config.physics, 1)
+    return instantiate(config, _convert_="all")
+
+
+def _check_classes(prefix: str, node: Any) -> None:
+    """Raise UsageError for a `_target_` that is no dataclass of hybrid_rl."""
+    for key, value in node.items():
+        if key == "_target_":
+            ours = str(value).startswith("hybrid_rl.") and _is_part(str(value))
+            if not ours:
+                raise UsageError(f"{prefix} {value} is no part of hybrid_rl; give run=DIR")
+        elif key in ("_args_", "_partial_", "_recursive_", "_convert_"):
+            raise UsageError(f"{prefix} {key} is not allowed in a description")
+        elif isinstance(value, DictConfig):
+            _check_classes(prefix, value)
+
+
+def _is_part(target: str) -> bool:
+    try:
+        part = configuration.part_class(target)
+    except (ImportError, ValueError):
+        return False
+    return is_dataclass(part) and str(part.__module__).startswith("hybrid_rl.")
+
+
+def _origin(about: Mapping[str, Any]) -> list[str]:
+    """Lines about how a policy was made."""
+    lines = []
+    if about.get("command"):
+        lines.append(f"trained by: {about['command']}")
+    if (found := about.get("evaluation")) is not None:
+        count = len(found["returns"])
+        lines.append(f"evaluated then: {found['mean']:,.1f} (mean of {count} episodes)")
+    return lines
+
+
+def description(folder: Path, trained: Trained, command: str) -> dict[str, Any] | None:
+    """`about` of the policy of the first seed of the run in `folder`.
+
+    None if its controller `policy` is not a policy of observations alone.
+    """
+    config = run_folder.read(folder, "run")
+    node = config.controllers.get("policy")
+    controller: Any = trained.controllers.get("policy")
+    if not isinstance(controller, PolicyController):
+        return None
+    model = trained.learner(mode="policy")[1].model
+    if not is_identity(controller.model, model, trained.episode.spec.obs):
+        return None
+    parts: Any = {
+        "env": OmegaConf.to_container(config.env),
+        "episode": OmegaConf.to_container(config.episode),
+        "policy": OmegaConf.to_container(node.policy),
+    }
+    if isinstance(parts["env"].get("physics"), str):
+        parts["env"]["physics"] = "auto"
+    about = {**parts, "algo": config.algo, "seed": trained.seeds[0], "step": trained.step}
+    summary = _json(folder / "summary.json")
+    made = {key: summary.get(key) for key in ("device", "versions", "git_commit")}
+    return {**about, "command": command, "evaluation": _evaluation(folder, trained.step), **made}
+
+
+def _evaluation(folder: Path, step: int) -> dict[str, Any] | None:
+    """Mean and returns of the first seed in evaluation_policy.json of this step, if there are."""
+    values = _json(folder / "evaluation_policy.json")
+    if values.get("step") != step:
+        return None
+    return {"mean": values["mean"][0], "returns": values["returns"][0]}
+
+
+def _json(file: Path) -> dict[str, Any]:
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}

@@ -1,0 +1,203 @@
+"""Write docs/atlas.md, every figure of the thesis with our result, from docs/atlas.yaml.
+
+    python scripts/atlas.py
+
+Numbers, seeds and commands are read from the JSON and from the pages of docs/results.
+"""
+
+import json
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from statistics import fmean, median
+from typing import Any
+
+import yaml
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+RESULTS = DOCS / "results"
+VERDICTS = ("holds", "holds with", "does not hold", "no claim")
+INTRODUCTION = """# Atlas: every figure and table of the thesis
+
+<!-- Written by scripts/atlas.py from atlas.yaml and the JSON of results; do not edit. -->
+
+I. Abraham, *Optimal Experimental Learning and Infinite Linear Embeddings*, Northwestern
+University, 2020: what each figure and table claims, and what we found. "Holds with" means in part,
+or under a condition, which the entry names. Bands, settings and reservations are on the page that
+its picture leads to. Seeds and machine are those of an entry's first file.
+"""
+
+
+def entries() -> dict[str, dict[str, dict[str, Any]]]:
+    """docs/atlas.yaml: chapter -> figure or table -> its entry."""
+    return yaml.safe_load((DOCS / "atlas.yaml").read_text(encoding="utf-8"))
+
+
+@cache
+def numbers(stem: str) -> Any:
+    """docs/results/STEM.json."""
+    return json.loads((RESULTS / f"{stem}.json").read_text(encoding="utf-8"))
+
+
+def value(path: str) -> float:
+    """The number at FILE/KEY/..., the median of a list.
+
+    A step is a key, an index, the label of a curve (before a comma and the end of its metric, if
+    several have it), `x=X` (IQM of a curve at X), `mean=X` (mean over its seeds) or * (each one).
+
+    Raises:
+        KeyError, IndexError, StopIteration or ValueError: if there is no such value.
+    """
+    stem, *steps = path.split("/")
+    found = _follow(numbers(stem), steps)
+    return median(found) if isinstance(found, list) else found
+
+
+def _follow(data: Any, steps: list[str]) -> Any:
+    if not steps:
+        return data
+    step, rest = steps[0], steps[1:]
+    if step == "*":
+        return [_follow(one, rest) for one in data]
+    if isinstance(data, list) and not re.fullmatch(r"-?\d+", step):
+        label, _, metric = step.partition(", ")
+        data = next(
+            one for one in data if one["label"] == label and one.get("metric", "").endswith(metric)
+        )
+    elif isinstance(data, list):
+        data = data[int(step)]
+    elif step.startswith("x="):
+        data = data["iqm"][data["x"].index(float(step[2:]))]
+    elif step.startswith("mean="):
+        i = data["x"].index(float(step[5:]))
+        data = fmean(seed[i] for seed in data["each"])
+    else:
+        data = data[step]
+    return _follow(data, rest)
+
+
+def filled(text: str) -> str:
+    """The text with the value of each {PATH:FORMAT}."""
+    return re.sub(r"\{([^{}:]+):?([^{}]*)\}", lambda match: format(value(match[1]), match[2]), text)
+
+
+def seeds(entry: dict[str, Any]) -> str:
+    """Seeds or trials of an entry, from the first of its JSON that has them."""
+    if "seeds" in entry:
+        return entry["seeds"]
+    for data in map(numbers, entry["results"]):
+        for key, found in _items(data):
+            if key == "seeds" and isinstance(found, list):
+                return f"{found[0]} to {found[-1]}"
+            if key in ("seeds", "trials", "draws"):
+                return f"{found}" if key == "seeds" else f"{found} {key}"
+            if key == "asked":  # of figure 6-9: one number of queries for each seed
+                return f"{len(found)}"
+    raise ValueError(f"no seeds in {entry['results']}")
+
+
+def _items(data: Any) -> Iterator[tuple[str, Any]]:
+    """All keys and values of nested dicts and lists, outer ones first."""
+    for value in data if isinstance(data, list) else data.values():
+        if isinstance(data, list) and isinstance(value, dict | list):
+            yield from _items(value)
+    if isinstance(data, dict):
+        yield from data.items()
+        for value in data.values():
+            if isinstance(value, dict | list):
+                yield from _items(value)
+
+
+def section(page: str) -> str:
+    """The text of FILE.md#ANCHOR, to the next heading of its level.
+
+    Raises:
+        ValueError: if the page has no such heading.
+    """
+    file, _, anchor = page.partition("#")
+    parts = re.split(r"^(#+ .+)$", (DOCS / file).read_text(encoding="utf-8"), flags=re.MULTILINE)
+    text, level = "", 0
+    for heading, body in zip(parts[1::2], parts[2::2], strict=True):
+        marks, _, title = heading.partition(" ")
+        if level and len(marks) <= level:
+            break
+        if level or re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") == anchor:
+            level = level or len(marks)
+            text += heading + body
+    if not level:
+        raise ValueError(f"no section: {page}")
+    return text
+
+
+def command(page: str, words: str) -> str:
+    """The first line with these words among the commands of a section.
+
+    Raises:
+        ValueError: if there is none.
+    """
+    for line in section(page).splitlines():
+        if re.match(r"\s*python ", line) and words in line:
+            return line.strip()
+    raise ValueError(f"no command with {words!r} in {page}")
+
+
+def picture(entry: dict[str, Any]) -> str:
+    """Path of an entry's picture, relative to docs, or nothing."""
+    names = [f"{stem}.png" for stem in entry["results"]]
+    name = entry.get("picture", (names or [""])[0])
+    return (RESULTS / name).resolve().relative_to(DOCS).as_posix() if name else ""
+
+
+def gallery(chapter: dict[str, dict[str, Any]]) -> str:
+    """Thumbnails that lead to the result pages, three in a row."""
+    shown = {name: entry for name, entry in chapter.items() if picture(entry)}
+    cells = [
+        f"[![{name}: {entry['title']}]({picture(entry)})]({entry['page']}) <br> "
+        f"[{name}](#{_anchor(name, entry)}): {entry['verdict']}"
+        for name, entry in shown.items()
+    ]
+    cells += [" "] * (-len(cells) % 3)
+    rows = ["| " + " | ".join(cells[i : i + 3]) + " |" for i in range(0, len(cells), 3)]
+    return "\n".join(["| | | |", "|---|---|---|", *rows])
+
+
+def entry_text(name: str, entry: dict[str, Any]) -> str:
+    """The part of the page about one figure or table."""
+    verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
+    verdict = {"holds": "Holds:", "does not hold": "Does not hold:"}.get(
+        verdict, "Holds with" if verdict == "holds with" else "No claim to test:"
+    )
+    text = f"### {name}: {entry['title']}\n\n{entry['claim']}\n\n"
+    text += f"**{verdict}** {shows} [More]({entry['page']})\n"
+    if entry["results"]:
+        files = ", ".join(f"[{stem}](results/{stem}.json)" for stem in entry["results"])
+        text += f"\nSeeds: {seeds(entry)}. Machine: {entry['machine']}. Numbers: {files}.\n"
+    if entry["commands"]:
+        lines = [command(entry["page"], words) for words in entry["commands"]]
+        text += "\n```\n" + "\n".join(lines) + "\n```\n"
+    return text
+
+
+def page() -> str:
+    """The text of docs/atlas.md."""
+    chapters = entries()
+    every = [entry["verdict"] for chapter in chapters.values() for entry in chapter.values()]
+    holds, partly, fails, none = map(every.count, VERDICTS)
+    text = (
+        f"{INTRODUCTION}\nOf {len(every)} figures and tables the claims of {holds} hold and those "
+        f"of {partly} hold with a condition. Those of {fails} do not hold; {none} claim nothing.\n"
+    )
+    for title, chapter in chapters.items():
+        parts = [entry_text(name, entry) for name, entry in chapter.items()]
+        text += f"\n## {title}\n\n{gallery(chapter)}\n\n" + "\n".join(parts)
+    return text
+
+
+def _anchor(name: str, entry: dict[str, Any]) -> str:
+    heading = f"{name}: {entry['title']}".lower()
+    return re.sub(r"[^\w\- ]", "", heading).replace(" ", "-")
+
+
+if __name__ == "__main__":
+    (DOCS / "atlas.md").write_text(page(), encoding="utf-8")

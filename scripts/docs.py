@@ -1,0 +1,213 @@
+"""Build the documentation site in build/docs/html, with Sphinx and MyST-NB.
+
+    python scripts/docs.py
+
+The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that
+their links work on GitHub and on the site. A page per method is made from conf/algo, the section of
+docs/methods.md and the docstrings of its parts; the reference from all docstrings. A warning, such
+as a link that leads nowhere, is an error. `make docs` runs it in .venv-docs.
+"""
+
+import importlib
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+from omegaconf import DictConfig, ListConfig
+
+from hybrid_rl import config
+from hybrid_rl.errors import UsageError
+
+ROOT = Path(__file__).resolve().parents[1]
+BUILD = ROOT / "build" / "docs"
+SOURCE, HTML = BUILD / "source", BUILD / "html"
+AT_TOP = ("CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
+TASKS = ("pendulum", "cart_double_pendulum", "quadcopter_se3", "sprk_sand", "contact_plane")
+TASKS += ("sawyer_torque", "cart_swing_up", "lander", "no_dynamics", "halfcheetah")
+PACKAGES = {  # page of the reference -> folders and modules
+    "Commands": (
+        "train",
+        "evaluate",
+        "render",
+        "figures",
+        "demonstrate",
+        "export",
+        "report",
+        "list",
+    ),
+    "Configuration": ("config", "overrides"),
+    "Data structures": ("types", "errors"),
+    "Protocols": ("protocols",),
+    "Core mathematics": ("core",),
+    "Models, maps and features": ("models", "maps", "features", "beliefs", "networks"),
+    "Policies and critics": ("policies", "critics"),
+    "Objectives, targets and proposals": ("objectives", "targets", "proposals"),
+    "Controllers": ("controllers",),
+    "Learners and data": ("learners", "data"),
+    "Training": ("training",),
+    "Runs": ("run",),
+    "Studies": ("studies",),
+    "Environments": ("envs",),
+}
+TREE = """
+```{toctree}
+:hidden:
+:caption: CAPTION
+
+PAGES
+```
+"""
+NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
+PAGES = {
+    "Start": ["Getting started <self>", "docs/concepts", "docs/howto", "docs/faq", "CONTRIBUTING"],
+    "Notebooks": NOTEBOOKS,
+    "Methods": ["docs/methods", "All methods <methods/index>"],
+    "Results": ["docs/atlas", "docs/results/README"],
+    "Reference": ["Reference <reference/index>", "CHANGELOG", "Software paper <paper/paper>"],
+}
+
+
+def copy() -> None:
+    """The pages and what they link to."""
+    shutil.rmtree(SOURCE, ignore_errors=True)
+    shutil.copytree(ROOT / "docs", SOURCE / "docs", ignore=shutil.ignore_patterns("conf.py"))
+    shutil.move(SOURCE / "docs" / "static", SOURCE / "static")
+    shutil.copytree(ROOT / "paper", SOURCE / "paper")
+    for name in AT_TOP:
+        shutil.copy(ROOT / name, SOURCE / name)
+    trees = "".join(tree(caption, pages) for caption, pages in PAGES.items())
+    write("index.md", (ROOT / "README.md").read_text(encoding="utf-8") + trees)
+    results = SOURCE / "docs" / "results" / "README.md"
+    others = sorted(path.stem for path in results.parent.glob("*.md") if path != results)
+    with results.open("a", encoding="utf-8") as page:
+        page.write(tree("", others))
+    atlas = SOURCE / "docs" / "atlas.md"
+    text = atlas.read_text(encoding="utf-8")
+    gallery = r"^\| \| \| \|\n(?:\|.*\n)+"
+    framed = re.sub(gallery, r"```{container} atlas\n\g<0>```\n", text, flags=re.MULTILINE)
+    atlas.write_text(framed, encoding="utf-8")
+
+
+def tree(caption: str, pages: list[str]) -> str:
+    """A hidden table of contents, which becomes a part of the side bar."""
+    text = TREE.replace("CAPTION", caption).replace("PAGES", "\n".join(pages))
+    return text if caption else text.replace(":caption: \n", "")
+
+
+def write(name: str, text: str) -> None:
+    """A page of the site."""
+    path = SOURCE / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+def methods() -> None:
+    """A page per method, and their index."""
+    page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8")
+    sections: dict[str, str] = {}
+    for heading, text in re.findall(r"^### (.+)\n\n((?:(?!##).*\n)+)", page, re.MULTILINE):
+        sections |= dict.fromkeys(heading.split(", "), text)
+    links = re.compile(r"\]\((?!https?:)")
+    lines = []
+    for path in sorted((ROOT / "conf" / "algo").glob("*.yaml")):
+        name, yaml = path.stem, path.read_text(encoding="utf-8")
+        about = " ".join(line[2:] for line in re.findall(r"^# (?!@).*", yaml, re.MULTILINE))
+        text = links.sub("](../docs/", sections[name])
+        write(
+            f"methods/{name}.md",
+            f"# {name}\n\n{about}\n\n## What it does\n\n{text}\n## Parts and equations\n\n"
+            f"{''.join(map(described, parts(name)))}\n## Settings\n\n"
+            f"`python -m hybrid_rl.train algo={name} --cfg job` prints all keys with their values. "
+            f"`conf/algo/{name}.yaml`:\n\n```yaml\n{yaml}```\n",
+        )
+        lines.append(f"* [{name}]({name}.md): {about}")
+    names = [line.split("[")[1].split("]")[0] for line in lines]
+    write("methods/index.md", "# All methods\n\n" + "\n".join(lines) + "\n" + tree("", names))
+
+
+def parts(method: str) -> list[str]:
+    """Classes of the method's controllers and learners, by their full names, without the world."""
+    composed = composed_on_a_task(method)
+    found = [*targets(composed.controllers), *targets(composed.learners)]
+    return list(dict.fromkeys(name for name in found if ".envs." not in name))
+
+
+def composed_on_a_task(method: str) -> DictConfig:
+    """The configuration of a method on the first task that it composes with."""
+    for task in TASKS:
+        try:
+            return config.load([f"algo={method}", f"task={task}"])
+        except (UsageError, ValueError):
+            continue
+    raise ValueError(f"algo={method}: fits none of {', '.join(TASKS)}")
+
+
+def targets(node: Any) -> Iterator[str]:
+    """The `_target_` of every part in a configuration, outer ones first."""
+    if isinstance(node, DictConfig):
+        if "_target_" in node:
+            yield node._target_
+        for value in node.values():
+            yield from targets(value)
+    elif isinstance(node, ListConfig):
+        for value in node:
+            yield from targets(value)
+
+
+def described(name: str) -> str:
+    """A part: its name, the first paragraph of its module, and the equations after it."""
+    module, _, title = name.rpartition(".")
+    doc = importlib.import_module(module).__doc__ or ""
+    first, *blocks = re.split(r"\n\s*\n", doc.strip("\n"))
+    equations = next((block for block in blocks[:3] if block.startswith("    ")), "")
+    quoted = re.sub(r"([*_|<>])", r"\\\1", re.sub(r"\s+", " ", first))
+    text = f"**{{py:obj}}`{title} <{name}>`**: {quoted}\n\n"
+    return text + (f"```text\n{dedent(equations)}\n```\n\n" if equations else "")
+
+
+def reference() -> None:
+    """A page per package, with all of its modules."""
+    names = []
+    for title, members in PACKAGES.items():
+        page = re.sub(r"\W+", "_", title.lower())
+        names.append(page)
+        text = f"# {title}\n\n"
+        for module in (name for member in members for name in modules(member)):
+            text += f"## {module}\n\n```{{eval-rst}}\n.. automodule:: {module}\n```\n\n"
+        write(f"reference/{page}.md", text)
+    about = "Classes and functions by package, from their docstrings, with their source.\n"
+    shown = tree("", names).replace(":hidden:\n", "")
+    write("reference/index.md", f"# Reference\n\n{about}{shown}")
+
+
+def modules(member: str) -> list[str]:
+    """The modules of hybrid_rl.MEMBER, which is a package or a module."""
+    folder = ROOT / ("envs" if member == "envs" else f"hybrid_rl/{member}")
+    if not folder.is_dir():
+        return [f"hybrid_rl.{member}"]
+    paths = (path for path in sorted(folder.rglob("*.py")) if not path.name.startswith("_"))
+    inner = [".".join(path.relative_to(folder).with_suffix("").parts) for path in paths]
+    return [f"hybrid_rl.{member}.{name}" for name in inner if name != "adapters.brax"]
+
+
+def main() -> None:
+    """Copy, make and build."""
+    copy()
+    methods()
+    reference()
+    command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
+    command += ["--fresh-env", "-c", str(ROOT / "docs"), "-d", str(BUILD / "doctrees")]
+    shutil.rmtree(HTML, ignore_errors=True)
+    code = subprocess.run([*command, "--jobs", "2", SOURCE, HTML], cwd=ROOT).returncode
+    if code:
+        sys.exit(code)
+    print(HTML / "index.html")
+
+
+if __name__ == "__main__":
+    main()

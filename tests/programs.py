@@ -1,0 +1,53 @@
+"""Equal runs of a test session share their programs: each is traced and compiled one time.
+
+Equal are agents, controllers and episodes by value, and the numbers of learners and of rounds. A
+test that changes code that is traced puts an empty list for `KEPT`.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+from hybrid_rl.run.evaluations import Evaluator
+from hybrid_rl.training.loop import Loop
+
+KEPT: list[tuple[tuple, Any]] = []  # (what it was made of, what was made)
+
+
+def kept(make: Callable[[], Any], *of: Any) -> Any:
+    """What `make` returned for equal `of`; it is called for the first of them."""
+    for known, made in KEPT:
+        if known == of:
+            return made
+    KEPT.append((of, make()))
+    return KEPT[-1][1]
+
+
+@contextmanager
+def shared() -> Iterator[None]:
+    """Within it, runs take the programs of equal runs before them."""
+    trace, compiled, evaluator = Loop.trace, Loop.compile, Evaluator.__init__
+
+    def traced(self: Loop, state: Any) -> Any:
+        of = self.agent, len(self.seeds), self.stride
+        return kept(lambda: trace(self, state), "trace", *of)
+
+    def program(self: Loop, state: Any, given: Any = None) -> Any:
+        given = self.trace(state) if given is None else given
+        return kept(lambda: compiled(self, state, given), "program", given)
+
+    def evaluation(self: Evaluator, loop: Loop, controller: Any, params: Any, keys: Any) -> None:
+        def make() -> dict[str, Any]:
+            evaluator(self, loop, controller, params, keys)
+            return vars(self)
+
+        of = loop.agent.episode, controller, keys.shape
+        vars(self).update(kept(make, "evaluation", *of))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Loop, "trace", traced)
+        patch.setattr(Loop, "compile", program)
+        patch.setattr(Evaluator, "__init__", evaluation)
+        yield

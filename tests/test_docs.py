@@ -1,0 +1,50 @@
+"""The sources of the documentation site: every method has a section, the core alone plans."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+
+
+def test_every_method_has_one_section():
+    """From which scripts/docs.py makes the method's page."""
+    page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8")
+    names = [
+        name for line in re.findall(r"^### (.+)$", page, re.MULTILINE) for name in line.split(", ")
+    ]
+    assert sorted(names) == sorted(path.stem for path in (ROOT / "conf" / "algo").glob("*.yaml"))
+
+
+def test_the_page_of_concepts_plans_with_the_adjoint_core():
+    """Its example, against the least-squares solution of the same problem."""
+    page = (ROOT / "docs" / "concepts.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    names = {}
+    exec(code, names)
+    horizon, dt = len(names["plan"]), 0.1
+    effect = np.zeros((horizon + 1, 2, horizon))  # of each action on each state
+    for t in range(horizon):
+        effect[t + 1] = effect[t] + dt * np.array([effect[t, 1], np.eye(horizon)[t]])
+    rows = np.concatenate([effect.reshape(-1, horizon), np.sqrt(0.1) * np.eye(horizon)])
+    aims = np.concatenate([np.tile([1.0, 0.0], horizon + 1), np.zeros(horizon)])
+    _, [least], *_ = np.linalg.lstsq(rows, aims, rcond=None)
+    np.testing.assert_allclose(-names["J"](names["path"]), least, rtol=0.01)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_are_kept_without_outputs_and_name_what_exists(path):
+    """`make docs` runs them."""
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    code = [cell for cell in cells if cell["cell_type"] == "code"]
+    assert all(not cell["outputs"] and cell["execution_count"] is None for cell in code)
+    text = "".join("".join(cell["source"]) + "\n" for cell in cells)
+    experiments = ROOT / "conf" / "experiment"
+    for name in re.findall(r"experiment=([\w/]+)", text):
+        assert (experiments / f"{name}.yaml").is_file(), name
+    for link in re.findall(r"\]\(([^)#]+\.md)", text):
+        assert (path.parent / link).is_file(), link

@@ -1,0 +1,79 @@
+"""Trained policies in files: what the package ships, and what a run writes."""
+
+import json
+from functools import partial
+
+import numpy as np
+import pytest
+from tiny import call, only_line
+
+from hybrid_rl import evaluate, pretrained
+from hybrid_rl.cli import command
+from hybrid_rl.core import archive
+from hybrid_rl.errors import UsageError
+
+NAMES = pretrained.names()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_policy_of_the_package_is_small_and_has_its_origin(name):
+    """Command, seed and the returns of an evaluation; and it acts."""
+    file = archive.find(f"policies/{name}.npz")
+    assert file.stat().st_size < 1e6
+    about = json.loads(str(np.load(file)["about"]))
+    assert about["command"].startswith(f"python -m hybrid_rl.train task={name} ")
+    assert np.mean(about["evaluation"]["returns"]) == pytest.approx(about["evaluation"]["mean"])
+    assert len(about["evaluation"]["returns"]) >= 10
+    trained = pretrained.read(name)
+    assert (trained.task, trained.seeds) == (name, (about["seed"],))
+    action = trained.policy()(np.zeros(trained.episode.spec.obs))
+    assert np.abs(action).max() <= 1
+    assert action.all()
+
+
+def test_evaluating_it_gives_its_number(capsys):
+    """On the lander, whose episodes are short."""
+    main = partial(call, lambda: command.guarded(evaluate.main))
+    assert main("policy=lander") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("trained by: python -m hybrid_rl.train task=lander algo=analytic")
+    (then,) = [line.split()[2] for line in lines if line.startswith("evaluated then: ")]
+    (now,) = [line.split()[3] for line in lines if line.startswith("│    0 │")]
+    assert float(now.replace(",", "")) == pytest.approx(float(then.replace(",", "")), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            {"env": {"_target_": "os.system", "command": "true"}},
+            "os.system is no part of hybrid_rl",
+        ),
+        (
+            {"env": {"_target_": "hybrid_rl.run.provenance.subprocess.run", "args": "true"}},
+            "subprocess.run is no part of hybrid_rl",
+        ),
+        (
+            {"policy": {"_target_": "hybrid_rl.policies.tanh_gaussian.TanhGaussian", "_args_": []}},
+            "_args_ is not allowed",
+        ),
+        ({"policy": {"_target_": "hybrid_rl.nothing.Policy"}}, "is no part of hybrid_rl"),
+        ({"seed": None}, "its description lacks seed"),
+    ],
+)
+def test_a_description_calls_nothing_but_parts(tmp_path, change, words):
+    """A file may come from anywhere."""
+    with np.load(archive.find("policies/lander.npz")) as file:
+        arrays = dict(file)
+    about = json.loads(str(arrays["about"])) | change
+    about = {key: value for key, value in about.items() if value is not None}
+    np.savez(tmp_path / "a.npz", **arrays | {"about": np.array(json.dumps(about))})
+    with pytest.raises(UsageError, match=words):
+        pretrained.read(f"{tmp_path / 'a.npz'}")
+
+
+def test_a_file_without_a_description_is_one_line(capfd):
+    """As earlier versions wrote it."""
+    given = "policy=demonstrations/ant_policy.npz"
+    assert call(lambda: command.guarded(evaluate.main), given) == 2
+    assert "has no description; write it again with `demonstrate`" in only_line(capfd)
