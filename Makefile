@@ -6,11 +6,7 @@ PYTHON ?= python3
 WORKERS ?= 2
 RUN := .venv/bin/python -m
 
-<<<<<<< HEAD
-.PHONY: setup train test lint format docs lock clean
-=======
-.PHONY: setup train test lint format lock dist clean
->>>>>>> main
+.PHONY: setup train test lint format docs lock dist clean
 
 setup: .venv/.installed
 
