@@ -191,10 +191,7 @@ def main() -> None:
         script = save_layers(out, trained.task, spec, layers(spec, controller, params))
         print(f"{out} and {script}: from {script.stem} import act; action = act(obs)")
         return
-    try:
-        made = program(spec, controller, params, given["platforms"])
-    except ValueError as error:  # it plans from more than the observation
-        raise UsageError(f"mode={given['mode']}: {error}") from error
+    made = program(spec, controller, params, given["platforms"])
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(made.serialize())
     print(f"{out}: {trained.task}, {given['mode']}, {', '.join(given['platforms'])}")

@@ -159,7 +159,7 @@ def test_a_state_of_several_types_comes_back():
         ("mode=lifted out=a.npz", "out: .npz holds a policy of observations, this one has featur"),
         (
             "mode=world out=a.stablehlo",
-            "mode=world: model=world: plans from the world's state, not",
+            "mode=world: plans from the state of the world (model=world)",
         ),
         ("mode=both out=a.npz", "mode=both: the run has policy, full"),
         ("seed=5 out=a.npz", "seed=5: the run has 3, 4"),
