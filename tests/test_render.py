@@ -14,7 +14,7 @@ from hybrid_rl import render
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import EnvState, Params, Spec
 
 SPEC = Spec(obs=1, act=1, dt=0.1)
 
@@ -44,13 +44,13 @@ class Slider:
 
 @dataclass(frozen=True)
 class Push:
-    """u = params."""
+    """u = the policy's parameters."""
 
     def init(self, spec):
         return ()
 
     def act(self, params, state, obs, key):
-        return params, state, {}
+        return params.policy, state, {}
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def trained(monkeypatch):
     run = SimpleNamespace(
         episode=Episode(Slider(), steps=20),
         controllers={"full": Push()},
-        params=jnp.array([[1.0], [0.0]]),
+        params=Params(policy=jnp.array([[1.0], [0.0]])),
         seeds=(3, 4),
         step=7000,
     )
