@@ -46,7 +46,7 @@ PLAIN = [
     # settings and versions
     "(Northwestern University, 2020)",
     "Python 3.11 to 3.13",
-    "30,000 decisions in about eight minutes on two cores",
+    "30,000 decisions in about five minutes on two cores",
     "CUDA 13",
     "seeds 0 to 9",
     "seeds 0 to 2",
