@@ -1,4 +1,4 @@
-"""The return of a learned reward along a path, discounted.
+"""The return of a learned reward, or of the world's own, along a path, discounted.
 
     J(path) = sum_t c_t r(x_t, u_t, x_{t+1}) [+ c_T min_i Q_i(x_T, pi(x_T))]
 
@@ -13,6 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.lifting import seen
 from hybrid_rl.protocols import Critic, Policy, Reward
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -54,14 +55,16 @@ class PredictedReturn:
     def _outcomes(self, params: Params, path: Path) -> Any:
         """Rewards [T], and logits [T] of the episode ending."""
         each = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
-        return each(params.reward, path.x[:-1], path.u, path.x[1:])
+        before = jax.tree.map(lambda leaf: leaf[:-1], path.x)
+        after = jax.tree.map(lambda leaf: leaf[1:], path.x)
+        return each(params.reward, before, path.u, after)
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""
         rewards, ends = self._outcomes(params, path)
         last = jnp.zeros(())
         if self.critic is not None and self.policy is not None:
-            x = path.x[-1]
+            x = seen(jax.tree.map(lambda leaf: leaf[-1], path.x))
             last = self.critic.value(params.critic, x, self.policy.mean(params.policy, x))
 
         def back(after: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:

@@ -15,8 +15,8 @@ from hybrid_rl.envs.cartpole import ASSET, Cartpole
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.errors import UsageError
 from hybrid_rl.evaluate import Trained
-from hybrid_rl.models.world import World
-from hybrid_rl.objectives.world_return import WorldReturn
+from hybrid_rl.models.world import World, WorldReward
+from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
@@ -62,7 +62,12 @@ def test_plans_are_those_of_mujoco() -> None:
     world = Episode(env, steps=100, action_repeat=2)
     state = world.step(world.reset(jax.random.key(0)), jnp.full(1, 0.7))
     controller = SamplingController(
-        World(world), WorldReturn(GAMMA), Grid(), horizon=T, samples=K, temperature=LAMBDA
+        World(world),
+        PredictedReturn(WorldReward(), GAMMA),
+        Grid(),
+        horizon=T,
+        samples=K,
+        temperature=LAMBDA,
     )
     act = jax.jit(lambda state: controller.act(Params(world=state), first, state.obs, key))
     first, key = controller.init(world.spec), jax.random.key(1)
@@ -115,7 +120,7 @@ def test_nothing_is_paid_after_the_end(u: float, want: float) -> None:
         x.append(model.step((), x[-1], jnp.full(1, u)))
     path = Path(jax.tree.map(lambda *leaves: jnp.stack(leaves), *x), jnp.full((3, 1), u))
     last: Any = Last()
-    objective = WorldReturn(1.0, last, last)
+    objective = PredictedReturn(WorldReward(), 1.0, last, last)
     assert float(objective.reward_to_go(Params(), path)[0]) == pytest.approx(want)
 
 
@@ -127,6 +132,6 @@ def test_what_the_world_does_not_fit_is_refused() -> None:
     with pytest.raises(ValueError, match="model=world: needs a planner that samples"):
         model.step((), jnp.zeros(2), jnp.zeros(1))
     with pytest.raises(ValueError, match=r"objective.discount=1.1: must lie in \(0, 1\]"):
-        WorldReturn(1.1)
+        PredictedReturn(WorldReward(), 1.1)
     with pytest.raises(ValueError, match="give both or neither"):
-        WorldReturn(policy=last)
+        PredictedReturn(WorldReward(), policy=last)
