@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import evaluate, pretrained
+from hybrid_rl import config, evaluate, pretrained
 from hybrid_rl.cli import command
 from hybrid_rl.core import archive
 from hybrid_rl.errors import UsageError
@@ -21,7 +21,10 @@ def test_a_policy_of_the_package_is_small_and_has_its_origin(name):
     file = archive.find(f"policies/{name}.npz")
     assert file.stat().st_size < 1e6
     about = json.loads(str(np.load(file)["about"]))
-    assert about["command"].startswith(f"python -m hybrid_rl.train task={name} ")
+    program, _, overrides = about["command"].partition(" hybrid_rl.train ")
+    assert program == "python -m"
+    trained_as = config.load(overrides.split())
+    assert (trained_as.task_name, trained_as.algo_name) == (name, about["algo"])
     assert np.mean(about["evaluation"]["returns"]) == pytest.approx(about["evaluation"]["mean"])
     assert len(about["evaluation"]["returns"]) >= 10
     trained = pretrained.read(name)
