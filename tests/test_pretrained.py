@@ -24,7 +24,7 @@ def test_a_policy_of_the_package_is_small_and_has_its_origin(name):
     program, _, overrides = about["command"].partition(" hybrid_rl.train ")
     assert program == "python -m"
     trained_as = config.load(overrides.split())
-    assert (trained_as.task_name, trained_as.algo_name) == (name, about["algo"])
+    assert (trained_as.task, trained_as.algo) == (name, about["algo"])
     assert np.mean(about["evaluation"]["returns"]) == pytest.approx(about["evaluation"]["mean"])
     assert len(about["evaluation"]["returns"]) >= 10
     trained = pretrained.read(name)
