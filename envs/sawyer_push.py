@@ -61,6 +61,8 @@ class SawyerPush:
     target_low: tuple[float, ...] = (0.5, -0.2)  # [m]
     target_high: tuple[float, ...] = (0.7, 0.2)  # [m]
     target_clear: float = 0.12  # [m] smallest initial distance from the block
+    block_mass: float = 0.1  # [kg]
+    block_friction: float = 0.4  # on the table and with the rod
     hold: float = 5.0  # [1/s] gain on height and orientation
     posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
     damping: float = 0.02  # of the least squares, for [m] and [rad]
@@ -73,6 +75,9 @@ class SawyerPush:
             if len(pair) != 2:
                 raise ValueError(f"{name}={list(pair)}: must be two numbers, x and y")
             object.__setattr__(self, name, pair)
+        for name in ("block_mass", "block_friction"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
         if not 0 <= self.smoothing < 1:
             raise ValueError(f"smoothing={self.smoothing}: must be in [0, 1)")
 
@@ -83,7 +88,9 @@ class SawyerPush:
 
     @property
     def _body(self) -> Physics:
-        return Physics(ASSET, self.physics)
+        values = mjcf.friction(("rod_cube", "cube_table"), self.block_friction)
+        values = {"geom.cube.mass": self.block_mass} | values
+        return Physics(mjcf.changed(ASSET, values), self.physics)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
