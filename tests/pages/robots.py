@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from pages import sawyer
 from pages.cited import ROOT, Table, Text
 from pages.values import ahead, curve, number, read
 
@@ -74,6 +75,7 @@ def real_time(name: str) -> float:
 
 POINTS, CAPSULES = compared("ant, points", "native"), compared("ant, capsules", "mjx")
 CITED = [
+    *sawyer.CITED,
     Table(
         "after 20 episodes | evaluation return, IQM and 95% band",
         lambda label, _: curve("fig_3_3", label).at(2_000),
@@ -112,6 +114,7 @@ CITED = [
     ),
 ]
 PLAIN = [
+    *sawyer.PLAIN,
     # settings
     "seeds 0 to 9, 10 evaluation episodes per seed",
     "jax 0.11.2",

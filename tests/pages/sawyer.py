@@ -1,0 +1,61 @@
+"""The sections of docs/results/robots.md on Sawyer from rewards alone."""
+
+import numpy as np
+
+from pages.cited import Table, Text
+from pages.values import read
+
+HOME, MODEL = read("sawyer_home"), read("sawyer_model")
+COLUMNS = {"after 20 episodes": 2_000, "40": 4_000, "60": 6_000}
+ERRORS = {"contact": "contact", "free": "free", "10 decisions": "ahead_10"}
+ERRORS["20 decisions"] = "ahead_20"
+
+
+def share(label: str, column: str) -> list[float]:
+    """[%] of successes: mean, lowest and highest seed."""
+    each = HOME["methods"][label]["success"][HOME["decisions"].index(COLUMNS[column])]
+    return [100 * np.mean(each), 100 * min(each), 100 * max(each)]
+
+
+def error(label: str, column: str) -> list[float]:
+    """[mm] of the block's position, mean over seeds."""
+    return [float(np.mean([row[ERRORS[column]] for row in MODEL["mm"][label]]))]
+
+
+def moved(name: str) -> float:
+    """[mm] that the block moved, mean over seeds."""
+    return float(np.mean([row[name] for row in MODEL["mm"]["command"]]))
+
+
+def searched(name: str) -> float:
+    """[%] of successes on the seeds of the search."""
+    return 100 * float(np.mean(HOME["search"]["success"][name]))
+
+
+CITED = [
+    Table("share of successes | after 20 episodes | 40 | 60", share),
+    Table(
+        "error of the block's position, mm | contact | free | 10 decisions | 20 decisions", error
+    ),
+    Text(
+        "succeeds in #% of # evaluation episodes after # decisions, without it in #%",
+        [searched("frame"), 60, HOME["search"]["decisions"], searched("no frame")],
+    ),
+    Text("by # and # mm on average", [moved("moved_10"), moved("moved_20")]),
+    Text("learn from # recorded decisions", [MODEL["decisions"]]),
+]
+PLAIN = [
+    "64 candidates of 20 decisions have noise",
+    "has 16 more of its policy",
+    "of ten seeds (0 to 9), 10 evaluation episodes a seed",
+    "counted as 100 decisions",
+    "chosen on seeds 200 to 202",
+    "(seeds 200 to 202, 20 episodes a seed",
+    "a temperature of 0.3 the planner",
+    "16 of 80 and a temperature of 0.1",
+    "after 3,000 decisions, four of 120 on seeds 200 to 202",
+    "two layers of 128 learn",
+    "more than 0.5 mm",
+    "Over 10 and 20 recorded decisions: paths on which the block moves by more than 1 cm",
+    "over 20 decisions, of data",
+]
