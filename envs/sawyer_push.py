@@ -10,7 +10,12 @@ v <- 0.8 v + 0.2 a, and clipped at the workspace's limits; height and orientatio
 held. A decision is 0.1 s, 20 physics steps. Damped least squares give the joint velocities once a
 decision; the null space returns the arm to its initial posture. The block starts in a disc, with a
 small rotation; the target lies in a box, at a minimum distance from the block. Terminates with
-success.
+success. `extra` appends to o, each of order one:
+
+    command  v / speed                               turn  cos 4 psi, sin 4 psi
+    motion   velocity of b / speed, psi' / SPIN      tip   e in the workspace, -1 to 1
+
+psi is the block's angle about the vertical; a square is the same after a quarter of a turn.
 
 Source: thesis section 3.4 and Appendix B; state, rate, filter, workspace, success and the reward in
 metres from the author's HybridLearning, experiments/sawyer_pusher.py; reward=code: weights of his
@@ -38,7 +43,7 @@ HOME = (-0.2353359, -0.4019111, 0.0032168, 1.7513965, -0.0631270, 0.1595469, 1.5
 HEIGHT = -0.154  # [m] of the block's centre
 TRIES = 32  # candidates from which block and target are chosen
 CLEARANCE = 0.06  # [m] between the rod and the block's centre at the start
-SPIN = 4.0  # [rad/s] of the block that is observed as 1: speed over half its width, rounded
+SPIN = 4.0  # [rad/s] of the block that is observed as 1: about speed over half a diagonal
 EXTRA = {"command": 2, "turn": 2, "motion": 3, "tip": 2}  # numbers of each group
 WEIGHTS = {"thesis": (5.0, 10.0), "code": (1.25, 1.0)}  # [1/m] of |b - t| and |e - b|
 TIP = Chain(ASSET, "tip")

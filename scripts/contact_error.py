@@ -105,10 +105,11 @@ def seen(case: Case, data: Episodes) -> Episodes:
 
 def learned(case: Case, data: Episodes, key: Array) -> tuple[Any, Any]:
     """A model of the case and its parameters. The key is consumed."""
-    env = SawyerPush("native", extra=case.extra)
+    env: Any = SawyerPush("native", extra=case.extra)
     size = env.spec.obs
     inputs = None if case.target else tuple(i for i in range(size) if i not in (2, 3))
-    model: Any = Ensemble(Gaussian((128, 128), "silu", inputs=inputs), members=3)
+    one: Any = Gaussian((128, 128), "silu", inputs=inputs)
+    model: Any = Ensemble(one, members=3)
     model = Turned(model, env) if case.frame else model
     learner = ModelLearner(model, learning_rate=1e-3, batch_size=BATCH)
     live = ~np.asarray(data.over)
@@ -159,7 +160,7 @@ def errors(model: Any, params: Any, data: Episodes, inside: np.ndarray) -> dict[
 
 def main() -> None:
     """Measure all cases and write the JSON."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--seeds", type=int, default=3)
     given = parser.parse_args()
