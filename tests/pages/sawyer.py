@@ -53,6 +53,7 @@ PLAIN = [
     "(seeds 200 to 202, 20 episodes a seed",
     "a temperature of 0.3 the planner",
     "16 of 80 and a temperature of 0.1",
+    "that (seeds 200 to 202, data not saved)",
     "after 3,000 decisions, four of 120 on seeds 200 to 202",
     "two layers of 128 learn",
     "more than 0.5 mm",
