@@ -3,16 +3,15 @@
 python tests/test_pages.py    writes the numbers of the files onto the pages
 """
 
-import re
-import shlex
 from importlib import import_module
 from importlib.util import find_spec
-from itertools import cycle, islice
 
 import pytest
-from hydra.core.override_parser.overrides_parser import OverridesParser
-from pages import cited
+import small
+import test_conf
+from pages import cited, commands
 from pages.cited import ROOT
+from rotation import share
 
 from hybrid_rl import config, figures
 from hybrid_rl.cli.arguments import HELP
@@ -32,16 +31,6 @@ PAGES = [
     "speed",
 ]
 OTHERS = {"README.md", "paper/paper.md"}  # pages that cite results
-WITH_COMMANDS = [  # those of the atlas are copied from other pages
-    "README.md",
-    "CONTRIBUTING.md",
-    *(
-        str(path.relative_to(ROOT))
-        for path in sorted((ROOT / "docs").rglob("*.md"))
-        if path.name != "atlas.md"
-    ),
-]
-LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
 
 
 def text(page):
@@ -90,35 +79,36 @@ def test_a_changed_and_an_added_number_are_noticed():
         cited.citations(page.replace("half is", "half was"), [cell, sentence])
 
 
-def commands(page):
-    """(command, its words) of every line of a page that runs a command of hybrid_rl."""
-    return [(name, shlex.split(words)) for name, words in LINE.findall(text(page))]
-
-
-def jobs(words):
-    """Overrides of enough jobs of a sweep that each value is in one of them."""
-    parsed = OverridesParser.create().parse_overrides([word for word in words if "=" in word])
-    values = [
-        list(one.sweep_string_iterator()) if one.is_sweep_override() else [one.get_value_string()]
-        for one in parsed
-    ]
-    most = max(map(len, values), default=1)
-    rows = zip(*(islice(cycle(each), most) for each in values), strict=True)
-    keys = [one.get_key_element() for one in parsed]
-    return [tuple(f"{k}={v}" for k, v in zip(keys, row, strict=True)) for row in rows]
-
-
-@pytest.mark.parametrize("page", WITH_COMMANDS)
+@pytest.mark.parametrize("page", commands.PAGES)
 def test_training_commands_compose(page):
-    lines = [words for name, words in commands(page) if name == "train"]
-    lines = [words for words in lines if "--config-dir" not in words]  # a folder of the reader's
-    for overrides in sorted({job for words in lines for job in jobs(words)}):
-        config.load(overrides)
+    for job in commands.training(page):
+        commands.composed(job)
 
 
-@pytest.mark.parametrize("page", WITH_COMMANDS)
+RUN_ELSEWHERE = test_conf.EXECUTED | {  # by test_commands.py
+    ("cartpole", "hybrid_stochastic"),
+    ("pendulum", "nn_mppi"),
+    ("pendulum", "sac"),
+}
+OWN = ("settings=", "num_envs=", "num_seeds=", "run_dir=", "total_steps=", "hydra/", "hydra.", "resume=")
+
+
+def test_training_commands_learn_in_a_small_size(tmp_path):
+    """One command for each pair of task and method; a twentieth of the pairs for each commit."""
+    found = {}
+    for job in [job for page in commands.PAGES for job in commands.training(page)]:
+        whole = commands.composed(job)
+        found.setdefault((whole.task, whole.algo), job)
+    for task, algo in share(sorted(found.keys() - RUN_ELSEWHERE), 20):
+        given = [word for word in found[task, algo] if not word.startswith(OWN)]
+        print(task, algo, *given)  # which one failed
+        composed = small.with_demonstrations(small.load(algo, *given), tmp_path)
+        small.learn(config.build(composed))
+
+
+@pytest.mark.parametrize("page", commands.PAGES)
 def test_other_commands_have_the_arguments_of_the_page(page):
-    for name, words in commands(page):
+    for name, words in commands.commands(page):
         if name in ("train", "list"):
             continue
         if any(f"`{word.removeprefix('study=')}.py`" in text(page) for word in words):
