@@ -44,10 +44,10 @@ def load(algo: str, *overrides: str) -> DictConfig:
         put(composed.controllers, horizon=2, size=4)
         put(composed.learners, horizon=2, size=4)
     for parts in (composed.controllers, composed.learners):
-        put(parts, hidden=[8], particles=20, moves=1)
-    if composed.task != "pendulum" and "policy" in composed.learners:
+        put(parts, hidden=[8], particles=20, moves=1, batch_size=2)
+    if composed.task != "pendulum" and composed.learners.get("policy"):
         put(composed.learners.policy, updates=1)
-    composed.pretrain = min(composed.pretrain, 2)
+    composed.pretrain, composed.random_steps = min(composed.pretrain, 2), 2
     return composed
 
 

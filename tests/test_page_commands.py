@@ -1,12 +1,10 @@
 """Commands on the pages that do not train, run in a small size on one small run."""
 
 from functools import partial
-from importlib import import_module
-from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 from pages import commands
-from pages.cited import ROOT
 from tiny import call, run
 
 from hybrid_rl.cli import command
@@ -20,15 +18,21 @@ METRICS = {"train/return", "eval/return", "eval/policy_return"}  # of the small 
 
 
 def programs():
-    """(command, its arguments) of the pages, in their order, without repetitions."""
-    found = []
+    """(command, its arguments) of the pages, in their order, each as often as it differs.
+
+    A name of a file makes no difference, but its suffix does.
+    """
+    found = {}
     for page in commands.PAGES:
         for name, words in commands.commands(page):
             given = dict(word.split("=", 1) for word in words if "=" in word)
-            if runs_here(name, given):
-                given = {key: "run" if key in ("run", "runs") else each for key, each in given.items()}
-                found.append((name, given | SMALL.get(name, {})))
-    return [one for i, one in enumerate(found) if one not in found[:i]]
+            if not runs_here(name, given):
+                continue
+            given = {key: "run" if key in ("run", "runs") else each for key, each in given.items()}
+            given |= SMALL.get(name, {})
+            kind = given | {"out": Path(given.get("out", "")).suffix}
+            found.setdefault((name, *sorted(kind.items())), (name, given))
+    return list(found.values())
 
 
 def runs_here(name, given):
@@ -57,10 +61,8 @@ def test_commands_run(folder, monkeypatch, can_draw, capfd):
     for name, given in programs():
         if name == "render" and not can_draw:
             continue
-        package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
-        module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
         words = [f"{key}={value}" for key, value in given.items()]
-        if call(partial(command.guarded, module.main), *words) != 0:
+        if call(partial(command.guarded, commands.module(name).main), *words) != 0:
             failed.append((name, *words, capfd.readouterr().err))
     assert not failed
 
@@ -69,4 +71,3 @@ def test_the_commands_are_those_of_the_pages():
     """Of each command one at least."""
     names = {name for name, _ in programs()}
     assert names == {"demonstrate", "evaluate", "export", "figures", "list", "render", "report"}
-    assert (ROOT / "README.md").is_file()

@@ -3,7 +3,10 @@
 import re
 import shlex
 from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
 from itertools import cycle, islice
+from types import ModuleType
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import DictConfig
@@ -27,6 +30,13 @@ def commands(page: str) -> list[tuple[str, list[str]]]:
     """(command, its words) of every line of a page that runs a command of hybrid_rl."""
     text = (ROOT / page).read_text(encoding="utf-8")
     return [(name, shlex.split(words)) for name, words in LINE.findall(text)]
+
+
+def module(name: str) -> ModuleType:
+    """The module of a command."""
+    spec = find_spec(f"hybrid_rl.{name}")
+    package = spec is not None and spec.submodule_search_locations
+    return import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
 
 
 def jobs(words: list[str]) -> list[tuple[str, ...]]:
