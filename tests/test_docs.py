@@ -69,7 +69,8 @@ def program(path):
         else:
             lines += [line for line in text.splitlines() if not line.startswith("%")]
     code = "\n".join(lines)
-    return re.sub(r"total_steps=(\d+)", lambda n: f"total_steps={min(int(n[1]), 400)}", code)
+    long = re.compile(r"(total_steps[=:] ?)(\d+)")
+    return long.sub(lambda found: f"{found[1]}{min(int(found[2]), 400)}", code)
 
 
 @pytest.mark.parametrize("path", share(NOTEBOOKS, len(NOTEBOOKS)), ids=lambda path: path.stem)
