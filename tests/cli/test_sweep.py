@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -105,6 +106,38 @@ def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path, capfd):
     first, second = table(tmp_path)
     assert (first["code"], second["code"]) == (0, 1)
     assert json.loads((tmp_path / first["run_dir"] / "summary.json").read_text())["finished"]
+
+
+SLURM = ["-m", *TINY, "algo=sac,nn_mppi", "hydra/launcher=submitit_slurm"]
+
+
+def test_what_slurm_gets_and_refuses(tmp_path, monkeypatch, capfd):
+    """An array of the jobs, with the settings of hydra.launcher; its refusal is one line."""
+    kept = tmp_path / "batch.sh"
+    refuse = "echo 'sbatch: error: invalid partition specified: big' >&2; exit 1"
+    for name, script in {
+        "srun": "exit 1",
+        "sbatch": f'for file; do :; done; cp "$file" {kept}; {refuse}',
+    }.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{script}\n")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    launcher = {"gpus_per_node": 1, "partition": "big", "timeout_min": 600}
+    assert call_train(*SLURM, *(f"hydra.launcher.{k}={v}" for k, v in launcher.items())) == 2
+    given = re.findall(r"^#SBATCH --([\w-]+)=(.*)$", kept.read_text(), re.MULTILINE)
+    wanted = {"array": "0-1%2", "gpus-per-node": "1", "partition": "big", "time": "600"}
+    assert wanted.items() <= dict(given).items()
+    assert dict(given)["job-name"] == "hybrid_rl"
+    out, err = capfd.readouterr()
+    line = "the jobs could not be sent: sbatch: error: invalid partition specified: big"
+    assert err == f"hybrid_rl: hydra/launcher=submitit_slurm: {line}\n"
+    assert out.splitlines()[-1] == "0 of 2 jobs done; not 0, 1"
+
+
+def test_without_slurm_it_is_one_line(monkeypatch, capfd):
+    monkeypatch.setenv("PATH", "")
+    assert call_train(*SLURM) == 2
+    assert "no sbatch and srun here; start it where Slurm is" in capfd.readouterr().err
 
 
 def test_an_interrupt_ends_all_of_a_sweep(tmp_path):
