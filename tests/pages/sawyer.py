@@ -58,5 +58,6 @@ PLAIN = [
     "two layers of 128 learn",
     "more than 0.5 mm",
     "Over 10 and 20 recorded decisions: paths on which the block moves by more than 1 cm",
-    "over 20 decisions, of data",
+    "Over 20 decisions the hidden command",
+    "Over 20 decisions it is about level",
 ]
