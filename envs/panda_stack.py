@@ -46,6 +46,9 @@ SIDE = 0.05  # [m] of a cube
 TOUCH = 0.002  # [m] largest gap between a finger and a grasped block
 LEVEL = 0.01  # [m] largest height error of a stacked block
 QUIET = 0.05  # [m/s] largest speed of a stacked block
+PADS = ("left_pad", "right_pad")
+PAIRS = (*(f"{pad}_{cube}" for pad in PADS for cube in ("block", "base")), "block_base")
+PAIRS = (*PAIRS, "block_table", "base_table")  # all contacts
 TOOL = Chain(ASSET, "tool")
 BLOCK, BASE = slice(9, 12), slice(16, 19)  # positions in qpos
 BLOCK_SPEED = slice(9, 12)  # in qvel
@@ -67,6 +70,8 @@ class PandaStack:
     block_turn: float = 0.1  # [rad] largest initial rotation
     base: tuple[float, ...] = (0.45, 0.12)  # [m] centre of its initial positions
     base_spread: float = 0.0  # [m] largest offset along x and y
+    block_mass: float = 0.1  # [kg] of block and base
+    block_friction: float = 1.0  # of all contacts
     reward: str = "thesis"  # or joined
     penalty: float = 1e-6  # weight of wrench and action
     success_distance: float = 0.02  # [m] horizontal, block to base
@@ -84,6 +89,9 @@ class PandaStack:
             if len(numbers) != size:
                 raise ValueError(f"{name}={list(numbers)}: must be {size} numbers")
             object.__setattr__(self, name, numbers)
+        for name in ("block_mass", "block_friction"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
         if self.lag < 0:
             raise ValueError(f"lag={self.lag}: must be 0 or more")
 
@@ -96,7 +104,9 @@ class PandaStack:
 
     @property
     def _body(self) -> Physics:
-        return Physics(ASSET, self.physics)
+        values = {f"geom.{cube}.mass": self.block_mass for cube in ("block", "base")}
+        values |= mjcf.friction(PAIRS, self.block_friction)
+        return Physics(mjcf.changed(ASSET, values), self.physics)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

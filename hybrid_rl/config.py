@@ -1,49 +1,27 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
-import logging
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from types import NoneType, UnionType
-from typing import Any, Union, get_args, get_origin
+from typing import Any
 
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.errors import InstantiationException
-from hydra.utils import get_object, instantiate
-from omegaconf import DictConfig, ListConfig, OmegaConf
+from hydra.utils import instantiate
+from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 
-from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, resolve
+from hybrid_rl.checks import COUNTS, SECTIONS, check, check_kinds, part_class, whole
+from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import (
-    SHOW,
-    plain,
-    reached,
-    refuse_new_keys,
-    refuse_unused,
-    search_path,
-)
+from hybrid_rl.overrides import plain, reached, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 
 HERE = Path(__file__).parent
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
-
-COUNTS = (
-    "num_seeds",
-    "num_envs",
-    "total_steps",
-    "eval_every",
-    "eval_episodes",
-    "checkpoint_every",
-    "log_every",
-)
-
-SEEDS = 2**32  # distinct seeds of JAX's generator
-SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
@@ -55,16 +33,6 @@ NEEDS = {  # words of a part's message -> a method of the environments that it a
     "needs an environment with an equilibrium": "equilibrium",
     "needs an environment with a known reward": "reward_of",
     "needs an environment with a reference": "reference",
-}
-MODES = ("full", "policy", "planner")
-PRECISIONS = ("highest", "high", "default")
-KINDS = {  # type of a part's field -> its name in messages
-    int: "a whole number",
-    float: "a number",
-    bool: "true or false",
-    str: "a word",
-    tuple: "a list",
-    NoneType: "null",
 }
 
 
@@ -129,7 +97,7 @@ def build(config: DictConfig) -> Run:
         replay = _instantiate(parts.replay)
         longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
         agent = Agent(
-            Episode(_instantiate(parts.env), config.episode.steps, config.episode.action_repeat),
+            _episode(parts),
             controllers["full"],
             {name: _instantiate(node) for name, node in parts.learners.items() if node},
             replace(
@@ -141,6 +109,32 @@ def build(config: DictConfig) -> Run:
         )
         agent.check(rounds * config.num_envs)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
+
+
+def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
+    """The episodes of `config` with other values of env.KEY and episode.KEY.
+
+    Raises:
+        UsageError: for a key that they do not have, or a value out of range.
+    """
+    changed = config.copy()
+    OmegaConf.set_readonly(changed, False)
+    for key, value in changes.items():
+        section, _, name = key.partition(".")
+        part = Episode if section == "episode" else part_class(changed.env._target_)
+        known = [field.name for field in fields(part) if field.name != "env"]
+        if name not in known:
+            raise UsageError(f"{key}={value}: {section} has {', '.join(known) or 'no keys'}")
+        with open_dict(changed):
+            changed[section][name] = OmegaConf.from_dotlist([f"value={value}"]).value
+    with _usage(changed):
+        check_kinds(OmegaConf.create({"env": changed.env}))
+        return _episode(_on_this_machine(changed))
+
+
+def _episode(parts: DictConfig) -> Episode:
+    """The episodes of the sections `env` and `episode`."""
+    return Episode(_instantiate(parts.env), **_instantiate(parts.episode))
 
 
 def expert(config: DictConfig) -> Controller:
@@ -216,85 +210,3 @@ def tasks_with(method: str, conf: Path = CONF) -> list[str]:
         with suppress(ImportError, KeyError, AttributeError):  # an unfinished task of the user
             names += [path.stem] if hasattr(part_class(task.env._target_), method) else []
     return names
-
-
-def check(config: DictConfig) -> None:
-    """Raise UsageError for a value that no run accepts; parts check their own ranges."""
-    for key in SECTIONS:
-        if not isinstance(config.get(key), DictConfig):
-            raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
-    for key in COUNTS:
-        whole(config, key)
-    if type(config.seed) is not int or config.seed < 0:
-        raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
-    if config.seed + config.num_seeds > SEEDS:
-        raise UsageError(
-            f"seed={config.seed}: must be at most {SEEDS - config.num_seeds} with "
-            f"num_seeds={config.num_seeds}: JAX takes seeds of 32 bits"
-        )
-    modes = config.eval_modes
-    if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
-        raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
-    for key in ("checkpoint_replay", "distributed"):
-        if type(config.get(key, False)) is not bool:
-            raise UsageError(f"{key}={config[key]}: must be true or false")
-    for key, known in (("matmul_precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
-        if config[key] not in known:
-            raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
-    _check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
-    _check_kinds(config)
-
-
-def _check_kinds(node: DictConfig, where: str = "") -> None:
-    """Raise UsageError for a value in `node` that the field of its part cannot hold."""
-    kinds = _kinds(node, where)
-    for key, value in node.items():
-        each = value if isinstance(value, ListConfig) else [value]
-        if any(isinstance(item, float) and not math.isfinite(item) for item in each):
-            raise UsageError(f"{where}{key}={value}: must be finite")
-        if isinstance(value, DictConfig):
-            _check_kinds(value, f"{where}{key}.")
-            continue
-        kind = tuple if isinstance(value, ListConfig) else type(value)
-        wanted = kinds.get(str(key), {kind})
-        if kind not in wanted and not (kind is int and float in wanted):
-            called = " or ".join(KINDS[each] for each in KINDS if each in wanted)
-            raise UsageError(f"{where}{key}={value}: must be {called}")
-
-
-def part_class(target: str) -> Any:
-    """The object that a `_target_` names; Hydra's own log lines are suppressed."""
-    logging.getLogger("hydra").addHandler(logging.NullHandler())
-    return get_object(target)
-
-
-def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
-    """Field -> the types that it accepts, for those fields of a part whose types are in KINDS."""
-    if "_target_" not in node:
-        return {}
-    try:
-        part = part_class(node._target_)
-    except (ImportError, ValueError) as error:
-        hint = "is its folder on PYTHONPATH?"
-        line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"
-        raise UsageError(f"{line}; {hint}") from error
-    kinds = {}
-    for field in fields(part) if is_dataclass(part) else ():
-        several = get_origin(field.type) in (Union, UnionType)
-        each = get_args(field.type) if several else (field.type,)
-        wanted = {get_origin(kind) or kind for kind in each}
-        if wanted <= set(KINDS):
-            kinds[field.name] = wanted
-    return kinds
-
-
-def whole(config: Any, key: str, where: str = "") -> int:
-    """The value at `key`, a whole number, 1 or more.
-
-    Raises:
-        UsageError: if it is anything else.
-    """
-    value = config[key]
-    if not isinstance(value, int) or isinstance(value, bool) or value < 1:
-        raise UsageError(f"{where}{key}={value}: must be a whole number, 1 or more")
-    return value

@@ -2,6 +2,10 @@
 
     python -m hybrid_rl.evaluate run=runs/hopper/sac/TIME mode=policy episodes=20
     python -m hybrid_rl.evaluate policy=halfcheetah
+    python -m hybrid_rl.evaluate policy=halfcheetah episode.delay=1 episode.sensor_noise=0.01
+
+With env.KEY=VALUE or episode.KEY=VALUE the world differs from that of the training, and the
+controller does not; the file is then DIR/evaluation_<mode>_<changes>.json.
 
 Without exploration, with the learners as they were at the newest checkpoint. From Python, `load`
 reads a run back, `evaluate` gives its returns, and `Trained.policy` its actions, in any loop that
@@ -18,7 +22,7 @@ if __name__ == "__main__":
     interrupt.install()
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -27,6 +31,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from omegaconf import DictConfig
 from rich.console import Console
 from rich.table import Table
 
@@ -44,6 +49,7 @@ from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params, Spec
 
+GROUPS = {name: f"another value of a key of its {name}" for name in ("env", "episode")}
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file"),
@@ -63,6 +69,7 @@ class Trained:
     seeds: tuple[int, ...]
     step: int  # decisions of each learner
     notes: tuple[str, ...]  # one for each checkpoint that was skipped
+    config: DictConfig | None = None  # of the run; env and episode at least
 
     def policy(self, seed: int | None = None, mode: str = "full", key: int = 0) -> "TrainedPolicy":
         """Observations to actions, as the learner of `seed` acts; None is the first.
@@ -173,7 +180,14 @@ def load(folder: Path | str) -> Trained:
         step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
     params = jax.vmap(run.agent.params, axis_size=len(run.seeds))(state)  # state may be empty
     return Trained(
-        config.task, run.agent.episode, run.controllers, params, run.seeds, step, tuple(notes)
+        config.task,
+        run.agent.episode,
+        run.controllers,
+        params,
+        run.seeds,
+        step,
+        tuple(notes),
+        config,
     )
 
 
@@ -223,20 +237,26 @@ def main() -> None:
     """The command."""
     from hybrid_rl import pretrained
 
-    given, _ = read(__doc__, ARGUMENTS)
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
     episodes, name = given["episodes"], given["run"] or given["policy"]
     trained = pretrained.chosen(given)
+    if changes:
+        assert trained.config is not None
+        trained = replace(trained, episode=configuration.disturbed(trained.config, changes))
     folder = Path(given["run"])
     if given["run"]:
         run_folder.writable(folder, "run")  # before minutes of work
     for note in trained.notes:
         print(note)
     values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
-    print(f"{name}, mode {given['mode']}, step {trained.step:,}")  # whole, also in a pipe
+    values["changes"] = changes
+    where = "".join(f", {key}={value}" for key, value in changes.items())
+    print(f"{name}, mode {given['mode']}, step {trained.step:,}{where}")  # whole, also in a pipe
     Console().print(_table(values))
     if not given["run"]:
         return
-    out = folder / f"evaluation_{given['mode']}.json"
+    stem = "_".join([given["mode"], *(f"{key}={value}" for key, value in changes.items())])
+    out = folder / f"evaluation_{stem}.json"
     write_text(out, json.dumps(values, indent=1) + "\n")
     print(f"{episodes} episodes a seed; written to {out}")
 

@@ -15,6 +15,7 @@ from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
+from hybrid_rl.checks import part_class
 from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core import archive
@@ -81,7 +82,14 @@ def read(name: str) -> Trained:
         (int(about["seed"]),),
         int(about["step"]),
         tuple(_origin(about)),
+        _world(task, about),
     )
+
+
+def _world(task: str, about: Mapping[str, Any]) -> DictConfig:
+    """What a description says of its world, as in the configuration of a run of one seed."""
+    parts = {name: about[name] for name in ("env", "episode")}
+    return OmegaConf.create({"task": task, "num_seeds": 1, "num_envs": 1, **parts})
 
 
 def _described(prefix: str, text: str) -> dict[str, Any]:
@@ -120,7 +128,7 @@ def _check_classes(prefix: str, node: Any) -> None:
 
 def _is_part(target: str) -> bool:
     try:
-        part = configuration.part_class(target)
+        part = part_class(target)
     except (ImportError, ValueError):
         return False
     return is_dataclass(part) and str(part.__module__).startswith("hybrid_rl.")

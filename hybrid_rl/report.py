@@ -199,7 +199,8 @@ def _evaluation(run: RunFolder, file: Path) -> list[list[Any]]:
         rows = []
         for i, (seed, got) in enumerate(each):
             ends = (np.mean(got), np.std(got), np.min(got), np.max(got))
-            row = [run.path, values["mode"], values["step"], seed, len(got), *map(float, ends)]
+            mode = ", ".join([values["mode"], *map("=".join, values.get("changes", {}).items())])
+            row = [run.path, mode, values["step"], seed, len(got), *map(float, ends)]
             rows.append([*row, *(f"{s:.0%}" for s in values.get("success", [])[i : i + 1])])
         return rows
     except (ValueError, KeyError, TypeError) as error:

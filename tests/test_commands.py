@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import imageio.v3 as iio
@@ -141,6 +142,19 @@ def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
     table = capsys.readouterr().out
     assert f"mode {mode}, step 600" in " ".join(table.split())
     assert f"{last:,.1f}" in table
+
+
+def test_evaluate_in_another_world(trained, capsys):
+    """A pole of which the policy sees little, and actions that arrive late."""
+    changes = ("episode.sensor_noise=3.0", "episode.delay=1")
+    main = partial(call, lambda: command.guarded(evaluate.main))
+    assert main(f"run={trained}", "episodes=3", "mode=policy", *changes) == 0
+    assert f"step 600, {', '.join(changes)}" in capsys.readouterr().out
+    name = "evaluation_policy_episode.sensor_noise=3.0_episode.delay=1.json"
+    values = json.loads((trained / name).read_text())
+    assert values["changes"] == dict(change.split("=") for change in changes)
+    plain = evaluate.evaluate(evaluate.load(trained), "policy", 3)["return"]
+    assert not np.isclose(values["returns"], plain, rtol=1e-4).any()
 
 
 def test_a_trained_policy_gets_what_the_evaluation_says(trained):

@@ -10,6 +10,7 @@ from tiny import TINY, call, call_train, contents, only_line, run
 
 from hybrid_rl import config, demonstrate, evaluate, figures, render
 from hybrid_rl import list as listed
+from hybrid_rl.checks import COUNTS
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
@@ -162,6 +163,9 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
     ("evaluate run={trained} mode=planner", 2, "mode=planner: the run has full, policy"),
     ("evaluate run={trained} episodes=0", 2, f"episodes=0: {COUNT}"),
+    ("evaluate run={trained} episode.late=1", 2, "episode.late=1: episode has steps, action_"),
+    ("evaluate run={trained} env.gravity=1", 2, "env.gravity=1: env has no keys"),
+    ("evaluate policy=cartpole env.reward=up", 2, "env.reward='up': choose one of cos"),
     ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
     ("evaluate {trained}", 2, "unknown argument; give key=value"),
@@ -235,7 +239,7 @@ def test_train_refuses(nothing_lost, capfd, given, words):
 def test_counts_are_whole_numbers(value):
     """Every count of a run, and of the replay memory and an episode."""
     composed = config.load(["task=pendulum", "algo=sac"])
-    for key in (*config.COUNTS, "replay.capacity", "episode.steps", "episode.action_repeat"):
+    for key in (*COUNTS, "replay.capacity", "episode.steps", "episode.action_repeat"):
         changed = composed.copy()
         OmegaConf.update(changed, key, value)
         with pytest.raises(UsageError, match=rf"{key.rpartition('.')[2]}={value}: must be a whole"):

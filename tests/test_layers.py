@@ -20,9 +20,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
-LAYER_FILES = {"types", "networks", "errors", "config", "overrides"}
+LAYER_FILES = {"types", "networks", "errors", "checks", "config", "overrides"}
 SHARED = {"types", "protocols", "core", "networks"}
-CONFIG = {"types", "protocols", "errors", "envs", "training", "config", "overrides"}
+CONFIG = {"types", "protocols", "errors", "envs", "training", "checks", "config", "overrides"}
 ALLOWED = {
     "types": set(),
     "errors": set(),
@@ -30,15 +30,16 @@ ALLOWED = {
     "core": {"types", "protocols", "core"},
     "networks": {"types", "core"},
     "envs": {"types", "protocols", "envs"},
-    "training": {*SHARED, "data", "training"},
+    "training": {*SHARED, "envs", "data", "training"},
     "overrides": {"errors"},
+    "checks": {"errors", "overrides", "envs"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "studies": {*SHARED, *CONFIG, "data", "maps", "run", "cli", "studies"},
     "benchmark": {*CONFIG, "run", "cli", "studies", "benchmark"},
 }
-HYDRA = {"command", "config", "overrides", "run", "cli", "studies"}
+HYDRA = {"command", "checks", "config", "overrides", "run", "cli", "studies"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
 over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))

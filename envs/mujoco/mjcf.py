@@ -7,7 +7,7 @@
 Source: the MJCF reference of MuJoCo, "XML Reference".
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -41,10 +41,16 @@ def text(asset: str) -> str:
     return spec.to_xml()
 
 
+def friction(pairs: Iterable[str], coefficient: float) -> dict[str, float]:
+    """`values` of `changed` that give these pairs a coefficient of sliding friction."""
+    return {f"pair.{pair}.friction.{i}": coefficient for pair in pairs for i in (0, 1)}
+
+
 def changed(asset: str, values: Mapping[str, float]) -> str:
     """The name of `asset` with other values, for `load`.
 
-    values: ELEMENT.NAME.FIELD of mujoco.MjSpec -> value; of a vector, its first entry.
+    values: ELEMENT.NAME.FIELD of mujoco.MjSpec -> value; of a vector its first entry, or that of
+        ELEMENT.NAME.FIELD.INDEX.
     """
     return "?".join([asset, *(f"{key}={float(value)!r}" for key, value in values.items())])
 
@@ -74,11 +80,11 @@ def load(asset: str) -> mujoco.MjModel:
 
 
 def _set(spec: mujoco.MjSpec, key: str, value: float) -> None:
-    """Set ELEMENT.NAME.FIELD of `spec`."""
-    kind, name, field = key.split(".")
+    """Set ELEMENT.NAME.FIELD[.INDEX] of `spec`."""
+    kind, name, field, *index = key.split(".")
     element = getattr(spec, kind)(name)
     if np.ndim(getattr(element, field)):
-        getattr(element, field)[0] = value
+        getattr(element, field)[int(index[0]) if index else 0] = value
     else:
         setattr(element, field, value)
 

@@ -32,6 +32,7 @@ from time import perf_counter
 from typing import Any
 
 from hybrid_rl import config
+from hybrid_rl.checks import PRECISIONS
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, output, read, several, whole
 from hybrid_rl.errors import UsageError
@@ -215,7 +216,7 @@ ARGUMENTS = (
     Argument("worlds", "", "numbers of them, of part physics"),
     Argument("learners", "", f"numbers of them, of parts {', '.join(LEARNERS)}"),
     Argument("plans", "", "KxT, such as 20x10,64x20, of part plan"),
-    Argument("matmul_precision", "highest", "of float32 products", one_of(*config.PRECISIONS)),
+    Argument("matmul_precision", "highest", "of float32 products", one_of(*PRECISIONS)),
     Argument("rounds", 5, "of which medians are taken", whole()),
     Argument("out", "benchmark.json", "the numbers; a picture in the same folder"),
 )

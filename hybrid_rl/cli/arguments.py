@@ -120,7 +120,7 @@ def read(
         name, equals, value = given.partition("=")
         if equals and name in named:
             values[name] = named[name].kind(name, value)
-        elif equals and name.partition(".")[0] in groups:
+        elif equals and "." in name and name.partition(".")[0] in groups:
             changes[name] = value
         else:
             raise UsageError(_refusal(line, at, named, groups))

@@ -21,7 +21,7 @@ from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
 from hybrid_rl import __version__
-from hybrid_rl.config import COUNTS, SECTIONS
+from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.integrity import write_text

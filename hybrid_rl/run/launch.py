@@ -11,6 +11,7 @@ import jax
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
+from hybrid_rl.checks import check, whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, provenance
@@ -43,7 +44,7 @@ def train(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dic
         CheckpointError: if a checkpoint could not be written or read.
     """
     if config.get("distributed"):
-        configuration.check(config)
+        check(config)
         prepare(config)
         config = distributed.share(config)
         given = {key: value for key, value in given.items() if key != "distributed"}
@@ -121,9 +122,9 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
         has = "" if before is UNKNOWN else f"; the run in resume={run_dir} has {before}"
         raise UsageError(f"{key}={given[key]}: with resume only total_steps can be changed{has}")
     if "total_steps" in given:
-        steps = configuration.whole(config, "total_steps")
+        steps = whole(config, "total_steps")
         with folder.blamed(run_dir):
-            before = configuration.whole(old, "total_steps")
+            before = whole(old, "total_steps")
         if steps < before:
             raise UsageError(
                 f"total_steps={steps}: the run in resume={run_dir} has {before}; it can be "

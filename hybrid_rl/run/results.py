@@ -15,7 +15,7 @@ from typing import Any
 
 import yaml  # OmegaConf's own parser, in C: a configuration has a thousand lines
 
-from hybrid_rl.config import SECTIONS
+from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
 
 NOT_ROWS = ("step", "seed", "wall_s", "diverged")  # of a row; every other name is a metric

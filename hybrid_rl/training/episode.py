@@ -1,4 +1,7 @@
-"""Episodes of an environment: time limit, action repeat and resets."""
+"""Episodes of an environment: time limit, action repeat, resets, and disturbances on request.
+
+A controller sees o + sensor_noise N(0, I) and its action arrives `delay` decisions later.
+"""
 
 from dataclasses import dataclass
 from functools import partial
@@ -8,11 +11,13 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.branching import when_any
+from hybrid_rl.envs import sensor_noise
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")
+SENSED = "episode_noise"  # in `info`: the key of the next noise
 
 
 @dataclass(frozen=True)
@@ -20,22 +25,37 @@ class Episode:
     """An environment with a time limit.
 
     `info["decision"]` and `info["return"]` count from the last reset. An action is repeated for
-    `action_repeat` steps of the environment, whose rewards are added until it terminates.
+    `action_repeat` steps of the environment, whose rewards are added until it terminates. With a
+    delay the first actions are 0.
 
     Raises:
-        ValueError: for counts that are not positive whole numbers.
+        ValueError: for counts that are no whole numbers or too small, or noise of another size.
     """
 
     env: Env
     steps: int = 1000  # decisions until the time limit
     action_repeat: int = 1
+    delay: int = 0  # decisions until an action arrives
+    sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("steps", "action_repeat"):
+        for name, least in (("steps", 1), ("action_repeat", 1), ("delay", 0)):
             value = getattr(self, name)
-            if not isinstance(value, int) or value < 1:
-                raise ValueError(f"episode.{name}={value}: must be a whole number, 1 or more")
+            if type(value) is not int or value < least:
+                line = f"must be a whole number, {least} or more"
+                raise ValueError(f"episode.{name}={value}: {line}")
+        if not any(self._std):
+            return
+        sizes = (1, self.env.spec.obs)
+        if len(self._std) not in sizes or min(self._std) < 0:
+            line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
+            raise ValueError(f"episode.sensor_noise={list(self._std)}: {line}")
+
+    @property
+    def _std(self) -> tuple[float, ...]:
+        given = self.sensor_noise
+        return (given,) if isinstance(given, (int, float)) else tuple(given)
 
     @property
     def spec(self) -> Spec:
@@ -47,10 +67,19 @@ class Episode:
         with EXACT():
             state = self.env.reset(key)
         clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
-        return state.replace(info={**state.info, **clock})
+        if self.delay:
+            clock["late"] = jnp.zeros((self.delay, self.spec.act))
+        state = state.replace(info={**state.info, **clock})
+        return sensor_noise.begin(state, self._std, jax.random.fold_in(key, 5), SENSED)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """One decision with action [m]."""
+        if self.delay:
+            late = jnp.concatenate((state.info["late"], action[None]))
+            action, state = late[0], state.replace(info={**state.info, "late": late[1:]})
+        return sensor_noise.resume(self._decide(state, action), self._std, state, SENSED)
+
+    def _decide(self, state: EnvState, action: Array) -> EnvState:
         now = self._substep(state, action)
 
         def repeat(_: int, now: EnvState) -> EnvState:
@@ -64,6 +93,7 @@ class Episode:
         return now.replace(
             truncated=(decision >= self.steps) & ~now.terminated,
             info={
+                **state.info,  # also what is not of this environment
                 **now.info,
                 "decision": decision,
                 "return": state.info["return"] + now.reward,

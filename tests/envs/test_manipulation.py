@@ -2,6 +2,7 @@
 
 import jax
 import jax.numpy as jnp
+import mujoco
 import numpy as np
 import pytest
 from experts import EXPERTS, play
@@ -195,3 +196,27 @@ def test_the_expert_stacks_the_block(implementation):
     assert (path.metrics["grasped"].sum(1) > 20).all()
     moved = path.data.qpos[..., 16:19] - jnp.array([0.45, 0.12, 0.025])[None, None]
     assert jnp.abs(moved).max() < 5e-3  # the base does not move
+
+
+@pytest.mark.parametrize(("mass", "friction"), [(0.1, 0.4), (0.2, 0.4), (0.1, 0.8)])
+def test_a_sliding_block_is_stopped_by_its_friction(mass, friction):
+    """After v^2 / (2 mu g), whatever its mass; within 10%, as it hops a little."""
+    env = SawyerPush("native", block_mass=mass, block_friction=friction)
+    model = env._body.model
+    assert model.body("cube").mass[0] == mass
+    data = mujoco.MjData(model)
+    data.qpos[:7] = HOME
+    data.qpos[7:14] = (0.6, 0.2, HEIGHT, 1, 0, 0, 0)
+    for _ in range(50):
+        mujoco.mj_step(model, data)
+    data.qvel[7], start = 0.5, data.qpos[7]
+    for _ in range(100):
+        mujoco.mj_step(model, data)
+    assert data.qpos[7] - start == pytest.approx(0.5**2 / (2 * 9.81 * friction), rel=0.1)
+
+
+def test_pads_and_cubes_take_the_mass_and_the_friction_of_the_task():
+    model = PandaStack("native", block_mass=0.3, block_friction=0.6)._body.model
+    assert (model.body("block").mass[0], model.body("base").mass[0]) == (0.3, 0.3)
+    np.testing.assert_array_equal(model.pair_friction[:, :2], np.full((model.npair, 2), 0.6))
+    np.testing.assert_array_equal(model.pair_friction[:, 2], 0.005)

@@ -100,3 +100,54 @@ def test_environments_compute_in_full_precision():
         program = str(jax.make_jaxpr(episode.step)(state, jnp.zeros(1)))
     assert "dot_general" in program
     assert "HIGHEST" in program
+
+
+@dataclass(frozen=True)
+class Echo(Counter):
+    """Observes the action that arrived."""
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The observation is the action."""
+        return super().step(state, action).replace(obs=action)
+
+
+def test_actions_arrive_later() -> None:
+    """Two decisions later; until then they are 0."""
+    episode = Episode(Echo(), delay=2)
+    state, seen = episode.reset(jax.random.key(0)), []
+    for u in (1.0, 2.0, 3.0, 4.0):
+        state = episode.step(state, jnp.array([u]))
+        seen.append(float(state.obs[0]))
+    assert seen == [0, 0, 1, 2]
+
+
+def test_observations_have_noise_and_the_world_has_not() -> None:
+    """Of the given standard deviation, new at each decision and in each episode."""
+    keys = jax.random.split(jax.random.key(0), 2000)
+
+    def observed(std: float) -> Array:
+        episode = Episode(Echo(), sensor_noise=(std,))
+        state = jax.vmap(episode.reset)(keys)
+        each = [state.obs[:, 0]]
+        for _ in range(2):
+            state = jax.vmap(episode.step)(state, jnp.ones((2000, 1)))
+            each.append(state.obs[:, 0])
+        return jnp.stack(each)
+
+    noise = np.asarray(observed(0.3) - observed(0.0))
+    np.testing.assert_allclose(np.cov(noise), 0.09 * np.eye(3), atol=0.012)
+    np.testing.assert_allclose(noise.mean(1), 0, atol=0.03)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"delay": -1}, "episode.delay=-1: must be a whole number, 0 or more"),
+        ({"steps": 0}, "episode.steps=0: must be a whole number, 1 or more"),
+        ({"sensor_noise": (0.1, 0.1)}, "must be 1 or 1 numbers, each 0 or more"),
+        ({"sensor_noise": (-0.1,)}, "must be 1 or 1 numbers, each 0 or more"),
+    ],
+)
+def test_wrong_numbers_raise(fields, message) -> None:
+    with pytest.raises(ValueError, match=message):
+        Episode(Counter(), **fields)

@@ -1,0 +1,118 @@
+"""Checks of a configuration before its parts are built: counts, choices, kinds of values."""
+
+import logging
+import math
+from dataclasses import fields, is_dataclass
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin
+
+from hydra.utils import get_object
+from omegaconf import DictConfig, ListConfig, OmegaConf
+
+from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
+from hybrid_rl.errors import UsageError
+from hybrid_rl.overrides import SHOW
+
+COUNTS = (
+    "num_seeds",
+    "num_envs",
+    "total_steps",
+    "eval_every",
+    "eval_episodes",
+    "checkpoint_every",
+    "log_every",
+)
+SECTIONS = ("env", "episode", "replay", "controllers", "learners")
+SEEDS = 2**32  # distinct seeds of JAX's generator
+MODES = ("full", "policy", "planner")
+PRECISIONS = ("highest", "high", "default")
+KINDS = {  # type of a part's field -> its name in messages
+    int: "a whole number",
+    float: "a number",
+    bool: "true or false",
+    str: "a word",
+    tuple: "a list",
+    NoneType: "null",
+}
+
+
+def check(config: DictConfig) -> None:
+    """Raise UsageError for a value that no run accepts; parts check their own ranges."""
+    for key in SECTIONS:
+        if not isinstance(config.get(key), DictConfig):
+            raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
+    for key in COUNTS:
+        whole(config, key)
+    if type(config.seed) is not int or config.seed < 0:
+        raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
+    if config.seed + config.num_seeds > SEEDS:
+        raise UsageError(
+            f"seed={config.seed}: must be at most {SEEDS - config.num_seeds} with "
+            f"num_seeds={config.num_seeds}: JAX takes seeds of 32 bits"
+        )
+    modes = config.eval_modes
+    if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
+        raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
+    for key in ("checkpoint_replay", "distributed"):
+        if type(config.get(key, False)) is not bool:
+            raise UsageError(f"{key}={config[key]}: must be true or false")
+    for key, known in (("matmul_precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
+        if config[key] not in known:
+            raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
+    check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
+    check_kinds(config)
+
+
+def check_kinds(node: DictConfig, where: str = "") -> None:
+    """Raise UsageError for a value in `node` that the field of its part cannot hold."""
+    kinds = _kinds(node, where)
+    for key, value in node.items():
+        each = value if isinstance(value, ListConfig) else [value]
+        if any(isinstance(item, float) and not math.isfinite(item) for item in each):
+            raise UsageError(f"{where}{key}={value}: must be finite")
+        if isinstance(value, DictConfig):
+            check_kinds(value, f"{where}{key}.")
+            continue
+        kind = tuple if isinstance(value, ListConfig) else type(value)
+        wanted = kinds.get(str(key), {kind})
+        if kind not in wanted and not (kind is int and float in wanted):
+            called = " or ".join(KINDS[each] for each in KINDS if each in wanted)
+            raise UsageError(f"{where}{key}={value}: must be {called}")
+
+
+def part_class(target: str) -> Any:
+    """The object that a `_target_` names; Hydra's own log lines are suppressed."""
+    logging.getLogger("hydra").addHandler(logging.NullHandler())
+    return get_object(target)
+
+
+def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
+    """Field -> the types that it accepts, for those fields of a part whose types are in KINDS."""
+    if "_target_" not in node:
+        return {}
+    try:
+        part = part_class(node._target_)
+    except (ImportError, ValueError) as error:
+        hint = "is its folder on PYTHONPATH?"
+        line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"
+        raise UsageError(f"{line}; {hint}") from error
+    kinds = {}
+    for field in fields(part) if is_dataclass(part) else ():
+        several = get_origin(field.type) in (Union, UnionType)
+        each = get_args(field.type) if several else (field.type,)
+        wanted = {get_origin(kind) or kind for kind in each}
+        if wanted <= set(KINDS):
+            kinds[field.name] = wanted
+    return kinds
+
+
+def whole(config: Any, key: str, where: str = "") -> int:
+    """The value at `key`, a whole number, 1 or more.
+
+    Raises:
+        UsageError: if it is anything else.
+    """
+    value = config[key]
+    if not isinstance(value, int) or isinstance(value, bool) or value < 1:
+        raise UsageError(f"{where}{key}={value}: must be a whole number, 1 or more")
+    return value
