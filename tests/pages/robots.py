@@ -151,6 +151,7 @@ CITED = [
     Table("setting | seeds | episodes a seed | mean return", searched),
     Text("the expert's ten episodes have #.", [expert().mean()]),
     Text("Six demonstrations give #% of the expert's return", cloned("6", "share of the expert's")),
+    Text("the same settings give #% from ten", cloned("10", "share of the expert's")),
     Text("The median episode has #%.", [100 * cloned("6", "median episode")[0] / expert().mean()]),
     Text("In #% of the episodes the ant falls", cloned("6", "episodes below 1,000")),
     Text("the others reach # on average, #%", walking()),
@@ -202,6 +203,7 @@ PLAIN = [
     "about 87,000 physics steps a second of the walker and 64,000 of the ant",
     "capsules (64 worlds",
     "10,000 random decisions in each of 256 worlds",
+    "ten seeds of them from 3 and 10 demonstrations",
     "up to 99 of planning on the world itself",
     "10,000 random decisions on MJX. The Sawyer's 20 episodes",
 ]
