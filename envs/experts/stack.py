@@ -39,7 +39,7 @@ class StackController:
     base: tuple[float, ...] = PandaStack.base  # [m] its position, unless it is observed
     speed: float = PandaStack.speed  # [m/s] at a = 1
     grip: str = PandaStack.grip  # near or action
-    observation: str = PandaStack.observation  # thesis or relative
+    observation: str = PandaStack.observation  # thesis, relative or stage
 
     def __post_init__(self) -> None:
         one_of("expert.grip", self.grip, ("near", "action"))
@@ -83,6 +83,10 @@ class StackController:
         """Vectors hand to block and block to target [3], the block's height, whether closed []."""
         if self.observation == "relative":
             return obs[:3], obs[3:6], 1.5 * SIDE - obs[5], obs[6] > 0
+        if self.observation == "stage":  # a closed hand holds the block; a high block is stacked
+            closed, none = obs[3] > 0, jnp.zeros(3).at[2].set(1.5 * SIDE - obs[4])
+            to_block, to_goal = jnp.where(closed, 0.0, obs[:3]), jnp.where(closed, obs[:3], none)
+            return to_block, to_goal, obs[4], closed
         block = obs[3:6]
         goal = obs[13:] if obs.size > 13 else jnp.array([*self.base, 1.5 * SIDE])
         return block - obs[:3], goal - block, block[2], obs[6] > 0
