@@ -38,6 +38,8 @@ HOME = (-0.2353359, -0.4019111, 0.0032168, 1.7513965, -0.0631270, 0.1595469, 1.5
 HEIGHT = -0.154  # [m] of the block's centre
 TRIES = 32  # candidates from which block and target are chosen
 CLEARANCE = 0.06  # [m] between the rod and the block's centre at the start
+SPIN = 4.0  # [rad/s] of the block that is observed as 1: speed over half its width, rounded
+EXTRA = {"command": 2, "turn": 2, "motion": 3, "tip": 2}  # numbers of each group
 WEIGHTS = {"thesis": (5.0, 10.0), "code": (1.25, 1.0)}  # [1/m] of |b - t| and |e - b|
 TIP = Chain(ASSET, "tip")
 
@@ -48,6 +50,7 @@ class SawyerPush:
 
     physics: str = "auto"
     reward: str = "thesis"  # or code
+    extra: tuple[str, ...] = ()  # groups of EXTRA that are observed, too, in that order
     state_scale: float = 10.0  # of the observation [1/m]
     speed: float = 0.15  # [m/s] of the tip at a = 1
     smoothing: float = 0.8  # weight of the previous command in the filter; 0: no filter
@@ -70,6 +73,9 @@ class SawyerPush:
     def __post_init__(self) -> None:
         check(self.physics)
         one_of("reward", self.reward, tuple(WEIGHTS))
+        for name in self.extra:
+            one_of("extra", name, tuple(EXTRA))
+        object.__setattr__(self, "extra", tuple(name for name in EXTRA if name in self.extra))
         for name in ("low", "high", "block", "target_low", "target_high"):
             pair = tuple(getattr(self, name))
             if len(pair) != 2:
@@ -84,7 +90,7 @@ class SawyerPush:
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        return Spec(obs=4, act=2, dt=DT)
+        return Spec(obs=4 + sum(EXTRA[name] for name in self.extra), act=2, dt=DT)
 
     @property
     def _body(self) -> Physics:
@@ -131,6 +137,59 @@ class SawyerPush:
         back = self.posture * (jnp.asarray(HOME, jnp.float32) - data.qpos[:7])
         return damped_inverse(jacobian, twist, self.damping, back)
 
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [2] that led to the observation `after` [o]; x is not used."""
+        away, distance = jnp.linalg.norm(after[:4].reshape(2, 2), axis=1) / self.state_scale
+        home, near = WEIGHTS[self.reward]
+        return -home * distance - near * away - 0.01 * (u**2).sum()
+
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [o]."""
+        near = jnp.linalg.norm(obs[2:4]) < self.success_distance * self.state_scale
+        return near & self.terminate
+
+    def heading(self, obs: Array) -> Array:
+        """The direction [] [rad] of the block's side that faces the rod, at obs [o] with turn."""
+        side, at = jnp.pi / 2, self._at("turn")
+        turn = jnp.arctan2(obs[at + 1], obs[at]) / 4
+        rod = jnp.arctan2(-obs[1], -obs[0])
+        return turn + side * jnp.round((rod - turn) / side)
+
+    def turned(self, obs: Array, angle: Array) -> Array:
+        """The observation [o] of a scene turned by `angle` [rad], with `turn` as it was.
+
+        Exact for multiples of 90 degrees: MuJoCo's pyramids of friction have the table's axes, so
+        that a push also depends on the turn of the block in the world.
+        """
+        groups = [self._at(name) for name in ("command", "motion") if name in self.extra]
+        for at in (0, 2, *groups):
+            obs = obs.at[at : at + 2].set(_turned(obs[at : at + 2], angle))
+        return obs
+
+    def turned_action(self, action: Array, angle: Array) -> Array:
+        """The action [2] turned by `angle` [rad]."""
+        return _turned(action, angle)
+
+    def _at(self, name: str) -> int:
+        """Where the group `name` begins in the observation."""
+        if name not in self.extra:
+            raise ValueError(f"env.extra={list(self.extra)}: must contain {name} for a heading")
+        before = self.extra[: self.extra.index(name)]
+        return 4 + sum(EXTRA[other] for other in before)
+
+    def _extra(self, data: PhysicsState, tip: Array, velocity: Array) -> list[Array]:
+        """The groups of `extra`, for the tip [2] [m] and the filtered command [2] [m/s]."""
+        w, x, y, z = data.qpos[10:14]
+        turn = 4 * jnp.arctan2(2 * (w * z + x * y), 1 - 2 * (y**2 + z**2))
+        low, high = (jnp.asarray(b, jnp.float32) for b in (self.low, self.high))
+        groups = {
+            "command": velocity / self.speed,
+            "turn": jnp.stack((jnp.cos(turn), jnp.sin(turn))),
+            "motion": jnp.concatenate((data.qvel[7:9] / self.speed, data.qvel[12:13] / SPIN)),
+            "tip": (2 * tip - low - high) / (high - low),
+        }
+        return [groups[name] for name in self.extra]
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(SCENE)
@@ -147,10 +206,17 @@ class SawyerPush:
         away = jnp.sqrt((reach**2).sum())
         reward = -home * distance - near * away - 0.01 * (action**2).sum()
         success = distance < self.success_distance
-        obs = self.state_scale * jnp.concatenate((reach, left))
+        parts = (self.state_scale * reach, self.state_scale * left)
+        obs = jnp.concatenate((*parts, *self._extra(data, tip, info["velocity"])))
         metrics = {"success": success.astype(jnp.float32), "distance": distance}
         no = jnp.zeros((), bool)
         return EnvState(data, obs, reward, success & self.terminate, no, metrics, info)
+
+
+def _turned(v: Array, angle: Array) -> Array:
+    """v [2] turned by `angle` [rad]."""
+    c, s = jnp.cos(angle), jnp.sin(angle)
+    return jnp.stack((c * v[0] - s * v[1], s * v[0] + c * v[1]))
 
 
 def _disc(key: Array) -> Array:

@@ -22,6 +22,7 @@ from hybrid_rl.protocols.environments import (
     RewardedEnv,
     Simulator,
     TrackingEnv,
+    TurningEnv,
 )
 from hybrid_rl.protocols.learned import (
     BatchPolicy,
@@ -91,6 +92,7 @@ __all__ = [
     "Target",
     "TrackingEnv",
     "Trainable",
+    "TurningEnv",
     "Uncertain",
     "UniformLearner",
     "UnsquashedPolicy",

@@ -53,6 +53,22 @@ class EndingEnv(Env, Protocol):
         """Whether [] an episode terminates at obs [o]."""
 
 
+class TurningEnv(Env, Protocol):
+    """An environment whose dynamics are the same in several horizontal directions.
+
+    R(a) turns a scene by the angle a [rad] about the vertical.
+    """
+
+    def heading(self, obs: Array) -> Array:
+        """The direction [] [rad] of an object at obs [o]; R(a) adds a to it."""
+
+    def turned(self, obs: Array, angle: Array) -> Array:
+        """R(angle) obs [o]; entries that the dynamics depend on in the world may stay."""
+
+    def turned_action(self, action: Array, angle: Array) -> Array:
+        """R(angle) action [m]."""
+
+
 class TrackingEnv(BalancedEnv, Protocol):
     """An environment whose observation contains a reference that the robot is to follow."""
 
