@@ -36,6 +36,42 @@ def compared(name: str, physics: str) -> dict[str, Any]:
     return next(row for row in rows if (row["name"], row["physics"]) == (name, physics))
 
 
+FEW = read("panda_few")
+CLONED = {  # label on the page -> row
+    "the thesis' observation, two layers of 256": "wide",
+    "env.observation=stage": "plain",
+    "experiment=robots/panda: the same, a disturbed expert": "panda",
+    "experiment=robots/panda algo=hybrid_bc": "hybrid",
+}
+
+
+def few(label: str, column: str) -> list[float]:
+    """A cell of the table of clones from few demonstrations: a share [%], or episodes."""
+    if label not in CLONED:
+        return [10] if "episodes" in column else stacked("bc", column.split()[0])
+    row = FEW["rows"][CLONED[label]]
+    return [row["episodes"]] if "episodes" in column else share(row["success"][column.split()[0]])
+
+
+def share(success: list[float]) -> list[float]:
+    """[%] mean, lowest and highest of the seeds' shares, of which there are ten."""
+    each = 100 * np.array(success)
+    assert len(each) == len(FEW["seeds"])
+    return [each.mean(), each.min(), each.max()]
+
+
+def tried(**settings: Any) -> dict[str, Any]:
+    """The one trial with these settings, by default those of the first trials."""
+    wanted = {"demonstrations": 5, "disturbed": False, "hidden": [32, 24], "steps": 2000} | settings
+    (one,) = (trial for trial in FEW["tried"] if all(trial[key] == wanted[key] for key in wanted))
+    return one
+
+
+NARROW = tried(observation="thesis")
+THREE = {"observation": "thesis", "hidden": [256, 256], "steps": 5000, "demonstrations": 3}
+WIDE, WIDER = tried(observation="thesis", hidden=[256, 256]), tried(**THREE)
+
+
 WORLD = {
     "Sawyer, env.reward=code": "sawyer_code",
     "Sawyer, env.reward=code, white noise": "sawyer_white",
@@ -80,6 +116,41 @@ CITED = [
     ),
     Table("demonstrations | 1 | 2 | 3 | 5 | 10", stacked),
     Text("have # on average", [expert().mean()]),
+    Table("cloned from | episodes per seed | 3 demonstrations | 5 demonstrations", few),
+    Text(
+        "# episodes of four clones of the thesis' network (five demonstrations, our rate) # "
+        "failed: # times the hand pushed the block away before it came within the centimetre at "
+        "which it closes, # times it released it elsewhere",
+        [
+            NARROW["episodes"],
+            NARROW["episodes"] - NARROW["succeeded"],
+            NARROW["failed"]["pushed the block away"],
+            NARROW["failed"]["released it elsewhere"],
+        ],
+    ),
+    Text(
+        "with it # of # episodes succeeded, without it # (relative",
+        [
+            tried(observation="relative, velocity")["succeeded"],
+            NARROW["episodes"],
+            tried(observation="relative")["succeeded"],
+        ],
+    ),
+    Text(
+        "256 reach # of # at five demonstrations, and # of # at three, where a disturbed expert "
+        "gives #",
+        [
+            WIDE["succeeded"],
+            WIDE["episodes"],
+            WIDER["succeeded"],
+            WIDER["episodes"],
+            tried(**THREE, disturbed=True)["succeeded"],
+        ],
+    ),
+    Text(
+        "After 120 queries #% [#%, #%] of the episodes",
+        share(FEW["rows"]["dagger"]["success"]["1"]),
+    ),
     Table(
         "planned on the world | episodes | successes | decisions until success, median"
         " | return, mean | processor time per decision, s",
@@ -142,5 +213,15 @@ PLAIN = [
     "capsules (64 worlds",
     "10,000 random decisions in each of 256 worlds",
     "up to 99 of planning on the world itself",
+    "the thesis' observation, two layers of 256",
+    "mean of the weights over about the last 500",
+    "5,000 gradient steps",
+    "(1) an observation",
+    "(2) An expert",
+    "(3) Two layers of 64",
+    "With the thesis' observation two layers of 256",
+    "(two layers of 256",
+    "20 episodes per seed): the expert drives for 80 decisions",
+    "After 120 queries",
     "10,000 random decisions on MJX. The Sawyer's 20 episodes",
 ]
