@@ -147,9 +147,9 @@ CITED = [
             tried(**THREE, disturbed=True)["succeeded"],
         ],
     ),
-    Text(
-        "After 120 queries #% [#%, #%] of the episodes",
-        share(FEW["rows"]["dagger"]["success"]["1"]),
+    Table(
+        "queries to the expert by hand | episodes that succeed",
+        lambda label, _: share(FEW["rows"]["dagger"]["success"][label]),
     ),
     Table(
         "planned on the world | episodes | successes | decisions until success, median"
@@ -222,6 +222,5 @@ PLAIN = [
     "With the thesis' observation two layers of 256",
     "(two layers of 256",
     "20 episodes per seed): the expert drives for 80 decisions",
-    "After 120 queries",
     "10,000 random decisions on MJX. The Sawyer's 20 episodes",
 ]
