@@ -38,10 +38,8 @@ def compared(name: str, physics: str) -> dict[str, Any]:
 
 FEW = read("panda_few")
 CLONED = {  # label on the page -> row
-    "the thesis' observation, two layers of 256": "wide",
     "env.observation=stage": "plain",
     "experiment=robots/panda: the same, a disturbed expert": "panda",
-    "experiment=robots/panda algo=hybrid_bc": "hybrid",
 }
 
 
@@ -213,9 +211,9 @@ PLAIN = [
     "capsules (64 worlds",
     "10,000 random decisions in each of 256 worlds",
     "up to 99 of planning on the world itself",
-    "the thesis' observation, two layers of 256",
     "mean of the weights over about the last 500",
     "5,000 gradient steps",
+    "hold about 270 labels",
     "(1) an observation",
     "(2) An expert",
     "(3) Two layers of 64",
