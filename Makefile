@@ -30,10 +30,10 @@ format: setup
 	$(RUN) ruff check --fix
 	$(RUN) ruff format
 
-# The site in build/docs/html. Sphinx is in .venv-docs; everything else is imported from .venv.
+# The site in build/docs/html; make docs ARGS=links requests the external links instead. Sphinx is in .venv-docs; everything else is imported from .venv.
 docs: setup .venv-docs/.installed
 	PYTHONPATH=$(CURDIR):$$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
-	  .venv-docs/bin/python scripts/docs.py
+	  .venv-docs/bin/python scripts/docs.py $(ARGS)
 
 .venv-docs/.installed: docs/requirements.lock
 	$(RUN) uv venv --quiet --clear --python .venv/bin/python .venv-docs

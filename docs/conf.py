@@ -28,6 +28,10 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 600  # [s] a cell, on a busy machine
 nb_execution_cache_path = str(Path(__file__).parents[1] / "build" / "docs" / "notebooks")
 
+linkcheck_timeout = 30  # [s]
+linkcheck_retries = 3
+linkcheck_anchors = False  # many sites make theirs in the browser
+
 autodoc_member_order = "bysource"
 autodoc_class_signature = "separated"
 autodoc_typehints = "none"

@@ -3,7 +3,7 @@
     python -m hybrid_rl.demonstrate task=panda_stack episodes=20
     python -m hybrid_rl.demonstrate task=quadcopter_se3 expert=babble env.twist=2
     python -m hybrid_rl.demonstrate run=DIR mode=policy out=demonstrations/ant.npz
-    python -m hybrid_rl.demonstrate run=DIR policy=demonstrations/ant_policy.npz
+    python -m hybrid_rl.demonstrate run=DIR policy=policies/mine.npz
 
 The file is demonstrations/T.npz by default. The expert is the task's scripted one, or another of
 conf/expert, such as babble (random actions); in the task with its defaults or with env.KEY=VALUE,

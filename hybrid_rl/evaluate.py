@@ -37,7 +37,7 @@ from rich.table import Table
 
 from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, read, whole
+from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import checkpoint
@@ -52,7 +52,7 @@ from hybrid_rl.types import Params, Spec
 GROUPS = {name: f"another value of a key of its {name}" for name in ("env", "episode")}
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
-    Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file"),
+    POLICY,
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )

@@ -32,7 +32,7 @@ from jax import Array
 
 from hybrid_rl import pretrained
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, output, read, several, whole
+from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, whole
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core import archive
 from hybrid_rl.core.lifting import is_identity
@@ -45,7 +45,7 @@ SUFFIXES = (".stablehlo", ".npz")
 PLATFORMS = ("cpu", "cuda", "rocm", "tpu")
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
-    pretrained.POLICY,
+    POLICY,
     Argument("out", "", "the file: .stablehlo or .npz", needed="out=policy.stablehlo or .npz"),
     Argument("mode", "policy", "policy: alone; full or planner: one that plans (.stablehlo)"),
     Argument("seed", None, "of a learner of the run; empty: the first", whole(least=0)),

@@ -16,7 +16,6 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import part_class
-from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core import archive
 from hybrid_rl.core.lifting import is_identity
@@ -30,7 +29,6 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
 PARTS = ("env", "episode", "policy")  # of `about`
-POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file")
 
 
 def names() -> list[str]:

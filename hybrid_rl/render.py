@@ -28,12 +28,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, output, read, whole
+from hybrid_rl.cli.arguments import POLICY, Argument, output, read, whole
 from hybrid_rl.errors import UsageError
 
 ARGUMENTS = (
     Argument("run", "", "folder of a trained run"),
-    Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file"),
+    POLICY,
     Argument("task", "", "instead: a task with a scripted expert"),
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
     Argument("mode", "", "of run=DIR: full, policy, planner or training; empty: full"),

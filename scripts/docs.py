@@ -1,6 +1,7 @@
 """Build the documentation site in build/docs/html, with Sphinx and MyST-NB.
 
     python scripts/docs.py
+    python scripts/docs.py links    requests every external link instead; needs the network
 
 The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that
 their links work on GitHub and on the site. A page per method is made from conf/algo, the section of
@@ -25,7 +26,7 @@ from hybrid_rl.errors import UsageError
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build" / "docs"
-SOURCE, HTML = BUILD / "source", BUILD / "html"
+SOURCE, HTML, LINKS = BUILD / "source", BUILD / "html", BUILD / "links"
 AT_TOP = ("CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
 TASKS = ("pendulum", "cart_double_pendulum", "quadcopter_se3", "sprk_sand", "contact_plane")
 TASKS += ("sawyer_torque", "cart_swing_up", "lander", "no_dynamics", "halfcheetah")
@@ -195,18 +196,30 @@ def modules(member: str) -> list[str]:
     return [f"hybrid_rl.{member}.{name}" for name in inner if name != "adapters.brax"]
 
 
+def build(builder: str, out: Path, *options: str) -> None:
+    """Run Sphinx; the process ends if it fails."""
+    command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
+    command += ["--fresh-env", "-c", str(ROOT / "docs"), "-d", str(BUILD / "doctrees")]
+    command += ["--jobs", "2", "--builder", builder, *options]
+    shutil.rmtree(out, ignore_errors=True)
+    code = subprocess.run([*command, SOURCE, out], cwd=ROOT).returncode
+    if code:
+        sys.exit(code)
+
+
 def main() -> None:
     """Copy, make and build."""
+    if sys.argv[1:] not in ([], ["links"]):
+        sys.exit("usage: python scripts/docs.py [links]")
     copy()
     methods()
     reference()
-    command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
-    command += ["--fresh-env", "-c", str(ROOT / "docs"), "-d", str(BUILD / "doctrees")]
-    shutil.rmtree(HTML, ignore_errors=True)
-    code = subprocess.run([*command, "--jobs", "2", SOURCE, HTML], cwd=ROOT).returncode
-    if code:
-        sys.exit(code)
-    print(HTML / "index.html")
+    if sys.argv[1:]:
+        build("linkcheck", LINKS, "-D", "nb_execution_mode=off")
+        print(LINKS / "output.txt")
+    else:
+        build("html", HTML)
+        print(HTML / "index.html")
 
 
 if __name__ == "__main__":

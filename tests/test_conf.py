@@ -6,16 +6,15 @@ from typing import Any, get_args
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 import pytest
+import small
 from hydra.utils import get_class, instantiate
 from omegaconf import DictConfig, OmegaConf
-from tiny import SMALL, demonstrate
+from tiny import SMALL
 
 from hybrid_rl import config
 from hybrid_rl import list as listed
 from hybrid_rl.cli.command import options
-from hybrid_rl.training.loop import Loop
 
 PARTS = [
     path
@@ -72,33 +71,12 @@ RUN = {  # methods that run here; test_learning.py runs four, the others differ 
     *("koopman_active", "koopman_embedding", "koopman_track", "computed_torque"),
     *("ergodic_mapping", "ergodic_localisation"),
 }
-LINEAR = ("koopman", "gp_")  # begin the names of methods without networks to shrink
 EACH = [  # every method on one task, the default method on the default task, one on every task
     *((OF_TASK.get(algo, "pendulum"), algo) for algo in options("algo")),
     ("halfcheetah", "hybrid_stochastic"),
     *((task, "nn_mppi") for task in options("task") if task != "pendulum"),
 ]
-
-
-def put(node: Any, **values: Any) -> None:
-    """Set every key of these names in a composed configuration, here and below.
-
-    A teacher keeps its values.
-    """
-    for key, value in node.items():
-        if key in values:
-            node[key] = values[key]
-        elif isinstance(value, DictConfig) and key != "teacher":
-            put(value, **values)
-
-
-def with_demonstrations(composed: DictConfig, folder: Path) -> DictConfig:
-    """The configuration with a file of random decisions, if its method learns from one."""
-    learners = composed.learners.values()
-    if composed.replay.demonstrations or any(each and each.get("recorded") for each in learners):
-        put(composed, file=demonstrate(folder, composed).partition("=")[2])
-    return composed
-
+EXECUTED = {pair for pair in EACH if pair[1] in RUN} | {("halfcheetah", "hybrid_stochastic")}
 
 NEEDS = {  # type of the world that a part takes, the most demanding first -> comment of its method
     "TrackingEnv": "needs a task with a reference",
@@ -143,33 +121,13 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
 
     A method's comment says which tasks its parts need.
     """
-    linear = algo.startswith(LINEAR)
-    small = ["total_steps=200"] if linear else SMALL
-    composed = config.load([f"task={task}", f"algo={algo}", "num_seeds=2", *small])
+    composed = small.load(algo, f"task={task}", f"algo={algo}")
     assert listed.needs(config.CONF / "algo" / f"{algo}.yaml") == needs(composed)
-    if linear:
-        put(composed.controllers, horizon=2, size=4)
-        put(composed.learners, horizon=2, size=4)
-    for parts in (composed.controllers, composed.learners):
-        put(parts, hidden=[8], particles=20, moves=1)
-    if task != "pendulum" and "policy" in composed.learners:
-        put(composed.learners.policy, updates=1)
-    composed.pretrain = min(composed.pretrain, 2)
-    run = config.build(with_demonstrations(composed, tmp_path))
-    if algo not in RUN and (task, algo) != ("halfcheetah", "hybrid_stochastic"):
+    run = config.build(small.with_demonstrations(composed, tmp_path))
+    if (task, algo) in EXECUTED:
+        small.learn(run)
+    else:
         trace(run.agent)
-        return
-    loop = Loop(run.agent, run.seeds, stride=8)
-    state = loop.init()
-    program = loop.compile(state)
-    state, metrics = program(state, jnp.int32(0), jnp.int32(8))
-    assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(run.agent.params(state)))
-    demonstrated = run.agent.replay.num_demonstrated(run.agent.num_envs)
-    assert (state.memory.count - demonstrated == 8).all()
-    learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
-    assert learned or not run.agent.learners
-    for name in learned:
-        assert np.isfinite(metrics[name][-1]).all()
 
 
 def methods_of(experiment: str) -> list[list[str]]:
@@ -194,7 +152,7 @@ def test_every_experiment_builds(experiment: str, tmp_path: Path) -> None:
     """The parts of an experiment accept its values, for every method that it compares."""
     for line in methods_of(experiment):
         composed = config.load([f"experiment={experiment}", *line])
-        config.build(with_demonstrations(composed, tmp_path))
+        config.build(small.with_demonstrations(composed, tmp_path))
 
 
 @pytest.mark.parametrize("task", ["halfcheetah", "sprk_sand"])

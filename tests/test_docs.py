@@ -2,10 +2,13 @@
 
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rotation import share
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
@@ -48,3 +51,34 @@ def test_notebooks_are_kept_without_outputs_and_name_what_exists(path):
         assert (experiments / f"{name}.yaml").is_file(), name
     for link in re.findall(r"\]\(([^)#]+\.md)", text):
         assert (path.parent / link).is_file(), link
+
+
+def program(path):
+    """The code of a notebook as plain Python, with runs of 400 decisions at most.
+
+    %%writefile writes; other magics are left out.
+    """
+    lines = []
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        text = "".join(cell["source"])
+        if cell["cell_type"] != "code":
+            continue
+        if text.startswith("%%writefile "):
+            name, body = text.removeprefix("%%writefile ").split("\n", 1)
+            lines.append(f"Path({name!r}).write_text({body!r})")
+        else:
+            lines += [line for line in text.splitlines() if not line.startswith("%")]
+    code = "\n".join(lines)
+    long = re.compile(r"(total_steps[=:] ?)(\d+)")
+    return long.sub(lambda found: f"{found[1]}{min(int(found[2]), 400)}", code)
+
+
+@pytest.mark.parametrize("path", share(NOTEBOOKS, len(NOTEBOOKS)), ids=lambda path: path.stem)
+def test_a_notebook_runs(path, tmp_path):
+    """One for each commit; `make docs` runs all of them in Jupyter."""
+    code = program(path)
+    assert "train" in code or "figure(" in code
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""Links on the pages lead to files and headings that exist."""
+"""Links on the pages lead to files and headings that exist; external ones have the right form."""
 
 import re
 from pathlib import Path
@@ -8,6 +8,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 AT_TOP = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 PAGES = [*(ROOT / name for name in AT_TOP), *sorted((ROOT / "docs").rglob("*.md"))]
+CITING = [*PAGES, ROOT / "CITATION.cff", *sorted((ROOT / "paper").glob("paper.*"))]
+CITING += sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+EXTERNAL = re.compile(r"\bhttps?:[^\s)}>\"'`\\]*")
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]*)(?:#([^)\s]+))?\)")
 
 
@@ -25,6 +28,26 @@ def test_links_exist(page):
     missing = [str(path) for path, _ in targets if not path.exists()]
     missing += [f"{path}#{a}" for path, a in targets if a and a not in anchors(path)]
     assert not missing
+
+
+def malformed(text):
+    """External links of a text that are not https://HOST.DOMAIN, or end with punctuation."""
+    links = EXTERNAL.findall(text)
+    form = re.compile(r"https://[\w-]+(\.[\w-]+)+(/\S*)?")
+    return [link for link in links if not form.fullmatch(link) or link[-1] in ".,;:"]
+
+
+def test_external_links_have_the_right_form():
+    """`make docs ARGS=links` requests them."""
+    texts = [path.read_text(encoding="utf-8") for path in CITING]
+    assert any(EXTERNAL.search(text) for text in texts)
+    assert not [link for text in texts for link in malformed(text)]
+
+
+def test_a_malformed_link_is_noticed():
+    right = "[a](https://docs.jax.dev/en/x.html#y), url = {https://github.com/a/b}"
+    wrong = ["http://a.b", "https:/a.b", "https://ab", "https://a.b/c."]
+    assert malformed(" ".join([right, *wrong])) == wrong
 
 
 def test_a_broken_anchor_is_noticed(tmp_path):

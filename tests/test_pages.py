@@ -3,16 +3,14 @@
 python tests/test_pages.py    writes the numbers of the files onto the pages
 """
 
-import re
-import shlex
 from importlib import import_module
-from importlib.util import find_spec
-from itertools import cycle, islice
 
 import pytest
-from hydra.core.override_parser.overrides_parser import OverridesParser
-from pages import cited
+import small
+import test_conf
+from pages import cited, commands
 from pages.cited import ROOT
+from rotation import share
 
 from hybrid_rl import config, figures
 from hybrid_rl.cli.arguments import HELP
@@ -32,16 +30,6 @@ PAGES = [
     "speed",
 ]
 OTHERS = {"README.md", "paper/paper.md"}  # pages that cite results
-WITH_COMMANDS = [  # those of the atlas are copied from other pages
-    "README.md",
-    "CONTRIBUTING.md",
-    *(
-        str(path.relative_to(ROOT))
-        for path in sorted((ROOT / "docs").rglob("*.md"))
-        if path.name != "atlas.md"
-    ),
-]
-LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
 
 
 def text(page):
@@ -90,51 +78,65 @@ def test_a_changed_and_an_added_number_are_noticed():
         cited.citations(page.replace("half is", "half was"), [cell, sentence])
 
 
-def commands(page):
-    """(command, its words) of every line of a page that runs a command of hybrid_rl."""
-    return [(name, shlex.split(words)) for name, words in LINE.findall(text(page))]
-
-
-def jobs(words):
-    """Overrides of enough jobs of a sweep that each value is in one of them."""
-    parsed = OverridesParser.create().parse_overrides([word for word in words if "=" in word])
-    values = [
-        list(one.sweep_string_iterator()) if one.is_sweep_override() else [one.get_value_string()]
-        for one in parsed
-    ]
-    most = max(map(len, values), default=1)
-    rows = zip(*(islice(cycle(each), most) for each in values), strict=True)
-    keys = [one.get_key_element() for one in parsed]
-    return [tuple(f"{k}={v}" for k, v in zip(keys, row, strict=True)) for row in rows]
-
-
-@pytest.mark.parametrize("page", WITH_COMMANDS)
+@pytest.mark.parametrize("page", commands.PAGES)
 def test_training_commands_compose(page):
-    lines = [words for name, words in commands(page) if name == "train"]
-    lines = [words for words in lines if "--config-dir" not in words]  # a folder of the reader's
-    for overrides in sorted({job for words in lines for job in jobs(words)}):
-        config.load(overrides)
+    for job in commands.training(page):
+        commands.composed(job)
 
 
-@pytest.mark.parametrize("page", WITH_COMMANDS)
+RUN_ELSEWHERE = test_conf.EXECUTED | {  # by test_commands.py
+    ("cartpole", "hybrid_stochastic"),
+    ("pendulum", "nn_mppi"),
+    ("pendulum", "sac"),
+}
+OWN = (  # what a small run has of its own
+    *("settings=", "num_envs=", "num_seeds=", "run_dir=", "resume=", "hydra/", "hydra."),
+    *("random_steps=", "total_steps=", "policy_learner.updates="),
+)
+
+
+def test_training_commands_learn_in_a_small_size(tmp_path):
+    """One command for each pair of task and method; a twentieth of the pairs for each commit."""
+    found = {}
+    for job in [job for page in commands.PAGES for job in commands.training(page)]:
+        if not sweeps_methods(job):
+            whole = commands.composed(job)
+            found.setdefault((whole.task, whole.algo), job)
+    for task, algo in share(sorted(found.keys() - RUN_ELSEWHERE), 20):
+        given = [word for word in found[task, algo] if not word.startswith(OWN)]
+        print(task, algo, *given)  # which one failed
+        composed = small.with_demonstrations(small.load(algo, *given), tmp_path)
+        small.learn(config.build(composed))
+
+
+def sweeps_methods(job):
+    """Whether an experiment names the methods of a job, which test_conf.py builds."""
+    given = dict(word.split("=", 1) for word in job)
+    if "algo" in given or "experiment" not in given:
+        return False
+    return test_conf.methods_of(given["experiment"]) != [[]]
+
+
+@pytest.mark.parametrize("page", commands.PAGES)
 def test_other_commands_have_the_arguments_of_the_page(page):
-    for name, words in commands(page):
+    for name, words in commands.commands(page):
         if name in ("train", "list"):
             continue
         if any(f"`{word.removeprefix('study=')}.py`" in text(page) for word in words):
             continue  # a study that the page itself defines
+        module = commands.module(name)
         known = {one.name for one in declared(name, words)}
         for word in words:
             key = word.partition("=")[0]
-            assert key in known | set(HELP), f"{name}: {word}"
+            section, dot, _ = key.partition(".")
+            in_group = dot and section in getattr(module, "GROUPS", {})
+            assert in_group or key in known | set(HELP), f"{name}: {word}"
 
 
 def declared(name, words):
     """Arguments of a command; of `figures` also those of the study that the words name."""
-    package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
-    module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
     if name != "figures":
-        return module.ARGUMENTS
+        return commands.module(name).ARGUMENTS
     (study,) = [w.removeprefix("study=") for w in words if "study=" in w] or [figures.DEFAULT]
     if study in ("list", "NAME"):
         return figures.ARGUMENTS

@@ -94,6 +94,9 @@ class Argument:
     needed: str = ""  # what to give, for an argument that is required
 
 
+POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file")
+
+
 def read(
     doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
 ) -> tuple[dict[str, Any], dict[str, str]]:

@@ -2,6 +2,7 @@
 
 import math
 import os
+import shutil
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -11,10 +12,21 @@ from typing import Any
 from hydra.core.utils import JobReturn, JobStatus
 
 from hybrid_rl.cli import interrupt
+from hybrid_rl.errors import UsageError
 
+SLURM = "submitit_slurm"
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
 PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted
+
+
+def require_slurm(launcher: str) -> None:
+    """Raise UsageError for a launcher that needs Slurm's commands where there are none."""
+    if launcher == SLURM and not (shutil.which("sbatch") and shutil.which("srun")):
+        raise UsageError(
+            f"hydra/launcher={SLURM}: no sbatch and srun here; start it where Slurm is, "
+            "or try hydra/launcher=submitit_local"
+        )
 
 
 @contextmanager
@@ -22,13 +34,23 @@ def watched(results: dict[int, Result]) -> Iterator[None]:
     """Print a line when a job of Submitit is sent, begins and ends.
 
     A lost job, whose process was killed, for example, counts as failed.
+
+    Raises:
+        UsageError: if the jobs cannot be sent.
     """
     import submitit
+    from submitit.core.utils import FailedJobError
 
     send = submitit.AutoExecutor.map_array
 
     def map_array(executor: Any, function: Any, *lists: Sequence[Any]) -> list[_Ended]:
-        jobs = dict(zip(lists[2], send(executor, function, *lists), strict=True))
+        try:
+            sent = send(executor, function, *lists)
+        except FailedJobError as error:
+            reason = str(error).strip().replace("\n", "; ")
+            key = f"hydra/launcher=submitit_{executor.cluster}"
+            raise UsageError(f"{key}: the jobs could not be sent: {reason}") from error
+        jobs = dict(zip(lists[2], sent, strict=True))
         for number, job in jobs.items():
             print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)
         with interrupt.tidily(PATIENCE + 5):

@@ -20,7 +20,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
-from hybrid_rl.cli.submitted import Result, watched
+from hybrid_rl.cli.submitted import Result, require_slurm, watched
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, refuse_new_keys, refuse_unused
 from hybrid_rl.run.folder import made
@@ -86,11 +86,12 @@ class Sweeper(BasicSweeper):
         """Run all jobs; end the process with the highest exit code if one failed.
 
         Raises:
-            UsageError: if one of them cannot run; then none runs.
+            UsageError: if one of them, or the launcher, cannot run; then none runs.
         """
         assert self.config is not None
         assert self.launcher is not None
         assert self.hydra_context is not None
+        require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
         swept = parser.parse_overrides([*self._parse_config(), *arguments])
         (jobs,) = self.split_arguments(swept, None)

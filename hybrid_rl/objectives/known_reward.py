@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import analytic
+from hybrid_rl.core import analytic, returns
 from hybrid_rl.protocols import RewardedEnv
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -50,10 +50,5 @@ class KnownReward:
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is 0."""
-
-        def back(after: Array, r: Array) -> tuple[Array, Array]:
-            now = r + self.discount * after
-            return now, now
-
-        to_go = jax.lax.scan(back, jnp.zeros(()), self.rewards(params, path), reverse=True)[1]
-        return jnp.append(to_go, 0.0)
+        rewards = self.rewards(params, path)
+        return returns.to_go(rewards, jnp.full(rewards.shape, self.discount), jnp.zeros(()))

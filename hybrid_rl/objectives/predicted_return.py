@@ -13,6 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import returns
 from hybrid_rl.core.lifting import seen
 from hybrid_rl.protocols import Critic, Policy, Reward
 from hybrid_rl.types import Params, Path, Return, Spec
@@ -66,11 +67,5 @@ class PredictedReturn:
         if self.critic is not None and self.policy is not None:
             x = seen(jax.tree.map(lambda leaf: leaf[-1], path.x))
             last = self.critic.value(params.critic, x, self.policy.mean(params.policy, x))
-
-        def back(after: Array, at: tuple[Array, Array]) -> tuple[Array, Array]:
-            r, end = at
-            now = r + self.discount * jax.nn.sigmoid(-end) * after
-            return now, now
-
-        to_go = jax.lax.scan(back, last, (rewards, ends), reverse=True, unroll=True)[1]
-        return jnp.append(to_go, last)
+        goes_on = self.discount * jax.nn.sigmoid(-ends)
+        return returns.to_go(rewards, goes_on, last, unroll=True)

@@ -64,6 +64,10 @@ LABELS = {
     "planner/mode_insertion_gradient": "Mode insertion gradient",
     "planner/policy_share": "Share of the policy in the action",
     "planner/insertion_per_variance": "Insertion gradient / policy variance",
+    "planner/lyapunov": "Lyapunov function V",
+    "planner/lyapunov_rate": "Change of V under the policy [per decision]",
+    "planner/lyapunov_bound": "Most that the plan adds to V [per decision]",
+    "planner/handed_over": "Share of decisions handed over",
 }
 PANEL = (4.4, 3.1)  # [in] of a panel, without its legend
 MOST_ACROSS = 4

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -105,6 +106,41 @@ def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path, capfd):
     first, second = table(tmp_path)
     assert (first["code"], second["code"]) == (0, 1)
     assert json.loads((tmp_path / first["run_dir"] / "summary.json").read_text())["finished"]
+
+
+SLURM = ["-m", *TINY, "algo=sac,nn_mppi", "hydra/launcher=submitit_slurm"]
+
+
+def test_what_slurm_gets_and_refuses(tmp_path):
+    """An array of the jobs, with the settings of hydra.launcher; its refusal is one line."""
+    kept = tmp_path / "batch.sh"
+    refuse = "echo 'sbatch: error: invalid partition specified: big' >&2; exit 1"
+    for name, script in {
+        "srun": "exit 1",
+        "sbatch": f'for file; do :; done; cp "$file" {kept}; {refuse}',
+    }.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{script}\n")
+        (tmp_path / name).chmod(0o755)
+    launcher = {"gpus_per_node": 1, "partition": "big", "timeout_min": 600}
+    line = [*SLURM, *(f"hydra.launcher.{key}={value}" for key, value in launcher.items())]
+    env = os.environ | {"PATH": f"{tmp_path}:{os.environ['PATH']}"}
+    whole = [sys.executable, "-m", "hybrid_rl.train", *line]
+    done = subprocess.run(whole, env=env, capture_output=True, text=True)
+    assert done.returncode == 2, done.stderr
+    given = dict(re.findall(r"^#SBATCH --([\w-]+)=(.*)$", kept.read_text(), re.MULTILINE))
+    wanted = {"array": "0-1%2", "gpus-per-node": "1", "partition": "big", "time": "600"}
+    assert (wanted | {"job-name": "hybrid_rl"}).items() <= given.items()
+    theirs, ours = done.stderr.splitlines()  # Submitit prints what sbatch wrote
+    assert theirs == "sbatch: error: invalid partition specified: big"
+    sent = "hybrid_rl: hydra/launcher=submitit_slurm: the jobs could not be sent: "
+    assert ours == sent + theirs
+    assert done.stdout.splitlines()[-1] == "0 of 2 jobs done; not 0, 1"
+
+
+def test_without_slurm_it_is_one_line(monkeypatch, capfd):
+    monkeypatch.setenv("PATH", "")
+    assert call_train(*SLURM) == 2
+    assert "no sbatch and srun here; start it where Slurm is" in capfd.readouterr().err
 
 
 def test_an_interrupt_ends_all_of_a_sweep(tmp_path):

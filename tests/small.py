@@ -1,0 +1,66 @@
+"""Eight decisions, with learning, of any task and method, whose parts are made small."""
+
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from omegaconf import DictConfig
+from tiny import SMALL, demonstrate
+
+from hybrid_rl import config
+from hybrid_rl.training.loop import Loop
+
+LINEAR = ("koopman", "gp_")  # begin the names of methods without networks to shrink
+
+
+def put(node: Any, **values: Any) -> None:
+    """Set every key of these names in a composed configuration, here and below.
+
+    A teacher keeps its values.
+    """
+    for key, value in node.items():
+        if key in values:
+            node[key] = values[key]
+        elif isinstance(value, DictConfig) and key != "teacher":
+            put(value, **values)
+
+
+def with_demonstrations(composed: DictConfig, folder: Path) -> DictConfig:
+    """The configuration with a file of random decisions, if its method learns from one."""
+    learners = composed.learners.values()
+    if composed.replay.demonstrations or any(each and each.get("recorded") for each in learners):
+        put(composed, file=demonstrate(folder, composed).partition("=")[2])
+    return composed
+
+
+def load(algo: str, *overrides: str) -> DictConfig:
+    """The configuration of two learners of small parts."""
+    linear = algo.startswith(LINEAR)
+    small = ["total_steps=200"] if linear else SMALL
+    composed = config.load([*overrides, "num_seeds=2", *small])
+    if linear:
+        put(composed.controllers, horizon=2, size=4)
+        put(composed.learners, horizon=2, size=4)
+    for parts in (composed.controllers, composed.learners):
+        put(parts, hidden=[8], particles=20, moves=1, batch_size=2)
+    if composed.task != "pendulum" and composed.learners.get("policy"):
+        put(composed.learners.policy, updates=1)
+    composed.pretrain, composed.random_steps = min(composed.pretrain, 2), 2
+    return composed
+
+
+def learn(run: Any) -> None:
+    """Eight decisions of all learners; all numbers are finite."""
+    loop = Loop(run.agent, run.seeds, stride=8)
+    state = loop.init()
+    program = loop.compile(state)
+    state, metrics = program(state, jnp.int32(0), jnp.int32(8))
+    assert all(np.isfinite(leaf).all() for leaf in jax.tree.leaves(run.agent.params(state)))
+    demonstrated = run.agent.replay.num_demonstrated(run.agent.num_envs)
+    assert (state.memory.count - demonstrated == 8).all()
+    learned = [name for name in metrics if name.endswith("_loss") or name == "model/loss"]
+    assert learned or not run.agent.learners
+    for name in learned:
+        assert np.isfinite(metrics[name][-1]).all()

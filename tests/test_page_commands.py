@@ -1,0 +1,73 @@
+"""Commands on the pages that do not train, run in a small size on one small run."""
+
+from functools import partial
+from pathlib import Path
+
+import pytest
+from pages import commands
+from tiny import call, run
+
+from hybrid_rl.cli import command
+
+SMALL = {  # command -> arguments that make it small
+    "demonstrate": {"episodes": "1"},
+    "evaluate": {"episodes": "1"},
+    "render": {"episode_steps": "2", "width": "64", "height": "48"},
+}
+METRICS = {"train/return", "eval/return", "eval/policy_return"}  # of the small run
+
+
+def programs():
+    """(command, its arguments) of the pages, in their order, each as often as it differs.
+
+    A name of a file makes no difference, but its suffix does.
+    """
+    found = {}
+    for page in commands.PAGES:
+        for name, words in commands.commands(page):
+            given = dict(word.split("=", 1) for word in words if "=" in word)
+            if not runs_here(name, given):
+                continue
+            given = {key: "run" if key in ("run", "runs") else each for key, each in given.items()}
+            given |= SMALL.get(name, {})
+            kind = given | {"out": Path(given.get("out", "")).suffix}
+            found.setdefault((name, *sorted(kind.items())), (name, given))
+    return list(found.values())
+
+
+def runs_here(name, given):
+    """Whether a command needs no more than a run of hybrid learning."""
+    if name == "figures":  # tests/studies draw the others
+        metrics = set(given.get("metric", "train/return").split(","))
+        return "study" not in given and "x" not in given and metrics <= METRICS
+    if name == "render" and given.get("mode") == "training":  # test_belief_frames.py
+        return False
+    return name not in ("train", "benchmark") and "..." not in given.values()  # test_benchmark.py
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The folder in which the commands run, with the run."""
+    folder = tmp_path_factory.mktemp("pages")
+    size = ["policy.hidden=[256,256]", "episode.steps=20", "total_steps=100", "eval_every=50"]
+    run(folder / "run", "algo=hybrid_stochastic", *size, "eval_modes=[full,policy]")
+    return folder
+
+
+def test_commands_run(folder, monkeypatch, can_draw, capfd):
+    """In the order of the pages, since some read what others wrote."""
+    monkeypatch.chdir(folder)
+    failed = []
+    for name, given in programs():
+        if name == "render" and not can_draw:
+            continue
+        words = [f"{key}={value}" for key, value in given.items()]
+        if call(partial(command.guarded, commands.module(name).main), *words) != 0:
+            failed.append((name, *words, capfd.readouterr().err))
+    assert not failed
+
+
+def test_the_commands_are_those_of_the_pages():
+    """Of each command one at least."""
+    names = {name for name, _ in programs()}
+    assert names == {"demonstrate", "evaluate", "export", "figures", "list", "render", "report"}
