@@ -40,6 +40,7 @@ FEW = read("panda_few")
 CLONED = {  # label on the page -> row
     "env.observation=stage": "plain",
     "experiment=robots/panda: the same, a disturbed expert": "panda",
+    "experiment=robots/panda algo=hybrid_bc": "hybrid",
 }
 
 
@@ -65,8 +66,15 @@ def tried(**settings: Any) -> dict[str, Any]:
     return one
 
 
+def episodes(trial: dict[str, Any]) -> list[float]:
+    """Successes, and episodes, of a trial."""
+    return [trial["succeeded"], trial["episodes"]]
+
+
 NARROW = tried(observation="thesis")
 THREE = {"observation": "thesis", "hidden": [256, 256], "steps": 5000, "demonstrations": 3}
+SMALL = {"observation": "stage", "hidden": [64, 64], "steps": 5000, "demonstrations": 2}
+TWO = {disturbed: tried(**SMALL, disturbed=disturbed) for disturbed in (False, True)}
 WIDE, WIDER = tried(observation="thesis", hidden=[256, 256]), tried(**THREE)
 
 
@@ -145,6 +153,19 @@ CITED = [
             tried(**THREE, disturbed=True)["succeeded"],
         ],
     ),
+    Text(
+        "three demonstrations, # of # episodes succeeded, with the vectors to block and target in "
+        "all stages (`env.observation=relative`) # of #, and with the thesis' observation # of #",
+        [
+            value
+            for seen in ("stage", "relative", "thesis")
+            for value in episodes(tried(**SMALL | {"observation": seen, "demonstrations": 3}))
+        ],
+    ),
+    Text(
+        "at two it raised # successes in # episodes to #",
+        [TWO[False]["succeeded"], TWO[False]["episodes"], TWO[True]["succeeded"]],
+    ),
     Table(
         "queries to the expert by hand | episodes that succeed",
         lambda label, _: share(FEW["rows"]["dagger"]["success"][label]),
@@ -214,11 +235,8 @@ PLAIN = [
     "mean of the weights over about the last 500",
     "5,000 gradient steps",
     "hold about 270 labels",
-    "(1) an observation",
-    "(2) An expert",
-    "(3) Two layers of 64",
+    "Not varied by themselves: two layers of 64",
     "With the thesis' observation two layers of 256",
-    "(two layers of 256",
     "20 episodes per seed): the expert drives for 80 decisions",
     "10,000 random decisions on MJX. The Sawyer's 20 episodes",
 ]
