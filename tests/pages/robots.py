@@ -36,6 +36,48 @@ def compared(name: str, physics: str) -> dict[str, Any]:
     return next(row for row in rows if (row["name"], row["physics"]) == (name, physics))
 
 
+FEW = read("panda_few")
+CLONED = {  # label on the page -> row
+    "env.observation=stage": "plain",
+    "experiment=robots/panda: the same, a disturbed expert": "panda",
+    "experiment=robots/panda algo=hybrid_bc": "hybrid",
+}
+
+
+def few(label: str, column: str) -> list[float]:
+    """A cell of the table of clones from few demonstrations: a share [%], or episodes."""
+    if label not in CLONED:
+        return [10] if "episodes" in column else stacked("bc", column.split()[0])
+    row = FEW["rows"][CLONED[label]]
+    return [row["episodes"]] if "episodes" in column else share(row["success"][column.split()[0]])
+
+
+def share(success: list[float]) -> list[float]:
+    """[%] mean, lowest and highest of the seeds' shares, of which there are ten."""
+    each = 100 * np.array(success)
+    assert len(each) == len(FEW["seeds"])
+    return [each.mean(), each.min(), each.max()]
+
+
+def tried(**settings: Any) -> dict[str, Any]:
+    """The one trial with these settings, by default those of the first trials."""
+    wanted = {"demonstrations": 5, "disturbed": False, "hidden": [32, 24], "steps": 2000} | settings
+    (one,) = (trial for trial in FEW["tried"] if all(trial[key] == wanted[key] for key in wanted))
+    return one
+
+
+def episodes(trial: dict[str, Any]) -> list[float]:
+    """Successes, and episodes, of a trial."""
+    return [trial["succeeded"], trial["episodes"]]
+
+
+NARROW = tried(observation="thesis")
+THREE = {"observation": "thesis", "hidden": [256, 256], "steps": 5000, "demonstrations": 3}
+SMALL = {"observation": "stage", "hidden": [64, 64], "steps": 5000, "demonstrations": 2}
+TWO = {disturbed: tried(**SMALL, disturbed=disturbed) for disturbed in (False, True)}
+WIDE, WIDER = tried(observation="thesis", hidden=[256, 256]), tried(**THREE)
+
+
 WORLD = {
     "Sawyer, env.reward=code": "sawyer_code",
     "Sawyer, env.reward=code, white noise": "sawyer_white",
@@ -122,6 +164,54 @@ CITED = [
     ),
     Table("demonstrations | 1 | 2 | 3 | 5 | 10", stacked),
     Text("have # on average", [expert().mean()]),
+    Table("cloned from | episodes per seed | 3 demonstrations | 5 demonstrations", few),
+    Text(
+        "# episodes of four clones of the thesis' network (five demonstrations, our rate) # "
+        "failed: # times the hand pushed the block away before it came within the centimetre at "
+        "which it closes, # times it released it elsewhere",
+        [
+            NARROW["episodes"],
+            NARROW["episodes"] - NARROW["succeeded"],
+            NARROW["failed"]["pushed the block away"],
+            NARROW["failed"]["released it elsewhere"],
+        ],
+    ),
+    Text(
+        "with it # of # episodes succeeded, without it # (relative",
+        [
+            tried(observation="relative, velocity")["succeeded"],
+            NARROW["episodes"],
+            tried(observation="relative")["succeeded"],
+        ],
+    ),
+    Text(
+        "256 reach # of # at five demonstrations, and # of # at three, where a disturbed expert "
+        "gives #",
+        [
+            WIDE["succeeded"],
+            WIDE["episodes"],
+            WIDER["succeeded"],
+            WIDER["episodes"],
+            tried(**THREE, disturbed=True)["succeeded"],
+        ],
+    ),
+    Text(
+        "three demonstrations, # of # episodes succeeded, with the vectors to block and target in "
+        "all stages (`env.observation=relative`) # of #, and with the thesis' observation # of #",
+        [
+            value
+            for seen in ("stage", "relative", "thesis")
+            for value in episodes(tried(**SMALL | {"observation": seen, "demonstrations": 3}))
+        ],
+    ),
+    Text(
+        "at two it raised # successes in # episodes to #",
+        [TWO[False]["succeeded"], TWO[False]["episodes"], TWO[True]["succeeded"]],
+    ),
+    Table(
+        "queries to the expert by hand | episodes that succeed",
+        lambda label, _: share(FEW["rows"]["dagger"]["success"][label]),
+    ),
     Table(
         "planned on the world | episodes | successes | decisions until success, median"
         " | return, mean | processor time per decision, s",
@@ -205,5 +295,11 @@ PLAIN = [
     "10,000 random decisions in each of 256 worlds",
     "ten seeds of them from 3 and 10 demonstrations",
     "up to 99 of planning on the world itself",
+    "mean of the weights over about the last 500",
+    "5,000 gradient steps",
+    "hold about 270 labels",
+    "Not varied by themselves: two layers of 64",
+    "With the thesis' observation two layers of 256",
+    "20 episodes per seed): the expert drives for 80 decisions",
     "10,000 random decisions on MJX. The Sawyer's 20 episodes",
 ]
