@@ -293,7 +293,7 @@ PLAIN = [
     "about 87,000 physics steps a second of the walker and 64,000 of the ant",
     "capsules (64 worlds",
     "10,000 random decisions in each of 256 worlds",
-    "ten seeds of them from 3 and 10 demonstrations",
+    "ten seeds of them from 3, 8 and 10 demonstrations",
     "up to 99 of planning on the world itself",
     "mean of the weights over about the last 500",
     "5,000 gradient steps",
