@@ -16,6 +16,11 @@ block; with grip=action it closes while a fourth action is positive. Its orienta
 decision is 0.1 s, 20 physics steps. Damped least squares give the joint velocities once a decision;
 the null space returns the arm to its initial posture. Terminates with success.
 
+    observation=relative   o = (b - e, s - b, c) [7]
+    observation=stage      o = (d, c, height of b) [5],   d = s - b if c = 1, else b - e
+
+In both the hand closes by the true positions, in spite of `episode.sensor_noise`.
+
 grasped: commanded to close, both fingers touch the block's sides, and e is inside the block.
 success: block over base within 0.02 m, height within 0.01 m, released, slower than 0.05 m/s.
 
@@ -46,6 +51,7 @@ SIDE = 0.05  # [m] of a cube
 TOUCH = 0.002  # [m] largest gap between a finger and a grasped block
 LEVEL = 0.01  # [m] largest height error of a stacked block
 QUIET = 0.05  # [m/s] largest speed of a stacked block
+OBSERVATIONS = ("thesis", "relative", "stage")
 PADS = ("left_pad", "right_pad")
 PAIRS = (*(f"{pad}_{cube}" for pad in PADS for cube in ("block", "base")), "block_base")
 PAIRS = (*PAIRS, "block_table", "base_table")  # all contacts
@@ -72,6 +78,7 @@ class PandaStack:
     base_spread: float = 0.0  # [m] largest offset along x and y
     block_mass: float = 0.1  # [kg] of block and base
     block_friction: float = 1.0  # of all contacts
+    observation: str = "thesis"  # or relative, or stage
     reward: str = "thesis"  # or joined
     penalty: float = 1e-6  # weight of wrench and action
     success_distance: float = 0.02  # [m] horizontal, block to base
@@ -83,6 +90,7 @@ class PandaStack:
     def __post_init__(self) -> None:
         check(self.physics)
         one_of("grip", self.grip, ("near", "action"))
+        one_of("observation", self.observation, OBSERVATIONS)
         one_of("reward", self.reward, ("thesis", "joined"))
         for name, size in (("low", 3), ("high", 3), ("block", 2), ("base", 2)):
             numbers = tuple(getattr(self, name))
@@ -98,9 +106,8 @@ class PandaStack:
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        return Spec(
-            obs=16 if self.base_spread else 13, act=4 if self.grip == "action" else 3, dt=DT
-        )
+        size = {"thesis": 16 if self.base_spread else 13, "relative": 7, "stage": 5}
+        return Spec(obs=size[self.observation], act=4 if self.grip == "action" else 3, dt=DT)
 
     @property
     def _body(self) -> Physics:
@@ -136,6 +143,8 @@ class PandaStack:
         if self.grip == "action":
             return action[3] > 0
         tool, block = state.obs[:3], state.obs[3:6]
+        if self.observation != "thesis":
+            tool, block = TOOL.pose(state.data.qpos)[0], state.data.qpos[BLOCK]
         away, left = _norm(block - tool), _norm(self._goal(state.data) - block)
         stays = (away < SIDE / 2) & (left > self.reach)
         closes = (away < self.reach) & (left > SIDE / 2)
@@ -175,14 +184,24 @@ class PandaStack:
         error = jnp.abs(block - goal)
         placed = (_norm(error[:2]) < self.success_distance) & (error[2] < LEVEL)
         success = placed & (closed == 0) & (_norm(data.qvel[BLOCK_SPEED]) < QUIET)
-        obs = jnp.concatenate((tool, block, closed[None], wrench))
-        if self.base_spread:
-            obs = jnp.concatenate((obs, goal))
+        obs = self._observation(tool, block, goal, closed[None], wrench)
         metrics = {"success": success, "grasped": grasped, "distance": _norm(block - goal)}
         metrics = {name: value.astype(jnp.float32) for name, value in metrics.items()}
         reward = stage - self.penalty * (_norm(wrench) + _norm(action))
         no = jnp.zeros((), bool)
         return EnvState(data, obs, reward, success & self.terminate, no, metrics, info)
+
+    def _observation(
+        self, tool: Array, block: Array, goal: Array, closed: Array, wrench: Array
+    ) -> Array:
+        """o, of positions [3], whether the hand is commanded to close [1], and its wrench [6]."""
+        if self.observation == "relative":
+            return jnp.concatenate((block - tool, goal - block, closed))
+        if self.observation == "stage":
+            left = jnp.where(closed > 0, goal - block, block - tool)
+            return jnp.concatenate((left, closed, block[2:]))
+        obs = jnp.concatenate((tool, block, closed, wrench))
+        return jnp.concatenate((obs, goal)) if self.base_spread else obs
 
 
 def _norm(x: Array) -> Array:

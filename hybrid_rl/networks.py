@@ -74,6 +74,35 @@ def perceptron(
     return Perceptron(mean, scale, tuple(weights), tuple(biases), activation, squash)
 
 
+def side_by_side(each: Sequence[Perceptron]) -> Perceptron:
+    """The mean of the outputs before squashing of networks with the same inputs, as one network.
+
+    Its hidden layers hold the units of all of them, its weights are block diagonal.
+    """
+    first, last = each[0], len(each[0].weights) - 1
+    weights, biases = [], []
+    for i in range(last + 1):
+        kernels = [one.weights[i] for one in each]
+        bias = [one.biases[i] for one in each]
+        if i == last:
+            stacked = np.concatenate(kernels) if last else np.sum(kernels, 0)
+            weights.append(stacked / len(each))
+            biases.append(np.mean(bias, 0))
+        else:
+            weights.append(_block_diagonal(kernels) if i else np.concatenate(kernels, axis=1))
+            biases.append(np.concatenate(bias))
+    return first._replace(weights=tuple(weights), biases=tuple(biases))
+
+
+def _block_diagonal(blocks: Sequence[np.ndarray]) -> np.ndarray:
+    """A matrix with `blocks` along its diagonal."""
+    shapes = np.array([block.shape for block in blocks])
+    whole = np.zeros(shapes.sum(0), blocks[0].dtype)
+    for block, (row, column) in zip(blocks, shapes.cumsum(0) - shapes, strict=True):
+        whole[row : row + block.shape[0], column : column + block.shape[1]] = block
+    return whole
+
+
 def check(name: str, hidden: Sequence[int], activation: str) -> None:
     """Raise ValueError if `hidden` or `activation` of the part `name` is invalid."""
     if not all(isinstance(width, int) and width > 0 for width in hidden):

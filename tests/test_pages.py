@@ -91,7 +91,7 @@ RUN_ELSEWHERE = test_conf.EXECUTED | {  # by test_commands.py
 }
 OWN = (  # what a small run has of its own
     *("settings=", "num_envs=", "num_seeds=", "run_dir=", "resume=", "hydra/", "hydra."),
-    *("random_steps=", "total_steps=", "policy_learner.updates="),
+    *("random_steps=", "total_steps=", "policy_learner.updates=", "map=", "map.file="),
 )
 
 

@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.options import one_of
-from hybrid_rl.envs.panda_stack import SIDE, PandaStack
+from hybrid_rl.envs.panda_stack import OBSERVATIONS, SIDE, PandaStack
 from hybrid_rl.types import Params, Spec
 
 GAIN = 2.0  # [1/s]
@@ -33,15 +33,17 @@ class StackController:
     """Acts on the observation of `panda_stack`; the fields are those of the environment.
 
     Raises:
-        ValueError: for a base that is not two numbers, or an unknown grip.
+        ValueError: for a base that is not two numbers, or an unknown grip or observation.
     """
 
     base: tuple[float, ...] = PandaStack.base  # [m] its position, unless it is observed
     speed: float = PandaStack.speed  # [m/s] at a = 1
     grip: str = PandaStack.grip  # near or action
+    observation: str = PandaStack.observation  # thesis, relative or stage
 
     def __post_init__(self) -> None:
         one_of("expert.grip", self.grip, ("near", "action"))
+        one_of("expert.observation", self.observation, OBSERVATIONS)
         object.__setattr__(self, "base", tuple(self.base))
         if len(self.base) != 2:
             raise ValueError(f"expert.base={list(self.base)}: must be 2 numbers")
@@ -54,29 +56,40 @@ class StackController:
         self, params: Params, state: tuple[()], obs: Array, key: Array
     ) -> tuple[Array, tuple[()], dict[str, Array]]:
         """Action [3] or, with grip=action, [4]; no state, no metrics; deterministic."""
-        tool, block, closed = obs[:3], obs[3:6], obs[6] > 0
-        goal = obs[13:] if obs.size > 13 else jnp.array([*self.base, 1.5 * SIDE])
-        held = closed & (jnp.linalg.norm(block - tool) < SIDE / 2)
-        remaining = jnp.where(held, goal - block, block - tool)
-        distance, lifted = jnp.linalg.norm(remaining[:2]), block[2] - SIDE / 2
-        height = jnp.clip(SLOPE * (distance - NEAR / 2), 0.0, HEIGHT) - DEPTH
-        velocity = GAIN * remaining.at[2].add(height)
-        lift = LIFT_SPEED + GAIN * jnp.where(held, lifted, jnp.maximum(tool[2] - block[2], 0.0))
+        to_block, to_goal, height, closed = self._read(obs)
+        held = closed & (jnp.linalg.norm(to_block) < SIDE / 2)
+        remaining = jnp.where(held, to_goal, to_block)
+        distance, lifted = jnp.linalg.norm(remaining[:2]), height - SIDE / 2
+        above = jnp.clip(SLOPE * (distance - NEAR / 2), 0.0, HEIGHT) - DEPTH
+        velocity = GAIN * remaining.at[2].add(above)
+        lift = LIFT_SPEED + GAIN * jnp.where(held, lifted, jnp.maximum(-to_block[2], 0.0))
         carried = jnp.append(
             velocity[:2] * jnp.clip(lifted / CLEARANCE - 1, 0.0, 1.0),
             jnp.minimum(velocity[2], lift),
         )
         velocity = jnp.where(held & (distance > SIDE / 2), carried, velocity)
-        error = jnp.abs(goal - block)
+        error = jnp.abs(to_goal)
         stacked = (error < jnp.array([0.02, 0.02, 0.01])).all() & ~closed
         velocity = jnp.where(stacked, jnp.array([0.0, 0.0, 1.0]) * lift, velocity)
         action = jnp.clip(velocity / self.speed, -1.0, 1.0)
         if self.grip == "action":
             placed = (error[:2] < NEAR).all() & (error[2] < NEAR / 2)
-            near = jnp.linalg.norm(block - tool) < NEAR
+            near = jnp.linalg.norm(to_block) < NEAR
             grip = jnp.where(closed, held & ~placed, near & ~stacked)
             action = jnp.append(action, jnp.where(grip, 1.0, -1.0))
         return action, (), {}
+
+    def _read(self, obs: Array) -> tuple[Array, Array, Array, Array]:
+        """Vectors hand to block and block to target [3], the block's height, whether closed []."""
+        if self.observation == "relative":
+            return obs[:3], obs[3:6], 1.5 * SIDE - obs[5], obs[6] > 0
+        if self.observation == "stage":  # a closed hand holds the block; a high block is stacked
+            closed, none = obs[3] > 0, jnp.zeros(3).at[2].set(1.5 * SIDE - obs[4])
+            to_block, to_goal = jnp.where(closed, 0.0, obs[:3]), jnp.where(closed, obs[:3], none)
+            return to_block, to_goal, obs[4], closed
+        block = obs[3:6]
+        goal = obs[13:] if obs.size > 13 else jnp.array([*self.base, 1.5 * SIDE])
+        return block - obs[:3], goal - block, block[2], obs[6] > 0
 
     def greedy(self) -> "StackController":
         """This controller, which does not explore."""

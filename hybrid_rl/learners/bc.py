@@ -2,6 +2,11 @@
 
     loss = -mean log pi(u | x),   (x, u) only from demonstrations
 
+With `average` the policy that acts has the running mean of the learned weights w (Polyak and
+Juditsky 1992, with exponential weights):
+
+    w_bar += average (w - w_bar)   after every gradient step; w_bar = w at first
+
 The batch of experience is not used. Actions are clipped to [-edge, edge], since the density of a
 squashed Gaussian is unbounded at -1 and 1.
 """
@@ -24,8 +29,9 @@ from hybrid_rl.types import Batch, Params, Spec
 class CloningState:
     """The state of behaviour cloning."""
 
-    policy: Any
+    policy: Any  # what the gradient steps change
     optimiser: Any
+    average: Any = None  # of `policy` over the steps; None: `policy` itself acts
 
 
 @dataclass(frozen=True)
@@ -35,7 +41,7 @@ class BehaviourCloning:
     Without `demonstrations` it only holds the parameters of a trained policy.
 
     Raises:
-        ValueError: for a rate or an edge out of range.
+        ValueError: for a rate, an edge or an average out of range.
     """
 
     policy: LearnedPolicy
@@ -45,6 +51,7 @@ class BehaviourCloning:
     edge: float = 0.99  # bound of the imitated actions
     batch_size: int = 128
     updates: float = 0.25  # per decision
+    average: float | None = None  # share of the new weights in the mean that acts; None: no mean
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
@@ -57,6 +64,8 @@ class BehaviourCloning:
             raise ValueError(f"cloning_learner.learning_rate={self.learning_rate}: must be above 0")
         if not 0 < self.edge < 1:
             raise ValueError(f"cloning_learner.edge={self.edge}: must lie in (0, 1)")
+        if self.average is not None and not 0 < self.average <= 1:
+            raise ValueError(f"cloning_learner.average={self.average}: must lie in (0, 1], or null")
 
     def init(self, key: Array, spec: Spec) -> CloningState:
         """Initial parameters and optimiser. The key is consumed."""
@@ -65,15 +74,16 @@ class BehaviourCloning:
             model = None if self.model is None else self.model.init(key, spec)
             x = self._states(model, self.demonstrations.load().obs)
             policy = self.policy.observe(policy, x)
-        return CloningState(policy, optax.adam(self.learning_rate).init(policy))
+        average = None if self.average is None else policy
+        return CloningState(policy, optax.adam(self.learning_rate).init(policy), average)
 
     def _states(self, model: Any, obs: Any) -> Array:
         """Planning states [B, n] of observations [B, o] with model parameters `model`."""
         return jax.vmap(lambda obs: lift(self.model, model, obs))(jnp.asarray(obs))
 
     def params(self, state: CloningState) -> dict[str, Any]:
-        """The policy."""
-        return {"policy": state.policy}
+        """The policy that acts."""
+        return {"policy": state.policy if self.average is None else state.average}
 
     def update(
         self, state: CloningState, params: Params, batch: Batch, key: Array
@@ -91,5 +101,7 @@ class BehaviourCloning:
         value, grads = jax.value_and_grad(loss)(state.policy)
         adam = optax.adam(self.learning_rate)
         change, optimiser = adam.update(grads, state.optimiser, state.policy)
-        new = CloningState(optax.apply_updates(state.policy, change), optimiser)
-        return new, {"bc/policy_loss": value}
+        policy, average = optax.apply_updates(state.policy, change), None
+        if self.average is not None:
+            average = optax.incremental_update(policy, state.average, self.average)
+        return CloningState(policy, optimiser, average), {"bc/policy_loss": value}

@@ -6,7 +6,8 @@ Behaviour cloning then is least squares: with `clip` of mu(x) - u, with `tanh` o
 `unsquashed` is mu(x), whose derivatives in the weights give the Fisher information of a
 demonstration. Source: thesis section 4.2, with sigma "assumed known"; the squashing is ours.
 
-`Clones` are several such networks with different initial weights, of which the first one acts.
+`Clones` are several such networks with different initial weights, of which the first one acts, or
+the mean of their mu (an ensemble: Dietterich 2000, without bootstrap samples).
 """
 
 from dataclasses import dataclass
@@ -17,10 +18,11 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.networks import ACTIVATIONS, MLP, Perceptron, check, perceptron
+from hybrid_rl.networks import ACTIVATIONS, MLP, Perceptron, check, perceptron, side_by_side
 from hybrid_rl.types import Spec
 
 SQUASHES = ("tanh", "clip")
+ACTS = ("first", "mean")
 
 
 @dataclass(frozen=True)
@@ -114,21 +116,24 @@ class Deterministic:
 
 @dataclass(frozen=True)
 class Clones(Deterministic):
-    """`members` networks that learn from the same data; the first one acts.
+    """`members` networks that learn from the same data.
 
     Its "weights" have a first axis [members].
 
     Raises:
-        ValueError: for fewer than two members.
+        ValueError: for fewer than two members, or an unknown `acts`.
     """
 
     members: int = 5
+    acts: str = "first"  # or mean: mu is the mean over the members
 
     def __post_init__(self) -> None:
         """Check the fields."""
         super().__post_init__()
         if self.members < 2:
             raise ValueError(f"policy.members={self.members}: must be 2 or more")
+        if self.acts not in ACTS:
+            raise ValueError(f"policy.acts={self.acts}: choose {' or '.join(ACTS)}")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters, different for each member. The key is consumed."""
@@ -137,24 +142,33 @@ class Clones(Deterministic):
         return {**super().init(key, spec), "weights": each}
 
     def layers(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
-        """Features and mu of the first member."""
-        return super().layers(self._first(params), x)
+        """Features [..., h] and mu [..., m] of the first member; [..., members h] of the mean."""
+        if self.acts == "first":
+            return super().layers(self._member(params, 0), x)
+        features, mu = self._layers_of_each(params, x)
+        return jnp.concatenate(list(features), axis=-1), mu.mean(0)
 
     def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
-        """The first member as plain arrays."""
-        return super().perceptron(self._first(params), spec)
+        """The policy as plain arrays; the mean of the members is one network of all their units."""
+        if self.acts == "first":
+            return super().perceptron(self._member(params, 0), spec)
+        alone = super().perceptron
+        return side_by_side([alone(self._member(params, i), spec) for i in range(self.members)])
 
-    def _first(self, params: dict[str, Any]) -> dict[str, Any]:
-        return {**params, "weights": jax.tree.map(lambda each: each[0], params["weights"])}
+    def _member(self, params: dict[str, Any], i: int) -> dict[str, Any]:
+        return {**params, "weights": jax.tree.map(lambda each: each[i], params["weights"])}
+
+    def _layers_of_each(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
+        """Features [members, ..., h] and mu [members, ..., m]."""
+
+        def one(weights: Any) -> tuple[Array, Array]:
+            return super(Clones, self).layers({**params, "weights": weights}, x)
+
+        return jax.vmap(one)(params["weights"])
 
     def each(self, params: dict[str, Any], x: Array) -> Array:
         """The action of every member [members, ..., m] at x [..., n]."""
-
-        def one(weights: Any) -> Array:
-            mu = super(Clones, self).layers({**params, "weights": weights}, x)[1]
-            return self._squashed(mu)
-
-        return jax.vmap(one)(params["weights"])
+        return self._squashed(self._layers_of_each(params, x)[1])
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """The sum [...] over the members of the log-density of z."""

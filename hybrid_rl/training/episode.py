@@ -1,6 +1,8 @@
 """Episodes of an environment: time limit, action repeat, resets, and disturbances on request.
 
-A controller sees o + sensor_noise N(0, I) and its action arrives `delay` decisions later.
+A controller sees o + sensor_noise N(0, I). Its action u arrives `delay` decisions later, as
+clip(u + action_noise N(0, I)). An expert who is disturbed in this way demonstrates how to return
+(Laskey et al. 2017, "DART: noise injection for robust imitation learning").
 """
 
 from dataclasses import dataclass
@@ -18,6 +20,7 @@ from hybrid_rl.types import EnvState, Spec
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")
 SENSED = "episode_noise"  # in `info`: the key of the next noise
+DISTURBED = "action_noise"  # in `info`: the key of the next disturbance
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,7 @@ class Episode:
     action_repeat: int = 1
     delay: int = 0  # decisions until an action arrives
     sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
+    action_noise: float = 0.0  # [u] std of what is added to an action when it arrives
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -45,6 +49,8 @@ class Episode:
             if type(value) is not int or value < least:
                 line = f"must be a whole number, {least} or more"
                 raise ValueError(f"episode.{name}={value}: {line}")
+        if self.action_noise < 0:
+            raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
         if not any(self._std):
             return
         sizes = (1, self.env.spec.obs)
@@ -69,6 +75,8 @@ class Episode:
         clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
         if self.delay:
             clock["late"] = jnp.zeros((self.delay, self.spec.act))
+        if self.action_noise:
+            clock[DISTURBED] = jax.random.key_data(jax.random.fold_in(key, 6))
         state = state.replace(info={**state.info, **clock})
         return sensor_noise.begin(state, self._std, jax.random.fold_in(key, 5), SENSED)
 
@@ -77,7 +85,16 @@ class Episode:
         if self.delay:
             late = jnp.concatenate((state.info["late"], action[None]))
             action, state = late[0], state.replace(info={**state.info, "late": late[1:]})
+        if self.action_noise:
+            action, state = self._disturbed(state, action)
         return sensor_noise.resume(self._decide(state, action), self._std, state, SENSED)
+
+    def _disturbed(self, state: EnvState, action: Array) -> tuple[Array, EnvState]:
+        """The action [m] with noise, and the state with the key of the next noise."""
+        now, later = jax.random.split(jax.random.wrap_key_data(state.info[DISTURBED]))
+        noise = self.action_noise * jax.random.normal(now, action.shape, action.dtype)
+        info = {**state.info, DISTURBED: jax.random.key_data(later)}
+        return jnp.clip(action + noise, -1.0, 1.0), state.replace(info=info)
 
     def _decide(self, state: EnvState, action: Array) -> EnvState:
         now = self._substep(state, action)

@@ -12,6 +12,7 @@ from hybrid_rl.envs.experts.stack import StackController
 from hybrid_rl.envs.mujoco.kinematics import rotate_towards
 from hybrid_rl.envs.panda_stack import TOOL, PandaStack
 from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
+from hybrid_rl.types import Params
 
 
 def over_implementations(task):
@@ -160,6 +161,33 @@ def test_the_expert_stacks_with_default_settings():
     actions, states = play(PandaStack("native"), StackController(), 100)
     assert actions.shape == (4, 100, 3)
     assert states.metrics["success"].any(1).all()
+
+
+@pytest.mark.parametrize("observation", ["relative", "stage"])
+@pytest.mark.parametrize("grip", ["near", "action"])
+def test_other_observations_lead_the_expert_in_the_same_way(grip, observation):
+    """Over the states of its own episode, with observations that NumPy makes."""
+    env = PandaStack("native", observation=observation)
+    plain, other = (StackController(grip=grip, observation=o) for o in ("thesis", observation))
+    thesis = np.asarray(play(PandaStack("native"), StackController(), 100)[1].obs)
+    thesis = thesis.reshape(-1, thesis.shape[-1])
+    tool, block, closed = thesis[:, :3], thesis[:, 3:6], thesis[:, 6:7]
+    goal = np.array([0.45, 0.12, 0.075], np.float32)
+    if observation == "relative":
+        obs = np.hstack([block - tool, goal - block, closed])
+    else:
+        obs = np.hstack([np.where(closed, goal - block, block - tool), closed, block[:, 2:]])
+    expected, got = (
+        jax.jit(jax.vmap(lambda o, one=one: one.act(Params(), (), o, jax.random.key(0))[0]))(o)
+        for one, o in ((plain, thesis), (other, obs))
+    )
+    np.testing.assert_allclose(got, expected, atol=1e-4)
+    for shift, closes in ((0.002, True), (0.011, False)):
+        state, tool = _panda(env, (0.004, 0.003, shift), 0.0, 0.04)
+        block = np.asarray(tool) + np.array([0.004, 0.003, shift])
+        rest = [*(goal - block), 0.0] if observation == "relative" else [0.0, block[2]]
+        np.testing.assert_allclose(state.obs, [0.004, 0.003, shift, *rest], atol=1e-6)
+        assert env._closes(state, jnp.zeros(3)) == closes
 
 
 def test_a_random_base_is_observed():

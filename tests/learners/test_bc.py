@@ -76,7 +76,21 @@ def test_actions_at_the_edge_are_bounded() -> None:
     np.testing.assert_allclose(mean, 0.9, atol=0.05)
 
 
-@pytest.mark.parametrize("fields", [{"edge": 1.0}, {"learning_rate": 0.0}])
+def test_the_mean_of_the_weights_acts() -> None:
+    """It is the recursion in NumPy over the weights of a learner without it."""
+    policy = TanhGaussian(hidden=(4,), normalise=True)
+    plain = [train(BehaviourCloning(policy, Shown(100)), steps) for steps in range(4)]
+    learner = BehaviourCloning(policy, Shown(100), average=0.2)
+    got = learner.params(train(learner, 3))["policy"]
+    each = [jax.tree.leaves(state.policy) for state in plain]
+    for leaf, path in zip(jax.tree.leaves(got), zip(*each, strict=True), strict=True):
+        wanted = np.asarray(path[0], np.float64)
+        for new in path[1:]:
+            wanted = wanted + 0.2 * (np.asarray(new) - wanted)
+        np.testing.assert_allclose(leaf, wanted, rtol=1e-4, atol=1e-6)
+
+
+@pytest.mark.parametrize("fields", [{"edge": 1.0}, {"learning_rate": 0.0}, {"average": 0.0}])
 def test_bad_fields_are_refused(fields: dict) -> None:
     """The error names the field."""
     with pytest.raises(ValueError, match=f"cloning_learner.{next(iter(fields))}"):

@@ -101,10 +101,31 @@ def test_clones_are_independent_policies() -> None:
     assert float(clones.log_prob(params, X[0], u)) == pytest.approx(wanted, rel=1e-5)
 
 
-def test_a_single_clone_is_refused() -> None:
-    """Its disagreement would be 0."""
-    with pytest.raises(ValueError, match=r"policy\.members=1"):
-        Clones(members=1)
+@pytest.mark.parametrize("hidden", [(), (5,), (5, 4)])
+def test_the_mean_of_clones_acts(hidden: tuple[int, ...]) -> None:
+    """Of their outputs before squashing; as one network of plain arrays, too."""
+    clones = Clones(hidden=hidden, members=3, acts="mean", normalise=True)
+    params = clones.observe(clones.init(jax.random.key(0), SPEC), 3 * X + 1)
+    each = np.arctanh(np.asarray(clones.each(params, X), np.float64))
+    np.testing.assert_allclose(clones.mean(params, X), np.tanh(each.mean(0)), atol=1e-6)
+    features, mu = clones.layers(params, X)
+    inputs = np.column_stack([features, np.ones(200)])
+    affine = np.linalg.lstsq(inputs, np.asarray(mu), rcond=None)[0]
+    np.testing.assert_allclose(inputs @ affine, mu, atol=1e-4)
+    assert features.shape == (200, 3 * (hidden[-1] if hidden else 3))
+    plain = clones.perceptron(params, SPEC)
+    z = (X - plain.mean) / plain.scale
+    for weights, biases in zip(plain.weights[:-1], plain.biases[:-1], strict=True):
+        z = np.maximum(z @ weights + biases, 0)
+    got = np.tanh(z @ plain.weights[-1] + plain.biases[-1])
+    np.testing.assert_allclose(got, np.tanh(each.mean(0)), atol=1e-5)
+
+
+@pytest.mark.parametrize("fields", [{"members": 1}, {"acts": "last"}])
+def test_bad_clones_are_refused(fields: dict) -> None:
+    """The disagreement of a single one would be 0."""
+    with pytest.raises(ValueError, match=rf"policy\.{next(iter(fields))}"):
+        Clones(**fields)
 
 
 @pytest.mark.parametrize("fields", [{"sigma": 0.0}, {"squash": "sin"}])

@@ -139,12 +139,29 @@ def test_observations_have_noise_and_the_world_has_not() -> None:
     np.testing.assert_allclose(noise.mean(1), 0, atol=0.03)
 
 
+def test_actions_arrive_with_noise() -> None:
+    """Clipped Gaussian noise, new at each decision and in each episode."""
+    episode = Episode(Echo(), action_noise=0.5)
+    state = jax.vmap(episode.reset)(jax.random.split(jax.random.key(0), 4000))
+    seen = []
+    for _ in range(2):
+        state = jax.vmap(episode.step)(state, jnp.full((4000, 1), 0.75))
+        seen.append(np.asarray(state.obs[:, 0]))
+    drawn = np.clip(0.75 + 0.5 * np.random.default_rng(0).standard_normal((2, 4000)), -1, 1)
+    levels = np.linspace(0.05, 0.65, 13)
+    wanted = np.quantile(drawn, levels, axis=1)
+    np.testing.assert_allclose(np.quantile(seen, levels, axis=1), wanted, atol=0.06)
+    assert abs(np.corrcoef(seen)[0, 1]) < 0.06
+    assert np.max(seen) == 1.0
+
+
 @pytest.mark.parametrize(
     ("fields", "message"),
     [
         ({"delay": -1}, "episode.delay=-1: must be a whole number, 0 or more"),
         ({"steps": 0}, "episode.steps=0: must be a whole number, 1 or more"),
         ({"sensor_noise": (0.1, 0.1)}, "must be 1 or 1 numbers, each 0 or more"),
+        ({"action_noise": -0.1}, "episode.action_noise=-0.1: must be 0 or more"),
         ({"sensor_noise": (-0.1,)}, "must be 1 or 1 numbers, each 0 or more"),
     ],
 )
