@@ -1,6 +1,6 @@
 """The numbers of README.md."""
 
-from pages import chapter3, chapter6_values, chapter7_falls, hopper, results
+from pages import chapter3, chapter6_values, chapter7_falls, hopper, results, robots, sawyer
 from pages.cited import Table, Text
 from pages.values import number
 
@@ -40,6 +40,14 @@ CITED = [
         "stops in # of # falls, after # s",
         [AT_REST, FALLS["trials"], FALLS["median_time_at_rest"]],
     ),
+    Text(
+        "it succeeds in #% of the evaluation episodes, SAC in #%",
+        [sawyer.share(label, "60")[0] for label in ("hybrid_stochastic", "sac")],
+    ),
+    Text(
+        "stacks one block on another in #% of the episodes",
+        robots.few("experiment=robots/panda: the same, a disturbed expert", "3 demonstrations")[:1],
+    ),
     Text("(position weight 500) # against #", chapter6_values.QUICK[::-1]),
 ]
 PLAIN = [
@@ -57,5 +65,6 @@ PLAIN = [
     "(position weight 500)",
     "SE(3)",
     "Gymnasium v5",
+    "after 60 episodes of 10 s",
     "Apache-2.0",
 ]
