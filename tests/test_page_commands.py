@@ -29,6 +29,8 @@ def programs():
             if not runs_here(name, given):
                 continue
             given = {key: "run" if key in ("run", "runs") else each for key, each in given.items()}
+            if name == "evaluate":  # the small run is one of another task
+                given = {key: each for key, each in given.items() if not key.startswith("env.")}
             given |= SMALL.get(name, {})
             kind = given | {"out": Path(given.get("out", "")).suffix}
             found.setdefault((name, *sorted(kind.items())), (name, given))
