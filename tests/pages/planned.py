@@ -44,7 +44,7 @@ def real_time(name: str) -> float:
     return 0.1 * sum(one["decisions"]) / sum(one["cpu_s"])
 
 
-RETURNS = {"quadcopter": 0.025, "half-cheetah": 0.05, "ant": 0.05}  # [s] of a decision
+SECONDS = {"quadcopter": 0.025, "half-cheetah": 0.05, "ant": 0.05}  # [s] of a decision
 
 
 def returned(label: str, column: str) -> list[float]:
@@ -55,7 +55,7 @@ def returned(label: str, column: str) -> list[float]:
         "episodes": [len(one["return"])],
         "return": [np.mean(one["return"]), min(one["return"]), max(one["return"])],
         "processor time per decision, s": [seconds],
-        "share of real time": [RETURNS[label] / seconds],
+        "share of real time": [SECONDS[label] / seconds],
     }
     return [float(each) for each in values[column]]
 

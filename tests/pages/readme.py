@@ -65,6 +65,6 @@ PLAIN = [
     "(position weight 500)",
     "SE(3)",
     "Gymnasium v5",
-    "after 60 episodes of 10 s",
+    "after 6,000 decisions, ten minutes",
     "Apache-2.0",
 ]
