@@ -178,16 +178,22 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
         config.load(["settings=light", "policy_learner.updates=3"])
 
 
-def test_settings_of_the_lookahead() -> None:
-    """Policy and critic learn from five imagined decisions; all fields reach their parts."""
-    learner = config.load(["settings=lookahead"]).learners.policy
+def test_default_of_hybrid_learning() -> None:
+    """Policy and critic learn from five imagined decisions; settings=mbpo is the earlier default."""
+    c = config.load(["algo=hybrid_stochastic"])
+    learner = c.learners.policy
     assert (learner.memory, learner.learner.lookahead.steps, learner.learner.expand) == (
         25600,
         5,
         True,
     )
+    assert (c.random_steps, config.load(["task=cartpole"]).random_steps) == (5000, 1000)
     for algo in ("hybrid_stochastic", "hybrid_disagreement"):
-        config.build(config.load(["settings=lookahead", f"algo={algo}"]))
+        c = config.load(["settings=mbpo", f"algo={algo}"])
+        learner = c.learners.policy
+        assert (learner.memory, learner.learner.lookahead, learner.learner.updates) == (0, None, 10)
+        assert c.random_steps == 1000
+        config.build(c)
 
 
 def test_thesis_parameters() -> None:

@@ -1,11 +1,11 @@
 """The numbers of paper/paper.md, which are those of README.md."""
 
-from pages import chapter3, readme
+from pages import chapter3, lookahead, readme
 from pages.cited import Text
 
 PAGE = "paper/paper.md"
 
-HYBRID, SAC = (chapter3.default("half-cheetah", algo) for algo in ("hybrid_stochastic", "sac"))
+HYBRID, SAC = lookahead.hybrid("half-cheetah"), chapter3.default("half-cheetah", "sac")
 CITED = [
     Text("interquartile mean of # [#, #] after", HYBRID.at(50_000)),
     Text("there, has # [#, #]", SAC.at(50_000)),

@@ -94,8 +94,8 @@ CITED = [
         [MINUTES["hopper"].each[0, -1], MINUTES["hopper"].x[-1]],
     ),
     Table(
-        "half-cheetah, decisions/s of one learner on two idle cores, two turns | without settings "
-        "| settings=light | settings=lookahead",
+        "half-cheetah, decisions/s of one learner on two idle cores, two turns | settings=mbpo "
+        "| settings=light | default",
         speed,
     ),
     Text(
@@ -131,7 +131,7 @@ PLAIN = [
     "Time from the start, compiling included, seed 0",
     "at 8,000 decisions",
     "at 30,000 decisions, after",
-    "about 3,300 on a GPU",
+    "have about 2,500 at 20,000 on a GPU",
     "at 60,000 and",
     "at 120,000 decisions (mean of seeds 200 and 201",
     "on seeds 200 and 201 among six variants",
