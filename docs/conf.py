@@ -4,7 +4,7 @@ import inspect
 import re
 from pathlib import Path
 
-from jupyter_client.connect import ConnectionFileMixin
+from nbclient import NotebookClient
 
 import hybrid_rl
 
@@ -29,7 +29,7 @@ nb_execution_mode = "cache"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 600  # [s] a cell, on a busy machine
 nb_execution_cache_path = str(Path(__file__).parents[1] / "build" / "docs" / "notebooks")
-ConnectionFileMixin.transport.default_value = "ipc"  # a kernel on TCP warns of eavesdroppers
+NotebookClient.extra_arguments.default_args = (["--log-level=ERROR"],)  # else each kernel warns
 
 linkcheck_timeout = 30  # [s]
 linkcheck_retries = 3
