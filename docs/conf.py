@@ -4,6 +4,8 @@ import inspect
 import re
 from pathlib import Path
 
+from nbclient import NotebookClient
+
 import hybrid_rl
 
 project = "hybrid_rl"
@@ -27,6 +29,7 @@ nb_execution_mode = "cache"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 600  # [s] a cell, on a busy machine
 nb_execution_cache_path = str(Path(__file__).parents[1] / "build" / "docs" / "notebooks")
+NotebookClient.extra_arguments.default_args = (["--log-level=ERROR"],)  # else each kernel warns
 
 linkcheck_timeout = 30  # [s]
 linkcheck_retries = 3

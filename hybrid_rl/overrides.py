@@ -21,6 +21,7 @@ from hybrid_rl.errors import UsageError
 
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
 MOST = 4  # keys that one line suggests
+GROUPS = ("settings", "experiment")  # groups that leave no key of their name
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
 LACKING: Any = object()  # the value of a key that does not exist
 
@@ -138,8 +139,8 @@ def near(config: DictConfig, path: str) -> str:
     whole: Any = config._get_root()
     raw = plain(whole)
     parent, _, name = path.rpartition(".")
-    siblings = select(raw, parent) if parent else raw
-    close = difflib.get_close_matches(name, siblings if isinstance(siblings, dict) else ())
+    siblings = select(raw, parent) if parent else [*raw, *GROUPS]
+    close = difflib.get_close_matches(name, siblings if isinstance(siblings, (dict, list)) else ())
     if close:
         return ", ".join(f"{parent}.{each}".lstrip(".") for each in close)
     named = [each for each in reached(raw, raw) if each.rsplit(".", 1)[-1] == name]

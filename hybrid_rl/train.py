@@ -57,6 +57,7 @@ def _job(config: DictConfig) -> dict[str, Any]:
         _curve(Path(summary["run_dir"]))
     print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
     if summary["signal"] is not None:
+        print(f"continue: python -m hybrid_rl.train resume={summary['run_dir']}", flush=True)
         sys.exit(128 + summary["signal"])
     if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])

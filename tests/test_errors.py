@@ -42,6 +42,8 @@ USAGE = [  # overrides of train, words of the line
     ("task=pendulm", "walker2d; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("sed=3", "sed: unknown key; did you mean seed?"),
+    ("setings=light", "setings: unknown key; did you mean settings?"),
+    ("experment=thesis/fig_3_3", "experment: unknown key; did you mean experiment, expert?"),
     ("total_step=3", "total_step: unknown key; did you mean total_steps?"),
     ("xyz=3", "xyz: unknown key; `python -m hybrid_rl.train --cfg job` shows"),
     ("planner.horizn=3", "planner.horizn: unknown key; did you mean planner.horizon?"),

@@ -59,9 +59,9 @@ def test_every_one_says_what_it_is():
         f"{group}/{name}.yaml"
         for group, names in listed.listing().items()
         for name, text in names.items()
-        if not text
+        if not text.endswith(".")
     ]
-    assert not silent, "begin these with a comment line"
+    assert not silent, "begin these with a comment of one line that is a sentence"
 
 
 def test_arguments_are_refused(monkeypatch, capsys):

@@ -75,9 +75,12 @@ class Loop:
         return put(state, learner)
 
     def init(self) -> AgentState:
-        """The stacked states [S, ...] before the first decision."""
+        """The stacked states [S, ...] before the first decision.
+
+        They are placed as those of a checkpoint are, so that a resumed run has the same program.
+        """
         keys = jnp.stack([jax.random.key(seed) for seed in self.seeds])
-        return self.shard(jax.vmap(self.agent.init), SEEDS, SEEDS)(keys)
+        return self.on_devices(self.shard(jax.vmap(self.agent.init), SEEDS, SEEDS)(keys))
 
     def trace(self, state: AgentState) -> Any:
         """The trace of the program, for `operations` and `compile`."""

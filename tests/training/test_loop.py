@@ -39,3 +39,14 @@ def test_the_replay_memory_is_never_copied():
     assert sum(counts[name] for name in WRITES) == 1
     assert set(counts) <= WRITES | NAMES, counts
     assert program.memory_analysis().temp_size_in_bytes < rows.size * 4 / 10
+
+
+def test_a_state_from_a_checkpoint_has_the_same_program():
+    """So that a resumed run finds it compiled."""
+    run = config.build(config.load([*TINY, "algo=sac", "num_seeds=2"]))
+    loop = Loop(run.agent, run.seeds, stride=10)
+    fresh = loop.init()
+    host = jax.device_get(jax.tree.map(jax.numpy.copy, fresh))
+    placed = loop.on_devices(host)
+    one, other = (loop.trace(state).lower().as_text() for state in (fresh, placed))
+    assert one == other
