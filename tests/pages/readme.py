@@ -1,6 +1,15 @@
 """The numbers of README.md."""
 
-from pages import chapter3, chapter6_values, chapter7_falls, lookahead, results, robots, sawyer
+from pages import (
+    ant,
+    chapter3,
+    chapter6_values,
+    chapter7_falls,
+    lookahead,
+    results,
+    robots,
+    sawyer,
+)
 from pages.cited import Table, Text
 from pages.values import number
 
@@ -24,6 +33,7 @@ FALLS = chapter7_falls.methods("2")["koopman_active"]
 AT_REST = FALLS["at_rest"]["4"][0] * FALLS["trials"]
 SEARCH = chapter6_values.search(chapter6_values.SEARCHES["kle3_bayesopt"], "trials that reach it")
 CITED = [
+    Text("from six demonstrations (#% of its", ant.cloned("6", "share of the expert's")),
     Text("to a return of # (one run)", [results.LIGHT.at(30_000)[0]]),
     Table(" | hybrid_stochastic | nn_mppi | sac", main_table),
     Text(

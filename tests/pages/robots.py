@@ -5,17 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from pages import planned, sawyer
+from pages import ant, planned, sawyer
+from pages.ant import expert
 from pages.cited import ROOT, Table, Text
 from pages.values import ahead, curve, number, read
 
 PAGE = "docs/results/robots.md"
-
-
-def expert() -> np.ndarray:
-    """Return of each of the ant's demonstrated episodes."""
-    with np.load(ROOT / "demonstrations" / "ant.npz") as file:
-        return np.bincount(file["episode"], file["reward"])
 
 
 def stacked(label: str, column: str) -> list[float]:
@@ -79,52 +74,11 @@ TWO = {disturbed: tried(**SMALL, disturbed=disturbed) for disturbed in (False, T
 WIDE, WIDER = tried(observation="thesis", hidden=[256, 256]), tried(**THREE)
 
 
-def clones(demonstrations: str) -> dict[str, Any]:
-    """The row of the ant's clones from so many demonstrations."""
-    name = f"experiment=robots/ant num_demonstrations={demonstrations}"
-    return next(row for row in read("ant_cloning")["rows"] if row["label"] == name)
-
-
-def cloned(label: str, column: str) -> list[float]:
-    """A cell of the table of the ant's clones."""
-    returns = np.array(clones(label)["returns"])  # [seeds, episodes]
-    seeds = returns.mean(1)
-    values = {
-        "seeds": [len(returns)],
-        "episodes a seed": [returns.shape[1]],
-        "mean return": [seeds.mean(), seeds.min(), seeds.max()],
-        "share of the expert's": [100 * seeds.mean() / expert().mean()],
-        "median episode": [np.median(returns)],
-        "episodes below 1,000": [100 * (returns < 1000).mean()],
-    }
-    return [float(value) for value in values[column]]
-
-
-def walking() -> list[float]:
-    """Mean return from 6 demonstrations of the episodes with 1,000 or more; its share [%]."""
-    returns = np.ravel(clones("6")["returns"])
-    mean = returns[returns >= 1000].mean()
-    return [mean, 100 * mean / expert().mean()]
-
-
-OTHER = read("ant_cloning")["other_policy"]
-
-
-def searched(label: str, column: str) -> list[float]:
-    """A cell of the table of settings of cloning."""
-    (one,) = (row for row in read("ant_cloning")["search"] if row["label"] == label)
-    values = {
-        "seeds": len(one["seeds"]),
-        "episodes a seed": one["episodes"],
-        "mean return": np.mean(one["returns"]),
-    }
-    return [float(values[column])]
-
-
 POINTS, CAPSULES = compared("ant, points", "native"), compared("ant, capsules", "mjx")
 CITED = [
     *planned.CITED,
     *sawyer.CITED,
+    *ant.CITED,
     Table(
         "after 20 episodes | evaluation return, IQM and 95% band",
         lambda label, _: curve("fig_3_3", label).at(2_000),
@@ -188,20 +142,6 @@ CITED = [
         "cloning ahead in #% [#, #] of pairs",
         ahead(curve("fig_3_5", "bc").area(), curve("fig_3_5", "hybrid_bc").area()),
     ),
-    Table(
-        "demonstrations | seeds | episodes a seed | mean return | share of the expert's"
-        " | median episode | episodes below 1,000",
-        cloned,
-    ),
-    Table("setting | seeds | episodes a seed | mean return", searched),
-    Text("the expert's ten episodes have #.", [expert().mean()]),
-    Text("Six demonstrations give #% of the expert's return", cloned("6", "share of the expert's")),
-    Text("the same settings give #% from ten", cloned("10", "share of the expert's")),
-    Text("The median episode has #%.", [100 * cloned("6", "median episode")[0] / expert().mean()]),
-    Text("In #% of the episodes the ant falls", cloned("6", "episodes below 1,000")),
-    Text("the others reach # on average, #%", walking()),
-    Text("of # episodes of another policy of the same method", [OTHER["episodes"]]),
-    Text("(`policies/ant.npz`) # end early", [sum(n < 400 for n in OTHER["decisions"])]),
     Text("Its ten episodes, # to #, are", [expert().min(), expert().max()]),
     Table("millionths | | median | 99% | largest", apart),
     Text("rates part by up to # rad/s in a decision", [POINTS["state_max"]]),
@@ -215,6 +155,7 @@ CITED = [
 PLAIN = [
     *planned.PLAIN,
     *sawyer.PLAIN,
+    *ant.PLAIN,
     # settings
     "seeds 0 to 9, 10 evaluation episodes per seed",
     "jax 0.11.2",
@@ -229,12 +170,6 @@ PLAIN = [
     "the thesis' 20 decisions",
     "a rate of 0.003",
     "the thesis' rate of 0.01",
-    "five clones of three layers of 256 silu units",
-    "2,500 gradient steps at 0.003 on",
-    "Return over 400 decisions, numbers in",
-    "not the 95% that were the aim",
-    "(returns below 1,000)",
-    "on seeds 200 to 204, on which the settings were chosen; 6 demonstrations",
     "over 64 worlds, eight updates for 64 decisions, 2.4 M decisions",
     "the 27 entries of the observation",
     "20 episodes of up to 100 decisions, each decision",
@@ -246,7 +181,6 @@ PLAIN = [
     "about 87,000 physics steps a second of the walker and 64,000 of the ant",
     "capsules (64 worlds",
     "10,000 random decisions in each of 256 worlds",
-    "ten seeds of them from 3, 8 and 10 demonstrations",
     "up to 99 of planning on the world itself",
     "mean of the weights over about the last 500",
     "5,000 gradient steps",

@@ -1,0 +1,190 @@
+"""The ant's clones, on docs/results/robots.md."""
+
+import numpy as np
+
+from pages.cited import ROOT, Table, Text
+from pages.values import read
+
+ANT = read("ant_cloning")
+OTHER = ANT["other_policy"]
+TURNED = ANT["turned"]
+SIX = "experiment=robots/ant num_demonstrations=6"
+
+
+def expert() -> np.ndarray:
+    """Return of each of the ant's demonstrated episodes."""
+    with np.load(ROOT / "demonstrations" / "ant.npz") as file:
+        return np.bincount(file["episode"], file["reward"])
+
+
+def six() -> np.ndarray:
+    """Returns [seeds, episodes] of the clones from six demonstrations."""
+    return np.array(next(row for row in ANT["rows"] if row["label"] == SIX)["returns"])
+
+
+def spread(seeds: np.ndarray | list[float]) -> list[float]:
+    """Mean, lowest and highest seed."""
+    return [float(np.mean(seeds)), float(np.min(seeds)), float(np.max(seeds))]
+
+
+def cloned(label: str, column: str) -> list[float]:
+    """A cell of the table of the ant's clones."""
+    if label == "6":
+        seeds, episodes = six().mean(1), six().shape[1]
+    else:
+        rows = ANT["server"]["rows"]
+        row = next(row for row in rows if row["demonstrations"] == int(label))
+        seeds, episodes = np.array(row["mean"]), row["episodes"]
+    values = {
+        "seeds": [len(seeds)],
+        "episodes a seed": [episodes],
+        "mean return": spread(seeds),
+        "share of the expert's": [100 * seeds.mean() / expert().mean()],
+    }
+    return [float(value) for value in values[column]]
+
+
+def walking() -> list[float]:
+    """Mean return from 6 demonstrations of the episodes with 1,000 or more; its share [%]."""
+    mean = six()[six() >= 1000].mean()
+    return [mean, 100 * mean / expert().mean()]
+
+
+def below(returns: np.ndarray) -> float:
+    """[%] of episodes with less than 1,000."""
+    return 100 * float((np.array(returns) < 1000).mean())
+
+
+OWN = float(np.mean(OTHER["returns"]))  # of policies/ant.npz
+CLONES = np.array(ANT["teacher"]["returns"])  # of policies/ant.npz: [seeds, episodes]
+
+
+def disturbed(label: str, column: str) -> list[float]:
+    """A cell of the table of clones of a disturbed expert."""
+    rows = ANT["disturbed"]["rows"]
+    row = next(row for row in rows if row["action_noise"] == float(label))
+    values = {
+        "seeds": len(row["seeds"]),
+        "episodes a seed": row["episodes"],
+        "mean return": np.mean(row["mean"]),
+        "share of that expert's": 100 * np.mean(row["mean"]) / OWN,
+    }
+    return [float(values[column])]
+
+
+def searched(label: str, column: str) -> list[float]:
+    """A cell of a table of settings of cloning."""
+    second = ANT["second_search"]["rows"]
+    found = [row for row in (*ANT["search"], *second) if row["label"] == label]
+    row = found[0]
+    values = {
+        "seeds": len(row["seeds"]),
+        "episodes a seed": row["episodes"],
+        "mean return": np.mean(row.get("mean", row.get("returns"))),
+        "episodes below 1,000": 100 * row.get("below", np.nan),
+    }
+    return [float(values[column])]
+
+
+def disturbed_world(label: str, column: str) -> list[float]:
+    """A cell of the table of other worlds."""
+    changes = dict([label.split("=")]) if "=" in label else {}
+    (row,) = (row for row in ANT["worlds"] if row["changes"] == changes)
+    values = {
+        "seeds": [len(row["mean"])],
+        "episodes a seed": [row["episodes"]],
+        "mean return": spread(row["mean"]),
+        "episodes below 1,000": [100 * row["below"]],
+    }
+    return [float(value) for value in values[column]]
+
+
+CITED = [
+    Table(
+        "the ant in another world | seeds | episodes a seed | mean return | episodes below 1,000",
+        disturbed_world,
+    ),
+    Table("demonstrations | seeds | episodes a seed | mean return | share of the expert's", cloned),
+    Table("setting | seeds | episodes a seed | mean return", searched),
+    Table(
+        "clones of other six episodes | seeds | episodes a seed | mean return"
+        " | episodes below 1,000",
+        searched,
+    ),
+    Table(
+        "action noise | seeds | episodes a seed | mean return | share of that expert's", disturbed
+    ),
+    Text("the expert's ten episodes have #.", [expert().mean()]),
+    Text("Six demonstrations give #% of the expert's return", cloned("6", "share of the expert's")),
+    Text("eight demonstrations give #%", cloned("8", "share of the expert's")),
+    Text("ten #%.\n", cloned("10", "share of the expert's")),
+    Text("The median episode has #%.", [100 * np.median(six()) / expert().mean()]),
+    Text("#% of the episodes have\n  returns below 1,000", [below(six())]),
+    Text("the others reach # on average, #%", walking()),
+    Text(
+        "Of # more episodes of the clones of seed 0, # have less than 1,000, and in # of them the"
+        " torso was upside down at some time; with\n  clones of another expert"
+        " (`policies/ant.npz`) it is # of #. Of these # episodes # last",
+        [
+            *(TURNED["six"][key] for key in ("episodes", "low", "low_turned")),
+            TURNED["plain"]["low_turned"],
+            TURNED["plain"]["low"],
+            sum(TURNED[key]["low"] for key in ("six", "plain")),
+            sum(TURNED[key]["low_whole"] for key in ("six", "plain")),
+        ],
+    ),
+    Text(
+        "in # episodes of `policies/ant.npz` the torso was upside down # times; #% of the episodes"
+        " have less than 1,000, and # end early",
+        [
+            OTHER["episodes"],
+            sum(OTHER["turned"]),
+            below(OTHER["returns"]),
+            sum(n < 400 for n in OTHER["decisions"]),
+        ],
+    ),
+    Text("The ten episodes with # are sound ones", [expert().mean()]),
+    Text("as the expert (# over 400 decisions, mean of # episodes", [OWN, OTHER["episodes"]]),
+    Text(
+        "reach # [#, #] from six demonstrations, #% of it",
+        [*spread(CLONES.mean(1)), 100 * CLONES.mean() / OWN],
+    ),
+    Text("Without the #% of", [below(CLONES)]),
+    Text("episodes below 1,000 they reach #.", [CLONES[CLONES >= 1000].mean()]),
+    Text("# [#, #] with the planner", spread(ANT["hybrid"]["full"])),
+    Text("# [#, #] with its cloned policy alone", spread(ANT["hybrid"]["policy"])),
+    Text(
+        "another six give #% here and #% above",
+        [*disturbed("0", "share of that expert's"), 100 * CLONES.mean() / OWN],
+    ),
+    Text(
+        "with noise of 0.1 it is # after # (seeds 0 to 4",
+        [np.mean(ANT["disturbed_five"]["returns"]), CLONES[:5].mean()],
+    ),
+    Text("# after 800 labels, # after 1,600 and # after 2,400", ANT["dagger"]["mean"]),
+]
+PLAIN = [
+    "with noise of 0.1 it is",
+    "(seeds 0 to 4, 100 episodes a seed). Whether",
+    "the clones of seed 0, ",
+    "31, 21, 11 and 2 frames before the end of an episode of 370 decisions",
+    "(clones of `policies/ant.npz`, seed 1)",
+    "A delay of one decision (0.05 s)",
+    "five clones of three layers of 256 silu units",
+    "2,500 gradient steps at 0.003 on",
+    "Return over 400 decisions, numbers in",
+    "not the 95% that were the aim",
+    "returns below 1,000; the others",
+    "have less than 1,000, and in",
+    "of the episodes have less than 1,000",
+    "(seeds 0 to 9, 100 episodes a seed). Without",
+    "episodes below 1,000 they reach",
+    "ten seeds, 20 episodes a seed): ",
+    "seeds 200 to 202, one set of six episodes",
+    "one seed (200), one episode by the teacher",
+    "after 800 labels",
+    "after 1,600",
+    "after 2,400, the number of six demonstrations (20 episodes each)",
+    "seeds 200 to 202, the last six episodes of the file, of which the first two are among the six",
+    "on seeds 200 to 204, on which the settings were chosen; 6 demonstrations",
+]
