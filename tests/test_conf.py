@@ -179,7 +179,7 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
 
 
 def test_default_of_hybrid_learning() -> None:
-    """Policy and critic learn from five imagined decisions; settings=mbpo is the earlier default."""
+    """Policy and critic learn from five imagined decisions; settings=mbpo is the old default."""
     c = config.load(["algo=hybrid_stochastic"])
     learner = c.learners.policy
     assert (learner.memory, learner.learner.lookahead.steps, learner.learner.expand) == (

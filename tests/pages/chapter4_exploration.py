@@ -74,7 +74,7 @@ assert not stuck(MIXED, "5,000 random, seeds from 10")
 PLAIN = [
     "first 5,000 decisions explore",
     "horizon 20, 64 candidates) from decision 1,000 to 5,000, then",
-    "1,000 random decisions\n(the default), 5,000 random decisions",
+    "1,000 random decisions\n(as by `settings=mbpo`), 5,000 random decisions",
     "noise from 1,000 to 5,000 while",
     "Seeds 0 to 9, no setting",
     "jax 0.11",
