@@ -102,7 +102,14 @@ def repaired(label: str, column: str) -> list[float]:
     return [float(sum(values) if "successes" in column else np.mean(values))]
 
 
+WRONG = read("world_planning")["sawyer_wrong_friction"]
+RIGHT = read("world_planning")["tasks"]["sawyer_code"]["success"][: len(WRONG["seed"])]
+
 CITED = [
+    Text(
+        "# of # episodes succeed, with the true friction # of the same # starts",
+        [sum(WRONG["success"]), len(WRONG["seed"]), sum(RIGHT), len(RIGHT)],
+    ),
     Table("a poor clone, on the true world | successes, of 7 | return, mean", repaired),
     Text(
         "it stacks in #% of # episodes",
@@ -128,6 +135,7 @@ CITED = [
     Table("successes in another world | Sawyer, hybrid_stochastic | Panda, cloned", disturbed),
 ]
 PLAIN = [
+    "(seeds 0 on, one episode each",
     "with five demonstrations, seed 0, learned on",
     "One episode for each seed from 0 to 6",
     "64 candidates of 20 decisions (2 s), whose noise of 0.7",
