@@ -7,9 +7,10 @@ policy's parameters by its path, such as policy/trunk/params/Dense_0/kernel. `ab
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import jax
 import numpy as np
@@ -18,6 +19,8 @@ from jax import Array
 from hybrid_rl.core import archive
 from hybrid_rl.protocols import Env, Policy
 from hybrid_rl.types import PyTree, Spec
+
+POLICIES = "hybrid_rl.policies."
 
 
 def save(
@@ -36,9 +39,35 @@ def save(
     archive.write(file, task, spec, arrays)
 
 
+def described(file: str) -> Policy:
+    """The policy that `file` describes: its class and fields, without parameters.
+
+    Raises:
+        ValueError: if the file is unusable, or does not describe a policy of hybrid_rl.policies.
+    """
+    prefix = f"policy.file={file}:"
+    text = archive.read(prefix, file, hint=archive.WRITE).get(archive.ABOUT)
+    if text is None:
+        raise ValueError(f"{prefix} does not describe its policy; {archive.WRITE}")
+    try:
+        fields = dict(json.loads(str(text))["policy"])
+        target = str(fields.pop("_target_"))
+        module, _, name = target.rpartition(".")
+        if not module.startswith(POLICIES):
+            raise ValueError(target)
+        part = getattr(import_module(module), name)
+        if not (isinstance(part, type) and is_dataclass(part) and part.__module__ == module):
+            raise ValueError(target)
+        return cast(Policy, part(**fields))
+    except (ValueError, TypeError, KeyError, ImportError, AttributeError) as error:
+        raise ValueError(f"{prefix} describes no policy of hybrid_rl ({error})") from error
+
+
 @dataclass(frozen=True)
 class TrainedPolicy:
     """`policy` with the parameters in `file`, which must be of `task` in `world`.
+
+    policy: None is the one that the file describes.
 
     Its methods ignore the parameters that they get, so it can act where another policy learns.
 
@@ -46,14 +75,16 @@ class TrainedPolicy:
         ValueError: for an unusable file, or one of another task or another policy.
     """
 
-    policy: Policy
+    policy: Any  # Policy, or None
     file: str
     task: str
     world: Env
     episode: Mapping[str, int] | None = None  # with `action_repeat`; None: 1
 
     def __post_init__(self) -> None:
-        """Check the file."""
+        """Read the description if there is no policy, and check the file."""
+        if self.policy is None:
+            object.__setattr__(self, "policy", described(self.file))
         self.load()
 
     def load(self) -> PyTree:

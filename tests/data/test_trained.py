@@ -16,6 +16,7 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.data.trained import TrainedPolicy, save
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
+from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.policies.tanh_gaussian import StartedGaussian, TanhGaussian
 
 POLICY = TanhGaussian((8, 4), "sin", normalise=True)
@@ -65,6 +66,33 @@ def test_a_started_policy_begins_with_the_parameters_of_the_file_and_acts_by_its
     np.testing.assert_array_equal(started.mean(other, x), POLICY.mean(other, x))
     with pytest.raises(ValueError, match="this policy's is"):
         StartedGaussian((4, 4), "sin", normalise=True, **where)
+
+
+def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
+    """Of any kind and size, unless another is given; a file without a description needs one."""
+    policy = TanhGaussian((6, 5), "relu", "relu", normalise=True)  # two networks
+    params = policy.init(KEY, Pendulum().spec)
+    part = {"_target_": "hybrid_rl.policies.tanh_gaussian.TanhGaussian", "hidden": [6, 5]}
+    part |= {"log_std_activation": "relu", "normalise": True}
+    about = {"env": {}, "episode": {}, "policy": part, "seed": 0, "step": 1}
+    save(file, "pendulum", Pendulum().spec, params, about)
+    trained, x = opened(file, policy=None), jnp.array([0.3, -0.2, 1.5])
+    assert trained.policy == policy
+    np.testing.assert_array_equal(trained.mean((), x), policy.mean(params, x))
+    save(file, "pendulum", Pendulum().spec, params, about | {"policy": {"_target_": "os.system"}})
+    with pytest.raises(ValueError, match="describes no policy of hybrid_rl"):
+        opened(file, policy=None)
+    save(file, "pendulum", Pendulum().spec, params)
+    with pytest.raises(ValueError, match="does not describe its policy; `python"):
+        opened(file, policy=None)
+
+
+def test_candidates_come_from_a_policy_of_the_package() -> None:
+    """Which has no layers in common with the default."""
+    line = ["task=panda_stack", "algo=mppi", "env.observation=stage", "proposal=policy"]
+    run = config.build(config.load([*line, "policy=trained"]))
+    planner: Any = run.controllers["full"]
+    assert isinstance(planner.proposal.policy.policy, Deterministic)
 
 
 @pytest.mark.parametrize(
@@ -129,8 +157,7 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     write = [f"run={tmp_path / 'run'}", "policy=policy.npz", "command=as above"]
     assert call(lambda: command.guarded(demonstrate.main), *write) == 0
     given = evaluate.load(tmp_path / "run")
-    hidden = f"hidden={list(given.controllers['policy'].policy.hidden)}".replace(" ", "")
-    line = ["task=pendulum", "algo=sac", "expert=trained", f"expert.policy.policy.{hidden}"]
+    line = ["task=pendulum", "algo=sac", "expert=trained"]
     expert = config.expert(config.load([*line, "expert.policy.file=policy.npz"]))
     assert isinstance(expert, PolicyController)
     x = jnp.array([1.0, 0.0, 0.4])

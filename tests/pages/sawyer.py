@@ -3,7 +3,7 @@
 import numpy as np
 
 from pages.cited import Table, Text
-from pages.values import read
+from pages.values import ahead, p_value, read
 
 HOME, MODEL = read("sawyer_home"), read("sawyer_model")
 COLUMNS = {"after 20 episodes": 2_000, "40": 4_000, "60": 6_000}
@@ -13,8 +13,23 @@ ERRORS["20 decisions"] = "ahead_20"
 
 def share(label: str, column: str) -> list[float]:
     """[%] of successes: mean, lowest and highest seed."""
-    each = HOME["methods"][label]["success"][HOME["decisions"].index(COLUMNS[column])]
+    method = HOME["methods"][label.split(",")[0]]
+    each = method["success"][HOME["decisions"].index(COLUMNS[column])]
     return [100 * np.mean(each), 100 * min(each), 100 * max(each)]
+
+
+def earlier(method: str) -> list[float]:
+    """[%] of successes at the three evaluations of the earlier runs."""
+    return [100 * np.mean(each) for each in HOME["earlier"][method]["success"]]
+
+
+def areas(method: str) -> np.ndarray:
+    """[S] mean share of successes up to the last evaluation; the first holds from 0 on."""
+    success, x = np.array(HOME["methods"][method]["success"]), HOME["decisions"]
+    return np.trapezoid(np.concatenate([success[:1], success]), [0, *x], axis=0) / x[-1]
+
+
+HYBRID, PLANNER = "hybrid_stochastic", "nn_mppi"
 
 
 def error(label: str, column: str) -> list[float]:
@@ -33,6 +48,24 @@ def searched(name: str) -> float:
 
 
 CITED = [
+    Text(
+        "ahead in #% [#, #] of pairs of seeds, by area. Its", ahead(areas(HYBRID), areas(PLANNER))
+    ),
+    Text(
+        "the medians of the seeds are #% and #%",
+        [100 * np.median(HOME["methods"][name]["success"][0]) for name in (HYBRID, PLANNER)],
+    ),
+    Text(
+        "the hybrid had #%, #% and #%, `nn_mppi` #%, #% and #%", earlier(HYBRID) + earlier(PLANNER)
+    ),
+    Text(
+        "the hybrid was one point ahead and is now # behind",
+        [share(PLANNER, "after 20 episodes")[0] - share(HYBRID, "after 20 episodes")[0]],
+    ),
+    Text(
+        "which chance explains (p = #, Mann-Whitney)",
+        [p_value(*(np.array(HOME["methods"][name]["success"][0]) for name in (HYBRID, PLANNER)))],
+    ),
     Table("share of successes | after 20 episodes | 40 | 60", share),
     Table(
         "error of the block's position, mm | contact | free | 10 decisions | 20 decisions", error
@@ -47,7 +80,12 @@ CITED = [
 PLAIN = [
     "64 candidates of 20 decisions have noise",
     "has 16 more of its policy",
-    "of ten seeds (0 to 9), 10 evaluation episodes a seed",
+    "of ten seeds (0 to 9), 100 evaluation episodes a seed (`eval_episodes=100`)",
+    "except for `sac`: 10 episodes a seed",
+    "| `sac`, 10 episodes a seed",
+    "includes 50%. After 20 episodes the medians",
+    "on the EPYC, 10 episodes a seed)",
+    "After 60 episodes nothing has changed. After 20 the hybrid",
     "counted as 100 decisions",
     "chosen on seeds 200 to 202",
     "(seeds 200 to 202, 20 episodes a seed",
