@@ -90,6 +90,11 @@ CITED = [
         "| settings=mbpo | sac",
         reported,
     ),
+    Table(
+        "evaluation return, IQM and 95% band, five seeds | hybrid_stochastic | its policy alone "
+        "| settings=mbpo | nn_mppi | sac",
+        reported,
+    ),
     Table("full method | mean | lowest seed | highest seed | DHMBPO", compared),
     Text("the lowest has # at 50,000", [float(hybrid("half-cheetah").seeds(50_000).min())]),
     Text(
@@ -168,6 +173,9 @@ PLAIN = [
     "at 20,000, these ten",
     "From 30,000 decisions on",
     "m/s at 70,000",
+    "Seeds 100 to 104, two shared cores",
+    "at 3,000 decisions, of which 1,000 are random. The others: seeds 0 to 9",
+    "at 2,000 decisions, ahead",
     "Seeds 200 to 204, on which",
     "(seeds 200 to 209)",
     "at 20,000 and",
