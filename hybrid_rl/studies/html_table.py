@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from hybrid_rl.studies.curves import shown
+
 NUMBER = re.compile(r"(-?[\d,.]+%?( \[.*\])?)?")  # with its band
 
 
@@ -29,7 +31,7 @@ def _text(value: Any) -> str:
         case None:
             return ""
         case float() | np.floating():
-            return f"{value:,.4g}" if abs(value) < 1000 else f"{value:,.0f}"
+            return shown(float(value))
         case int():
             return f"{value:,}"
         case _:

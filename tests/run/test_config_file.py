@@ -58,7 +58,8 @@ def test_it_is_short_and_builds_the_same_run(algo, tmp_path):
     assert "${" not in text
     assert len(text.splitlines()) < 200
     written = run_folder.read(tmp_path, "run")
-    assert not set(written) - {"version", *config.READ, "demonstrations", "num_demonstrations"}
+    referred = {"demonstrations", "num_demonstrations", "model_random_steps"}
+    assert not set(written) - {"version", *config.READ, *referred}
     assert config.build(written).agent == config.build(composed).agent
 
 
