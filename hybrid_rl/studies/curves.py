@@ -124,8 +124,8 @@ def spread(values: np.ndarray) -> str:
     middle = shown(float(iqm(values)))
     if len(values) == 1:
         return middle
-    low, high = band(values)
-    return f"{middle} [{shown(low)}, {shown(high)}]"
+    low, high = (shown(float(end)) for end in band(values))
+    return f"{middle} [{low}, {high}]"
 
 
 def plural(count: int, noun: str) -> str:
