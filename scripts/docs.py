@@ -79,6 +79,9 @@ def copy() -> None:
     shutil.copytree(ROOT / "docs", SOURCE / "docs", ignore=shutil.ignore_patterns("conf.py"))
     shutil.move(SOURCE / "docs" / "static", SOURCE / "static")
     shutil.copytree(ROOT / "paper", SOURCE / "paper")
+    _, matter, text = (ROOT / "paper" / "paper.md").read_text(encoding="utf-8").split("---\n", 2)
+    (title,) = re.findall("title: '(.*)'", matter)  # its sections are headings of the first level
+    write("paper/paper.md", f"# {title}\n" + re.sub("(?m)^#", "##", text))
     for name in AT_TOP:
         shutil.copy(ROOT / name, SOURCE / name)
     trees = "".join(tree(caption, pages) for caption, pages in PAGES.items())
