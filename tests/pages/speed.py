@@ -63,6 +63,17 @@ def physics(label: str, column: str) -> list[float]:
     return [rate.get(column, rate["ours"] / rate["bare loop"])]
 
 
+def arms(label: str, column: str) -> list[float]:
+    """Bare and ours on one core: "Sawyer, 64 worlds"."""
+    robot, worlds = label.split(", ")
+    task = {"Sawyer": "sawyer_push", "Panda": "panda_stack", "half-cheetah": "halfcheetah"}[robot]
+    (table,) = (
+        each["rows"] for each in read("speed_arms")["tables"] if each["what"] == f"{task}, {worlds}"
+    )
+    bare, ours = (row["rate"] for row in table)
+    return [{"bare loop": bare, "ours": ours}.get(column, ours / bare)]
+
+
 def plan(label: str, column: str) -> list[float]:
     """Model steps per second: three digits, or in millions."""
     learners = f"{column.removesuffix(' learner')} learners"
@@ -125,6 +136,7 @@ CITED = [
     ),
     Table("GPUs, 512 learners and 16 cores each, native | 1 | 2 | 4", gpus),
     Table(" | bare loop | ours | ratio", physics),
+    Table("one core | bare loop | ours | ratio", arms),
     Text(
         "ours is at # of the bare loop",
         physics("half-cheetah, 64 worlds, native (8 cores)", "ratio"),
@@ -178,6 +190,8 @@ CITED = [
 ]
 PLAIN = [
     # settings
+    "A decision of an arm has 20 steps",
+    "With 64 worlds and more the arms",
     "with 6 to 16 cores of its host",
     "jax 0.11.2, MuJoCo 3.17.0, warp-lang 1.18.0",
     "a plan of K 20 and T 10",
