@@ -25,6 +25,7 @@ ACTIVATIONS = {
 }
 
 
+LAYER_NORMS = (False, True, "shift")  # shift: without a learned scale
 SPREAD = nn.initializers.variance_scaling(1 / 3, "fan_in", "uniform")
 
 
@@ -34,7 +35,7 @@ class MLP(nn.Module):
     hidden: Sequence[int]
     out: int
     activation: str = "relu"
-    layer_norm: bool = False  # of every hidden layer, before its activation
+    layer_norm: bool | str = False  # one of LAYER_NORMS, of every hidden layer
     zero: bool = False  # the last layer starts at zero
 
     @nn.compact
@@ -42,7 +43,9 @@ class MLP(nn.Module):
         """The outputs y [..., out] for x [..., d]."""
         for width in self.hidden:
             x = nn.Dense(width, kernel_init=SPREAD)(x)
-            x = ACTIVATIONS[self.activation](nn.LayerNorm()(x) if self.layer_norm else x)
+            if self.layer_norm:
+                x = nn.LayerNorm(use_scale=self.layer_norm != "shift")(x)
+            x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
         return nn.Dense(self.out, kernel_init=last)(x)
 
@@ -103,14 +106,18 @@ def _block_diagonal(blocks: Sequence[np.ndarray]) -> np.ndarray:
     return whole
 
 
-def check(name: str, hidden: Sequence[int], activation: str) -> None:
-    """Raise ValueError if `hidden` or `activation` of the part `name` is invalid."""
+def check(
+    name: str, hidden: Sequence[int], activation: str, layer_norm: bool | str = False
+) -> None:
+    """Raise ValueError if one of these fields of the part `name` is invalid."""
     if not all(isinstance(width, int) and width > 0 for width in hidden):
         raise ValueError(f"{name}.hidden={list(hidden)}: widths are positive integers")
     if activation not in ACTIVATIONS:
         raise ValueError(
             f"{name}.activation={activation}: unknown; choose one of {', '.join(ACTIVATIONS)}"
         )
+    if layer_norm not in LAYER_NORMS:
+        raise ValueError(f"{name}.layer_norm={layer_norm}: choose true, false or shift")
 
 
 def outputs(params: Any) -> int:

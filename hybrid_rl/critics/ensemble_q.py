@@ -33,7 +33,7 @@ class EnsembleQ:
     hidden: tuple[int, ...] = (256, 256)
     activation: str = "relu"
     members: int = 2
-    layer_norm: bool = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
+    layer_norm: bool | str = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
     pessimism: float | None = None  # [std of the members]; None: their minimum
     normalise: bool = False
     scale: bool = False
@@ -41,7 +41,7 @@ class EnsembleQ:
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
-        check("critic", self.hidden, self.activation)
+        check("critic", self.hidden, self.activation, self.layer_norm)
         if self.members < 1:
             raise ValueError(f"critic.members={self.members}: must be at least 1")
         if self.pessimism is not None and self.pessimism < 0:

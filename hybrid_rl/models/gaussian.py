@@ -42,7 +42,7 @@ class Gaussian:
     log_std_max: float = 2.0
     state_noise: bool = False  # s(x) instead of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
-    layer_norm: bool = False  # of every hidden layer, before its activation
+    layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
     predict: str = "change"  # or "state"
 
     members: ClassVar[int] = 1  # an ensemble has more
@@ -50,7 +50,7 @@ class Gaussian:
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
-        check("model", self.hidden, self.activation)
+        check("model", self.hidden, self.activation, self.layer_norm)
         if self.inputs is not None:
             object.__setattr__(self, "inputs", tuple(self.inputs))
         if self.predict not in PREDICT:

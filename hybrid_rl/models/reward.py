@@ -41,7 +41,7 @@ class RewardNetwork:
     normalise: bool = True  # states by their running statistics
     ends: bool = False  # also where episodes end
     rule: Any = None  # an EndingEnv, whose rule gives the ends; others, and None: they are learned
-    layer_norm: bool = False  # of every hidden layer, before its activation
+    layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
     scale: bool = False  # targets by their running statistics
     members: int = 1  # networks, whose mean is used
     next_state: bool = False  # x' is an input, too
@@ -49,7 +49,7 @@ class RewardNetwork:
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
-        check("reward", self.hidden, self.activation)
+        check("reward", self.hidden, self.activation, self.layer_norm)
         if not isinstance(self.members, int) or self.members < 1:
             raise ValueError(f"reward.members={self.members}: must be a whole number, 1 or more")
 

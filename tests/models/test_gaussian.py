@@ -36,15 +36,30 @@ def test_draws_have_the_standard_deviation_of_their_state() -> None:
         assert bool(jnp.any(here != there)) == state_noise
 
 
-def test_layer_norm_against_numpy() -> None:
-    """W_2 relu((h - mean) / std) with h = W_1 [x, u] + b_1, over the units of the layer."""
-    model = Gaussian(hidden=(8,), layer_norm=True, normalise=False)
+@pytest.mark.parametrize("layer_norm", [True, "shift"])
+def test_layer_norm_against_numpy(layer_norm: bool | str) -> None:
+    """W_2 relu(s (h - mean) / std + t) with h = W_1 [x, u] + b_1, over the units of the layer.
+
+    With "shift" there is no s.
+    """
+    model = Gaussian(hidden=(8,), layer_norm=layer_norm, normalise=False)
     params = model.init(jax.random.key(0), SPEC)
+    assert set(params["weights"]["net"]["params"]["LayerNorm_0"]) == (
+        {"bias"} if layer_norm == "shift" else {"scale", "bias"}
+    )
+    params["weights"] = jax.tree.map(lambda leaf: leaf + 0.1, params["weights"])
     w = jax.tree.map(lambda leaf: np.asarray(leaf, np.float64), params["weights"]["net"]["params"])
     hidden = np.concatenate([X, U]) @ w["Dense_0"]["kernel"] + w["Dense_0"]["bias"]
     hidden = (hidden - hidden.mean()) / np.sqrt(hidden.var() + 1e-6)
+    hidden = hidden * w["LayerNorm_0"].get("scale", 1) + w["LayerNorm_0"]["bias"]
     want = np.maximum(hidden, 0) @ w["Dense_1"]["kernel"] + w["Dense_1"]["bias"]
     np.testing.assert_allclose(model.change(params, X, U), want, rtol=1e-4, atol=1e-6)
+
+
+def test_an_unknown_layer_normalisation_is_refused() -> None:
+    """With what would be right."""
+    with pytest.raises(ValueError, match=r"model\.layer_norm=scale: choose true, false or shift"):
+        Gaussian(layer_norm="scale")
 
 
 def test_the_state_is_predicted_in_its_own_units() -> None:

@@ -1,5 +1,6 @@
 """docs/results/lookahead.md."""
 
+from pages import layer_norm
 from pages.cited import Table, Text
 from pages.values import Curve, curve, number, read
 
@@ -80,6 +81,8 @@ def signal(label: str, column: str) -> list[float]:
 
 
 SPEED = read("lookahead_speed")["rows"]
+
+
 CITED = [
     Table(
         f"evaluation return, IQM and 95% band | {SETTINGS} | {BEFORE} | {ALONE} | {DEFAULT}",
@@ -135,14 +138,7 @@ CITED = [
         [line("walker2d", label).at(25_000)[0] for label in (SETTINGS, BEFORE)],
     ),
     Table("at 10,000 decisions | mean return | lowest seed | highest seed", parts),
-    Text(
-        "# decisions/s after # s of compilation, or # after # s without Triton's",
-        [
-            SPEED[name][key]
-            for name in ("autotuned", "without Triton's products")
-            for key in ("decisions_per_s", "compile_s")
-        ],
-    ),
+    *layer_norm.CITED,
     Text("it was no faster, #.", [SPEED["loops in CUDA graphs"]["decisions_per_s"]]),
     Text(
         "The run of the picture made #, on",
@@ -198,6 +194,7 @@ PLAIN = [
     "on 5,000 decisions of other policies",
     "over seeds 100 to 109:",
     "Ten learners to 100,000 decisions within 8 minutes, the aim, need about 2,400",
+    *layer_norm.PLAIN,
     # what others published
     "Gymnasium's version 4)",
     "(9,691)",
