@@ -39,7 +39,8 @@ CITED = [
         PANDA["succeeded"][:2],
     ),
     Text(
-        "In # of the # episodes in which seed 0 fails, the hand holds the block # to # mm from its target",
+        "In # of the # episodes in which seed 0 fails, the hand holds the block # to # mm from its "
+        "target",
         [held(0), len(left(0)), left(0).min(), left(0).max()],
     ),
     Text(
