@@ -220,7 +220,10 @@ def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[s
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
     """What evaluation_<mode>.json holds."""
     returns = got["return"]
-    success = {"success": got["success"].mean(1).tolist()} if "success" in got else {}
+    success = {}
+    if "success" in got:
+        each = got["success"]
+        success = {"success": each.mean(1).tolist(), "succeeded": each.astype(bool).tolist()}
     return {
         "mode": mode,
         "step": trained.step,

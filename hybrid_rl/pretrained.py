@@ -6,20 +6,17 @@ policy as in config.yaml of the run, and with the command, the seed and the eval
 
 import json
 from collections.abc import Mapping
-from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any
 
 import jax
-from hydra.utils import instantiate
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
-from hybrid_rl.checks import part_class
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core import archive
 from hybrid_rl.core.lifting import is_identity
-from hybrid_rl.data.trained import TrainedPolicy
+from hybrid_rl.data.trained import TrainedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
 from hybrid_rl.evaluate import Trained, load
@@ -64,19 +61,18 @@ def read(name: str) -> Trained:
             raise UsageError(f"{prefix} has no description; write it again with `demonstrate`")
         about = _described(prefix, str(arrays[archive.ABOUT]))
         prepare(configuration.load([]))
-        env, policy = (_built(prefix, about[part]) for part in ("env", "policy"))
-        task = str(arrays["task"])
-        params = TrainedPolicy(policy, str(file), task, env, about["episode"]).load()
+        env, task = _environment(prefix, about["env"]), str(arrays["task"])
+        trained = TrainedPolicy(None, str(file), task, env, about["episode"])
     except UsageError:
         raise
     except ValueError as error:
         raise UsageError(str(error)) from error
-    controller = PolicyController(policy, explore=False)
+    controller = PolicyController(trained.policy, explore=False)
     return Trained(
         task,
         Episode(env, **about["episode"]),
         {"full": controller, "policy": controller},
-        Params(policy=jax.tree.map(lambda leaf: leaf[None], params)),
+        Params(policy=jax.tree.map(lambda leaf: leaf[None], trained.load())),
         (int(about["seed"]),),
         int(about["step"]),
         tuple(_origin(about)),
@@ -102,34 +98,11 @@ def _described(prefix: str, text: str) -> dict[str, Any]:
     return about
 
 
-def _built(prefix: str, node: Any) -> Any:
-    """The part that a description names; only classes of hybrid_rl are called."""
-    config: Any = OmegaConf.create(node)
-    _check_classes(prefix, config)
-    if isinstance(config.get("physics"), str):
-        config.physics = resolve(config.physics, 1)
-    return instantiate(config, _convert_="all")
-
-
-def _check_classes(prefix: str, node: Any) -> None:
-    """Raise UsageError for a `_target_` that is no dataclass of hybrid_rl."""
-    for key, value in node.items():
-        if key == "_target_":
-            ours = str(value).startswith("hybrid_rl.") and _is_part(str(value))
-            if not ours:
-                raise UsageError(f"{prefix} {value} is no part of hybrid_rl; give run=DIR")
-        elif key in ("_args_", "_partial_", "_recursive_", "_convert_"):
-            raise UsageError(f"{prefix} {key} is not allowed in a description")
-        elif isinstance(value, DictConfig):
-            _check_classes(prefix, value)
-
-
-def _is_part(target: str) -> bool:
-    try:
-        part = part_class(target)
-    except (ImportError, ValueError):
-        return False
-    return is_dataclass(part) and str(part.__module__).startswith("hybrid_rl.")
+def _environment(prefix: str, node: dict[str, Any]) -> Any:
+    """The environment that a description names, with physics of this machine."""
+    if isinstance(node.get("physics"), str):
+        node = node | {"physics": resolve(node["physics"], 1)}
+    return part(prefix, node)
 
 
 def _origin(about: Mapping[str, Any]) -> list[str]:

@@ -5,10 +5,12 @@
     python -m hybrid_rl.render run=DIR mode=training [seed=] [out=X.mp4]
     python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
-`out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode.
+`out` ends in .mp4 or .gif for a video, in .png for the picture halfway through the episode, or
+with at=0,20,40 for those after so many decisions, side by side.
 
-The episode is the first of the run's own evaluation: same key, no exploration. policy=NAME is a
-trained policy of policies/, or a file. With task=T the task's expert acts, which is scripted.
+The episode is one of the run's own evaluation, the first unless episode=N: same key, no
+exploration. policy=NAME is a trained policy of policies/, or a file. With task=T the task's expert
+acts, which is scripted.
 
 mode=training is the first episode of training of a method that learns a belief over two
 coordinates, such as a map of contacts. A panel, as wide as the picture is high, shows what the
@@ -28,7 +30,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import POLICY, Argument, output, read, whole
+from hybrid_rl.cli.arguments import POLICY, Argument, numbers, output, read, whole
 from hybrid_rl.errors import UsageError
 
 ARGUMENTS = (
@@ -38,6 +40,8 @@ ARGUMENTS = (
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
     Argument("mode", "", "of run=DIR: full, policy, planner or training; empty: full"),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
+    Argument("episode", 0, "number of the evaluation's episode, from 0", whole(least=0)),
+    Argument("at", [], "decisions after which a .png shows the episode", numbers(whole(least=0))),
     Argument("episode_steps", 0, "decisions at most; 0: the task's limit", whole()),
     Argument("width", 640, "of the picture, in pixels", whole(even=True)),
     Argument("height", 480, "of the picture, in pixels", whole(even=True)),
@@ -55,11 +59,14 @@ class Film(NamedTuple):
     success: bool | None  # at the end; None: the task has no measure of it
 
 
-def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0) -> Film:
+def episode(
+    trained: Any, mode: str = "full", seed: int | None = None, steps: int = 0, number: int = 0
+) -> Film:
     """One episode of a loaded run.
 
     trained: what `hybrid_rl.evaluate.load` returns. seed: of one of its learners; None is
-    the first. steps: at most this many decisions; 0 is the task's own limit.
+    the first. steps: at most this many decisions; 0 is the task's own limit. number: of the
+    evaluation's episode, from 0.
     """
     import jax
 
@@ -72,7 +79,7 @@ def episode(trained: Any, mode: str = "full", seed: int | None = None, steps: in
         raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
     world = replace(trained.episode, steps=steps or trained.episode.steps)
     params = jax.tree.map(lambda leaf: leaf[trained.seeds.index(seed)], trained.params)
-    return film(world, trained.controllers[mode], params, evaluation_keys(seed, 1)[0])
+    return film(world, trained.controllers[mode], params, evaluation_keys(seed, number + 1)[-1])
 
 
 def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
@@ -101,12 +108,11 @@ def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int 
     draw(world.env.scene(), shown.poses[::stride], out, rate / stride, width, height)
 
 
-def _shown(
-    given: dict[str, str], changes: dict[str, str], seed: int | None, steps: int
-) -> tuple[Any, str, Film]:
+def _shown(given: dict[str, Any], changes: dict[str, str]) -> tuple[Any, str, Film]:
     """(world with its clock, whose actions, episode) that the arguments name."""
     from hybrid_rl.envs.mujoco.offscreen import check_drawable
 
+    seed, steps, number = (given[name] for name in ("seed", "episode_steps", "episode"))
     if given["task"]:
         from hybrid_rl.demonstrate import scripted
         from hybrid_rl.training.rollout import evaluation_keys
@@ -117,13 +123,13 @@ def _shown(
         return (
             world,
             "scripted expert",
-            film(world, controller, params, evaluation_keys(seed or 0, 1)[0]),
+            film(world, controller, params, evaluation_keys(seed or 0, number + 1)[-1]),
         )
     from hybrid_rl.pretrained import chosen
 
     trained = chosen(given)
     _check(check_drawable, trained.episode.env)
-    shown = episode(trained, given["mode"] or "full", seed, steps)
+    shown = episode(trained, given["mode"] or "full", seed, steps, number)
     return trained.episode, f"step {trained.step:,}", shown
 
 
@@ -166,21 +172,25 @@ def main() -> None:
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
     from hybrid_rl.envs.mujoco import offscreen
-    from hybrid_rl.run.drawing import SUFFIXES
+    from hybrid_rl.run.drawing import SUFFIXES, draw_beside
 
     default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
     out = output("out", given["out"] or default, SUFFIXES)
-    width, height, steps, seed = (
-        given[name] for name in ("width", "height", "episode_steps", "seed")
-    )
+    if given["at"] and out.suffix != ".png":
+        raise UsageError(f"at={','.join(map(str, given['at']))}: needs out=FILE.png")
+    width, height = given["width"], given["height"]
     offscreen.backend()  # raises before minutes of work
     _check(offscreen.check_size, width, height)
 
     if given["mode"] == "training" and given["run"]:
-        _training(Path(given["run"]), seed, steps, out, width, height)
+        _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
         return
-    world, by, shown = _shown(given, changes, seed, steps)
-    draw_film(world, shown, out, width, height)
+    world, by, shown = _shown(given, changes)
+    if given["at"]:
+        poses = shown.poses[np.minimum(given["at"], len(shown.poses) - 1)]
+        draw_beside(world.env.scene(), poses, out, width, height)
+    else:
+        draw_film(world, shown, out, width, height)
     ended = {True: ", success", False: ", no success", None: ""}[shown.success]
     print(f"{out}: {len(shown.poses) - 1} decisions, return {shown.total:,.1f}{ended}, {by}")
 

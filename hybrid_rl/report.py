@@ -94,7 +94,7 @@ def _runs(runs: Sequence[RunFolder]) -> str:
 
     def row(run: RunFolder) -> list[Any]:
         get = run.summary.get
-        seeds = ", ".join(map(str, get("seeds", sorted({each["seed"] for each in run.rows}))))
+        seeds = _span(get("seeds", sorted({each["seed"] for each in run.rows})))
         ends = (
             [value for value in get(key) or [] if value is not None]
             for key in ("final_eval", "final_return")
@@ -110,6 +110,13 @@ def _runs(runs: Sequence[RunFolder]) -> str:
     note = "<p class='quiet'>Evaluation and training return at the end: interquartile mean over "
     note += "seeds and 95% bootstrap band.</p>"
     return table(head, map(row, runs)) + note
+
+
+def _span(seeds: Sequence[int]) -> str:
+    """Seeds as a text; three or more that follow each other by their ends."""
+    if len(seeds) > 2 and list(seeds) == list(range(seeds[0], seeds[-1] + 1)):
+        return f"{seeds[0]} to {seeds[-1]}"
+    return ", ".join(map(str, seeds))
 
 
 def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:

@@ -130,6 +130,17 @@ def test_success_is_that_of_the_end(trained):
     assert [render.episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
 
 
+def test_pictures_side_by_side(trained, tmp_path, monkeypatch, can_draw):
+    """After the decisions that are asked for; the last one again after the end."""
+    if not can_draw:
+        return
+    small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
+    assert call(monkeypatch, "run=x", "at=0,5,20", *small) == 0
+    first, middle, last = np.split(iio.imread(tmp_path / "a.png"), 3, axis=1)
+    np.testing.assert_array_equal(middle, last)
+    assert (first != last).any()
+
+
 def test_a_world_that_cannot_be_drawn_is_one_line(trained, monkeypatch, capsys, tmp_path):
     monkeypatch.setattr(offscreen, "backend", lambda: "egl")
     world = SimpleNamespace(spec=SPEC, reset=Slider().reset, step=Slider().step)
@@ -165,6 +176,7 @@ def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsy
         (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4, .gif, .png"),
         (["run=x", "width=63"], "width=63: must be an even number, 2 or more"),
         (["run=x", "episode_steps=0"], "episode_steps=0: must be a whole number, 1 or more"),
+        (["run=x", "at=0,5"], "at=0,5: needs out=FILE.png"),
         (["run=x", "seed=five"], "seed=five: must be a whole number, 0 or more"),
         (["run=x", "colour=red"], "colour=red: unknown argument"),
         (["run=x", "seed=5"], "seed=5: the run has 3, 4"),

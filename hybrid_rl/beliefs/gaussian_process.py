@@ -15,6 +15,7 @@ import jax.numpy as jnp
 from jax import Array
 from jax.scipy.linalg import solve_triangular
 
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.types import Spec
 
 
@@ -44,9 +45,7 @@ class GaussianProcess:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("size", "capacity", "length", "signal", "noise"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"belief.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "belief", "size", "capacity", "length", "signal", "noise")
 
     def init(self, key: Array, spec: Spec) -> GPState:
         """The belief before any measurement; the key is not used."""

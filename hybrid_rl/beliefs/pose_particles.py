@@ -28,6 +28,7 @@ from jax import Array
 from hybrid_rl.core import poses, rejuvenation, resampling
 from hybrid_rl.core.branching import when_any
 from hybrid_rl.core.domain import Box
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import ContactMap
 from hybrid_rl.types import Spec
 
@@ -73,9 +74,9 @@ class PoseParticles:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("particles", "capacity", "moves", "every", "trust", "subset", "length"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"belief.{name}={getattr(self, name)}: must be above 0")
+        above_zero(
+            self, "belief", "particles", "capacity", "moves", "every", "trust", "subset", "length"
+        )
         for name, choices in (("kind", KINDS), ("measure", MEASURES)):
             if getattr(self, name) not in choices:
                 words = ", ".join(choices)

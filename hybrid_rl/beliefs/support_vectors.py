@@ -17,6 +17,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import support_vectors as svm
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.core.support_vectors import Machine
 from hybrid_rl.types import Spec
 
@@ -44,9 +45,7 @@ class SupportVectors:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("size", "capacity", "length", "cost", "slope", "iterations"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"belief.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "belief", "size", "capacity", "length", "cost", "slope", "iterations")
         if self.apart < 0:
             raise ValueError(f"belief.apart={self.apart}: must be 0 or more")
         if self.measure not in MEASURES:

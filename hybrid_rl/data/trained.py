@@ -10,17 +10,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import jax
 import numpy as np
 from jax import Array
 
 from hybrid_rl.core import archive
-from hybrid_rl.protocols import Env, Policy
+from hybrid_rl.protocols import Env
 from hybrid_rl.types import PyTree, Spec
-
-POLICIES = "hybrid_rl.policies."
 
 
 def save(
@@ -39,28 +37,60 @@ def save(
     archive.write(file, task, spec, arrays)
 
 
-def described(file: str) -> Policy:
+def described(file: str) -> Any:
     """The policy that `file` describes: its class and fields, without parameters.
 
     Raises:
-        ValueError: if the file is unusable, or does not describe a policy of hybrid_rl.policies.
+        ValueError: if the file is unusable, or does not describe a policy of hybrid_rl.
     """
     prefix = f"policy.file={file}:"
     text = archive.read(prefix, file, hint=archive.WRITE).get(archive.ABOUT)
     if text is None:
         raise ValueError(f"{prefix} does not describe its policy; {archive.WRITE}")
     try:
-        fields = dict(json.loads(str(text))["policy"])
-        target = str(fields.pop("_target_"))
-        module, _, name = target.rpartition(".")
-        if not module.startswith(POLICIES):
-            raise ValueError(target)
-        part = getattr(import_module(module), name)
-        if not (isinstance(part, type) and is_dataclass(part) and part.__module__ == module):
-            raise ValueError(target)
-        return cast(Policy, part(**fields))
-    except (ValueError, TypeError, KeyError, ImportError, AttributeError) as error:
-        raise ValueError(f"{prefix} describes no policy of hybrid_rl ({error})") from error
+        node = json.loads(str(text))["policy"]
+    except (ValueError, TypeError, KeyError) as error:
+        raise ValueError(f"{prefix} its description lacks policy, or is damaged") from error
+    policy = part(prefix, node)
+    if not hasattr(policy, "mean"):
+        raise ValueError(f"{prefix} describes no policy")
+    return policy
+
+
+def part(prefix: str, node: Any) -> Any:
+    """The part that `node` of a description names, with the parts in it.
+
+    Nothing but dataclasses of hybrid_rl is called, since a file may come from anywhere. prefix:
+    the beginning of every message.
+
+    Raises:
+        ValueError: for another class, or fields that it does not have or accept.
+    """
+    if isinstance(node, list):
+        return [part(prefix, each) for each in node]
+    if not isinstance(node, dict):
+        return node
+    fields = {key: part(prefix, value) for key, value in node.items() if key != "_target_"}
+    if "_target_" not in node:
+        return fields
+    target = str(node["_target_"])
+    try:
+        return _class(target)(**fields)
+    except (ImportError, AttributeError) as error:
+        raise ValueError(f"{prefix} {target} is no part of hybrid_rl") from error
+    except TypeError as error:
+        raise ValueError(f"{prefix} {target}: {error}") from error
+
+
+def _class(target: str) -> Any:
+    """The dataclass of hybrid_rl of this name; ImportError or AttributeError if there is none."""
+    module, _, name = target.rpartition(".")
+    if not module.startswith("hybrid_rl."):
+        raise ImportError(target)
+    found = getattr(import_module(module), name)
+    if not (isinstance(found, type) and is_dataclass(found) and found.__module__ == module):
+        raise ImportError(target)
+    return found
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.protocols import Critic, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -59,13 +60,8 @@ class DDPG:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        if not 0 <= self.discount < 1:
-            raise ValueError(f"policy_learner.discount={self.discount}: must lie in [0, 1)")
-        if not 0 < self.tau <= 1:
-            raise ValueError(f"policy_learner.tau={self.tau}: must lie in (0, 1]")
-        for name in ("policy_learning_rate", "critic_learning_rate"):
-            if getattr(self, name) <= 0:
-                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
+        discount_and_tau(self)
+        above_zero(self, "policy_learner", "policy_learning_rate", "critic_learning_rate")
 
     def init(self, key: Array, spec: Spec) -> DDPGState:
         """Initial parameters, optimisers and targets. The key is consumed."""

@@ -20,6 +20,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import least_squares
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import LatestLearner, LinearModel
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -82,9 +83,7 @@ class EmbeddingLearner:
                 raise ValueError(
                     f"model_learner.{name}={value}: must be a whole number, {low} or more"
                 )
-        for name in ("learning_rate", "prior"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"model_learner.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "model_learner", "learning_rate", "prior")
 
     @property
     def owns(self) -> tuple[str, ...]:

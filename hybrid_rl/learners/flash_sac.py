@@ -23,6 +23,7 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.protocols import BatchPolicy, CategoricalCritic
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -67,13 +68,8 @@ class FlashSAC:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        if not 0 <= self.discount < 1:
-            raise ValueError(f"policy_learner.discount={self.discount}: must lie in [0, 1)")
-        if not 0 < self.tau <= 1:
-            raise ValueError(f"policy_learner.tau={self.tau}: must lie in (0, 1]")
-        for name in ("learning_rate", "alpha", "target_sigma"):
-            if getattr(self, name) <= 0:
-                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
+        discount_and_tau(self)
+        above_zero(self, "policy_learner", "learning_rate", "alpha", "target_sigma")
         if not isinstance(self.batches, int) or self.batches < 1:
             raise ValueError(
                 f"policy_learner.batches={self.batches}: must be a whole number, 1 or more"

@@ -22,6 +22,7 @@ from jax import Array
 
 from hybrid_rl.core import soft_return
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.protocols import Critic, Imagination, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Imagined, Params, Spec
 
@@ -70,13 +71,8 @@ class SAC:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        if not 0 <= self.discount < 1:
-            raise ValueError(f"policy_learner.discount={self.discount}: must lie in [0, 1)")
-        if not 0 < self.tau <= 1:
-            raise ValueError(f"policy_learner.tau={self.tau}: must lie in (0, 1]")
-        for name in ("policy_learning_rate", "critic_learning_rate", "alpha"):
-            if getattr(self, name) <= 0:
-                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be above 0")
+        discount_and_tau(self)
+        above_zero(self, "policy_learner", "policy_learning_rate", "critic_learning_rate", "alpha")
         if self.max_grad_norm is not None and not self.max_grad_norm > 0:
             raise ValueError(
                 f"policy_learner.max_grad_norm={self.max_grad_norm}: must be above 0, or null"

@@ -14,6 +14,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import least_squares
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import LinearModel
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -37,9 +38,7 @@ class Information:
         """Check the fields."""
         if self.criterion not in CRITERIA:
             raise ValueError(f"objective.criterion={self.criterion}: choose {', '.join(CRITERIA)}")
-        for name in ("noise", "floor"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"objective.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "objective", "noise", "floor")
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: what the data say is in the model's parameters."""

@@ -15,6 +15,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import ergodic
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import Critic, Policy, Trainable
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -37,9 +38,7 @@ class UtilityErgodic:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("samples", "variance", "reach", "sharpness"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"utility.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "utility", "samples", "variance", "reach", "sharpness")
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory."""

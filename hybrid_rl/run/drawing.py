@@ -51,6 +51,13 @@ def draw(
     return out
 
 
+def draw_beside(
+    scene: str, qpos: np.ndarray, out: Path, width: int = 640, height: int = 480
+) -> None:
+    """Writes a .png of one picture beside the other, for each row of qpos [frames, nq]."""
+    _write_png(out, [np.hstack(list(frames(scene, qpos, width, height)))], 0.0)
+
+
 def frames(
     scene: str, qpos: np.ndarray, width: int = 640, height: int = 480
 ) -> Iterator[np.ndarray]:

@@ -14,11 +14,14 @@ def trajectories(run: Run, seeds: int, steps: int) -> np.ndarray:
     """Trajectories [seeds, steps+1, v] of the search states, without learning."""
     import jax
 
-    from hybrid_rl.training.rollout import rollout
+    from hybrid_rl.training.rollout import rollout_with_actions
     from hybrid_rl.types import Params
 
     controller = run.controllers["full"]
-    one = lambda key: rollout(run.agent.episode, controller, Params(), key, steps).obs  # noqa: E731
+
+    def one(key: Any) -> Any:
+        return rollout_with_actions(run.agent.episode, controller, Params(), key, steps)[1].obs
+
     obs = jax.jit(jax.vmap(one))(jax.random.split(jax.random.key(run.config.seed), seeds))
     return np.asarray(objective(run).domain.of(obs))
 

@@ -13,6 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import Target
 from hybrid_rl.types import Params, PyTree
 
@@ -33,9 +34,7 @@ class Likely:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("bandwidth", "power"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"target.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "target", "bandwidth", "power")
 
     def evidence(self, params: Params, x: Array) -> PyTree:
         """What the other target sums over the labels."""

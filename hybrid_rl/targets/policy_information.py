@@ -21,6 +21,7 @@ from jax import Array
 from hybrid_rl.core import fisher
 from hybrid_rl.core.analytic import require_equilibrium
 from hybrid_rl.core.domain import Box
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import BalancedEnv, UnsquashedPolicy
 from hybrid_rl.types import Params
 
@@ -50,9 +51,7 @@ class PolicyInformation:
         """Check the fields."""
         if self.criterion not in CRITERIA:
             raise ValueError(f"target.criterion={self.criterion}: choose {', '.join(CRITERIA)}")
-        for name in ("sigma", "floor"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"target.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "target", "sigma", "floor")
         if not hasattr(self.policy, "unsquashed"):
             kind = type(self.policy).__name__
             raise ValueError(f"target.policy={kind}: needs policy=deterministic")

@@ -14,6 +14,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import Policy
 from hybrid_rl.types import Params
 
@@ -32,9 +33,7 @@ class PolicyResidual:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("bandwidth", "floor"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"target.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "target", "bandwidth", "floor")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at the planning state s [n], up to a constant; needs params.belief."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from jax import Array
 
+from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.protocols import Belief
 from hybrid_rl.types import Params
 
@@ -22,9 +23,7 @@ class UpperConfidenceBound:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("kappa", "sharpness"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"target.{name}={getattr(self, name)}: must be above 0")
+        above_zero(self, "target", "kappa", "sharpness")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v], up to a constant."""

@@ -43,20 +43,26 @@ def advance(
         return (carry[0] < rounds) & ~jnp.all(carry[1].done)
 
     def decide(carry: tuple) -> tuple:
-        i, env, control, keys = carry
-        keys, now = _split(keys)
-        u, control, _ = act(controller, params, control, env, now)
-        after = jax.vmap(episode.step)(env, u)
-        frozen = jax.tree.map(
-            lambda old, new: jnp.where(
-                env.done.reshape(env.done.shape + (1,) * (new.ndim - 1)), old, new
-            ),
-            env,
-            after,
-        )
-        return i + 1, frozen, control, keys
+        i, *rest = carry
+        return i + 1, *_decided(episode, controller, params, tuple(rest))
 
     return jax.lax.while_loop(unfinished, decide, (jnp.zeros((), jnp.int32), *carry))[1:]
+
+
+def _decided(episode: Episode, controller: Controller, params: Params, carry: tuple) -> tuple:
+    """The `carry` of `begin` after one more decision in each episode that is not done."""
+    env, control, keys = carry
+    keys, now = _split(keys)
+    u, control, _ = act(controller, params, control, env, now)
+    after = jax.vmap(episode.step)(env, u)
+    frozen = jax.tree.map(
+        lambda old, new: jnp.where(
+            env.done.reshape(env.done.shape + (1,) * (new.ndim - 1)), old, new
+        ),
+        env,
+        after,
+    )
+    return frozen, control, keys
 
 
 def scores(env: EnvState) -> dict[str, Array]:
@@ -79,8 +85,19 @@ def evaluate_episodes(
 def rollout(
     episode: Episode, controller: Controller, params: Params, key: Array, steps: int
 ) -> EnvState:
-    """The states [steps+1, ...] of one episode from its reset; the last is repeated once done."""
-    return rollout_with_actions(episode, controller, params, key, steps)[1]
+    """The states [steps+1, ...] of one episode from its reset; the last is repeated once done.
+
+    It is the episode that `evaluate_episodes` makes of the key.
+    """
+
+    def decide(carry: tuple, _: None) -> tuple[tuple, EnvState]:
+        carry = _decided(episode, controller, params, carry)
+        return carry, carry[0]
+
+    carry = begin(episode, controller, key[None])
+    _, states = jax.lax.scan(decide, carry, length=steps)
+    join = jax.tree.map(lambda first, rest: jnp.concatenate([first[None], rest]), carry[0], states)
+    return jax.tree.map(lambda leaf: leaf[:, 0], join)
 
 
 def rollout_with_actions(

@@ -79,9 +79,11 @@ def test_the_policy_is_the_one_that_the_file_describes(file: Path) -> None:
     trained, x = opened(file, policy=None), jnp.array([0.3, -0.2, 1.5])
     assert trained.policy == policy
     np.testing.assert_array_equal(trained.mean((), x), policy.mean(params, x))
-    save(file, "pendulum", Pendulum().spec, params, about | {"policy": {"_target_": "os.system"}})
-    with pytest.raises(ValueError, match="describes no policy of hybrid_rl"):
-        opened(file, policy=None)
+    bad = {"os.system": "is no part of", "hybrid_rl.envs.analytic.pendulum.Pendulum": "no policy"}
+    for target, words in bad.items():
+        save(file, "pendulum", Pendulum().spec, params, about | {"policy": {"_target_": target}})
+        with pytest.raises(ValueError, match=words):
+            opened(file, policy=None)
     save(file, "pendulum", Pendulum().spec, params)
     with pytest.raises(ValueError, match="does not describe its policy; `python"):
         opened(file, policy=None)

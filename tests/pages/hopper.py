@@ -105,7 +105,7 @@ PLAIN = [
     "on seeds 0 to 9 (",
     "Seeds 0 to 9 of the earlier default are",
     "excludes zero, at 50,000",
-    "at 50,000). Changing",
+    "at 50,000). To choose",
     "from the 160 runs",
     "at 50,000, # at 75,000",
     "[over 30 seeds",

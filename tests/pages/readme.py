@@ -75,6 +75,6 @@ PLAIN = [
     "(position weight 500)",
     "SE(3)",
     "Gymnasium v5",
-    "after 6,000 decisions, ten minutes",
+    "after 6,000 decisions, ten minutes of the robot's time",
     "Apache-2.0",
 ]

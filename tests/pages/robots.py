@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from pages import ant, planned, sawyer
+from pages import ant, failures, planned, sawyer
 from pages.ant import expert
 from pages.cited import ROOT, Table, Text
 from pages.values import ahead, curve, number, read
@@ -86,6 +86,7 @@ CITED = [
     *planned.CITED,
     *sawyer.CITED,
     *ant.CITED,
+    *failures.CITED,
     Table(
         "after 20 episodes | evaluation return, IQM and 95% band",
         lambda label, _: curve("fig_3_3", label).at(2_000),
@@ -172,6 +173,7 @@ PLAIN = [
     *planned.PLAIN,
     *sawyer.PLAIN,
     *ant.PLAIN,
+    *failures.PLAIN,
     # settings
     "columns 1, 2 and 10 (`num_demonstrations=1,2,10`)",
     "seeds 0 to 9, 10 evaluation episodes per seed",

@@ -12,7 +12,7 @@ from jax import Array
 from hybrid_rl.errors import UsageError
 from hybrid_rl.evaluate import Trained
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.rollout import evaluate_episodes
+from hybrid_rl.training.rollout import evaluate_episodes, rollout
 from hybrid_rl.types import EnvState, Params, Spec
 
 
@@ -58,6 +58,15 @@ def test_an_evaluation_has_returns_and_successes() -> None:
     success = np.asarray(got["success"])
     assert set(success) == {0.0, 1.0}
     np.testing.assert_array_equal(got["return"], 6 * success)  # 1 + 2 + 3, and nothing after
+
+
+def test_a_rollout_is_the_episode_of_the_evaluation() -> None:
+    """With the same draws of its controller."""
+    keys = jax.random.split(jax.random.key(0), 16)
+    episode = Episode(Walk(), steps=5)
+    got = evaluate_episodes(episode, Draws(), Params(), keys)
+    one = jax.vmap(lambda key: rollout(episode, Draws(), Params(), key, 5))
+    np.testing.assert_array_equal(one(keys).info["return"][:, -1], got["return"])
 
 
 def test_an_evaluation_of_a_task_without_success_has_none() -> None:
