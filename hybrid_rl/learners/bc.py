@@ -7,8 +7,9 @@ Juditsky 1992, with exponential weights):
 
     w_bar += average (w - w_bar)   after every gradient step; w_bar = w at first
 
-The batch of experience is not used. Actions are clipped to [-edge, edge], since the density of a
-squashed Gaussian is unbounded at -1 and 1.
+The decay of weights is AdamW's (Loshchilov and Hutter 2019). The batch of experience is not used.
+Actions are clipped to [-edge, edge], since the density of a squashed Gaussian is unbounded at -1
+and 1.
 """
 
 from dataclasses import dataclass
@@ -41,7 +42,7 @@ class BehaviourCloning:
     Without `demonstrations` it only holds the parameters of a trained policy.
 
     Raises:
-        ValueError: for a rate, an edge or an average out of range.
+        ValueError: for a rate, an edge, a decay or an average out of range.
     """
 
     policy: LearnedPolicy
@@ -51,6 +52,7 @@ class BehaviourCloning:
     edge: float = 0.99  # bound of the imitated actions
     batch_size: int = 128
     updates: float = 0.25  # per decision
+    weight_decay: float = 0.0  # per unit of learning rate
     average: float | None = None  # share of the new weights in the mean that acts; None: no mean
 
     data: ClassVar[str] = "uniform"
@@ -64,6 +66,8 @@ class BehaviourCloning:
             raise ValueError(f"cloning_learner.learning_rate={self.learning_rate}: must be above 0")
         if not 0 < self.edge < 1:
             raise ValueError(f"cloning_learner.edge={self.edge}: must lie in (0, 1)")
+        if self.weight_decay < 0:
+            raise ValueError(f"cloning_learner.weight_decay={self.weight_decay}: must be 0 or more")
         if self.average is not None and not 0 < self.average <= 1:
             raise ValueError(f"cloning_learner.average={self.average}: must lie in (0, 1], or null")
 
@@ -75,7 +79,12 @@ class BehaviourCloning:
             x = self._states(model, self.demonstrations.load().obs)
             policy = self.policy.observe(policy, x)
         average = None if self.average is None else policy
-        return CloningState(policy, optax.adam(self.learning_rate).init(policy), average)
+        return CloningState(policy, self._optimiser().init(policy), average)
+
+    def _optimiser(self) -> optax.GradientTransformation:
+        if self.weight_decay:
+            return optax.adamw(self.learning_rate, weight_decay=self.weight_decay)
+        return optax.adam(self.learning_rate)
 
     def _states(self, model: Any, obs: Any) -> Array:
         """Planning states [B, n] of observations [B, o] with model parameters `model`."""
@@ -99,8 +108,7 @@ class BehaviourCloning:
             return -self.policy.log_prob(policy, x, u).mean()
 
         value, grads = jax.value_and_grad(loss)(state.policy)
-        adam = optax.adam(self.learning_rate)
-        change, optimiser = adam.update(grads, state.optimiser, state.policy)
+        change, optimiser = self._optimiser().update(grads, state.optimiser, state.policy)
         policy, average = optax.apply_updates(state.policy, change), None
         if self.average is not None:
             average = optax.incremental_update(policy, state.average, self.average)

@@ -6,6 +6,9 @@ Behaviour cloning then is least squares: with `clip` of mu(x) - u, with `tanh` o
 `unsquashed` is mu(x), whose derivatives in the weights give the Fisher information of a
 demonstration. Source: thesis section 4.2, with sigma "assumed known"; the squashing is ours.
 
+With `saturation` s an action of s or more counts as one that was clipped: mu(x) may lie beyond it,
+so the error counts on one side only (a censored regression, as in Tobin 1958, by squares).
+
 `Clones` are several such networks with different initial weights, of which the first one acts, or
 the mean of their mu (an ensemble: Dietterich 2000, without bootstrap samples).
 """
@@ -32,7 +35,7 @@ class Deterministic:
     Its parameters are the network's "weights" and, with `normalise`, statistics of "state".
 
     Raises:
-        ValueError: for invalid widths, activations, standard deviations or squashing.
+        ValueError: for invalid widths, activations, standard deviations, squashing or saturation.
     """
 
     hidden: tuple[int, ...] = (32, 32)
@@ -40,6 +43,7 @@ class Deterministic:
     sigma: float = 1.0  # of z
     squash: str = "tanh"  # or clip
     normalise: bool = False
+    saturation: float | None = None  # [u] actions of this size or more count as clipped
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -49,6 +53,8 @@ class Deterministic:
             raise ValueError(f"policy.sigma={self.sigma}: must be above 0")
         if self.squash not in SQUASHES:
             raise ValueError(f"policy.squash={self.squash}: choose {' or '.join(SQUASHES)}")
+        if self.saturation is not None and not 0 < self.saturation < 1:
+            raise ValueError(f"policy.saturation={self.saturation}: must lie in (0, 1), or null")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters. The key is consumed."""
@@ -106,8 +112,13 @@ class Deterministic:
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """The log-density [...] of z at actions u [..., m], inside (-1, 1) with tanh."""
+        s = self.saturation
+        u = u if s is None else jnp.clip(u, -s, s)
         z = jnp.arctanh(u) if self.squash == "tanh" else u
-        return self._log_normal((z - self.unsquashed(params, x)) / self.sigma)
+        error = z - self.unsquashed(params, x)
+        if s is not None:
+            error = jnp.where(jnp.abs(u) < s, error, jnp.sign(u) * jax.nn.relu(jnp.sign(u) * error))
+        return self._log_normal(error / self.sigma)
 
     def _log_normal(self, noise: Array) -> Array:
         constant = jnp.log(self.sigma) + 0.5 * jnp.log(2 * jnp.pi)

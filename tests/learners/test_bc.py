@@ -76,6 +76,19 @@ def test_actions_at_the_edge_are_bounded() -> None:
     np.testing.assert_allclose(mean, 0.9, atol=0.05)
 
 
+def test_weights_decay() -> None:
+    """After one step they differ by rate x decay x first weights from those without decay."""
+    policy, rate = TanhGaussian(hidden=(4,)), 0.01
+    first, plain = (
+        train(BehaviourCloning(policy, Shown(100), learning_rate=rate), n) for n in (0, 1)
+    )
+    decayed = train(BehaviourCloning(policy, Shown(100), learning_rate=rate, weight_decay=0.5), 1)
+    for w0, w, w_decayed in zip(
+        *(jax.tree.leaves(state.policy) for state in (first, plain, decayed)), strict=True
+    ):
+        np.testing.assert_allclose(w_decayed, w - rate * 0.5 * w0, rtol=1e-5, atol=1e-7)
+
+
 def test_the_mean_of_the_weights_acts() -> None:
     """It is the recursion in NumPy over the weights of a learner without it."""
     policy = TanhGaussian(hidden=(4,), normalise=True)
@@ -90,7 +103,9 @@ def test_the_mean_of_the_weights_acts() -> None:
         np.testing.assert_allclose(leaf, wanted, rtol=1e-4, atol=1e-6)
 
 
-@pytest.mark.parametrize("fields", [{"edge": 1.0}, {"learning_rate": 0.0}, {"average": 0.0}])
+@pytest.mark.parametrize(
+    "fields", [{"edge": 1.0}, {"learning_rate": 0.0}, {"average": 0.0}, {"weight_decay": -1.0}]
+)
 def test_bad_fields_are_refused(fields: dict) -> None:
     """The error names the field."""
     with pytest.raises(ValueError, match=f"cloning_learner.{next(iter(fields))}"):

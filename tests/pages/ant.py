@@ -262,7 +262,6 @@ PLAIN = [
     "five clones of three layers of 256 silu units",
     "2,500 gradient steps at 0.003 on",
     "Return over 400 decisions, numbers in",
-    "not the 95% that were the aim",
     "returns below 1,000; the others",
     "have less than 1,000, and in",
     "of the episodes have less than 1,000",

@@ -2,6 +2,7 @@
 
 from pages import (
     ant,
+    ant_six,
     chapter3,
     chapter6_values,
     chapter7_falls,
@@ -33,6 +34,7 @@ FALLS = chapter7_falls.methods("2")["koopman_active"]
 AT_REST = FALLS["at_rest"]["4"][0] * FALLS["trials"]
 SEARCH = chapter6_values.search(chapter6_values.SEARCHES["kle3_bayesopt"], "trials that reach it")
 CITED = [
+    Text("[#% with three changes]", ant_six.changed("seeds 0 to 9", "share")),
     Text("from six demonstrations (#% of its", ant.cloned("6", "share of the expert's")),
     Text("to a return of # (one run)", [results.LIGHT.at(30_000)[0]]),
     Table(" | hybrid_stochastic | nn_mppi | sac", main_table),

@@ -32,6 +32,30 @@ def test_the_density_is_a_gaussian_before_squashing(squash: str, inverse: Any) -
     assert (np.abs(policy.mean(params, 1e3 * X)) <= 1).all()
 
 
+@pytest.mark.parametrize(("squash", "inverse"), [("tanh", np.arctanh), ("clip", np.asarray)])
+def test_beyond_saturated_actions_there_is_no_error(squash: str, inverse: Any) -> None:
+    """An action of `saturation` or more is a bound of mu: of -0.95 from above, of 1 from below."""
+    policy = Deterministic(hidden=(), squash=squash, saturation=0.9)
+    params = policy.init(jax.random.key(0), SPEC)
+
+    def density(mu: list[float], u: list[float]) -> float:
+        last = {"Dense_0": {"kernel": jnp.zeros((3, 2)), "bias": jnp.array(mu)}}
+        return float(policy.log_prob({**params, "weights": last}, X[0], jnp.array(u)))
+
+    highest, at = 2 * norm.logpdf(0), float(inverse(0.9))
+    assert density([at + 1, -at - 2], [1.0, -0.95]) == pytest.approx(highest, rel=1e-5)
+    assert density([at - 1, -at + 2], [1.0, -0.95]) == pytest.approx(highest - 0.5 - 2, rel=1e-5)
+    inside = float(inverse(0.5)) + 1  # not saturated: the error counts on both sides
+    assert density([inside, -at], [0.5, -0.95]) == pytest.approx(highest - 0.5, rel=1e-5)
+
+
+@pytest.mark.parametrize("saturation", [0.0, 1.0])
+def test_a_saturation_out_of_range_is_refused(saturation: float) -> None:
+    """The error names the field."""
+    with pytest.raises(ValueError, match=r"policy\.saturation"):
+        Deterministic(saturation=saturation)
+
+
 @pytest.mark.parametrize("squash", ["tanh", "clip"])
 def test_the_variance_is_that_of_samples(squash: str) -> None:
     """Of 100,000, for a small sigma."""
