@@ -21,6 +21,7 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lift, lifted_spec
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
@@ -52,7 +53,7 @@ class BehaviourCloning:
     edge: float = 0.99  # bound of the imitated actions
     batch_size: int = 128
     updates: float = 0.25  # per decision
-    weight_decay: float = 0.0  # per unit of learning rate
+    weight_decay: float = 0.0  # of the layers' matrices, per unit of learning rate
     average: float | None = None  # share of the new weights in the mean that acts; None: no mean
 
     data: ClassVar[str] = "uniform"
@@ -82,9 +83,7 @@ class BehaviourCloning:
         return CloningState(policy, self._optimiser().init(policy), average)
 
     def _optimiser(self) -> optax.GradientTransformation:
-        if self.weight_decay:
-            return optax.adamw(self.learning_rate, weight_decay=self.weight_decay)
-        return optax.adam(self.learning_rate)
+        return adamw(self.learning_rate, self.weight_decay)
 
     def _states(self, model: Any, obs: Any) -> Array:
         """Planning states [B, n] of observations [B, o] with model parameters `model`."""

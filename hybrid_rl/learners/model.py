@@ -23,6 +23,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import held_out
+from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.protocols import Reward, Trainable
 from hybrid_rl.types import Batch, Params, Spec
@@ -114,9 +115,7 @@ class ModelLearner:
         return getattr(self.model, "elites", None)
 
     def _optimiser(self) -> optax.GradientTransformation:
-        adam = optax.adam(self.learning_rate)
-        if self.weight_decay:
-            adam = optax.adamw(self.learning_rate, weight_decay=self.weight_decay, mask=_matrices)
+        adam = adamw(self.learning_rate, self.weight_decay)
         if self.max_grad_norm is None:
             return adam
         return optax.chain(optax.clip_by_global_norm(self.max_grad_norm), adam)
@@ -208,13 +207,6 @@ class ModelLearner:
             return each(tuned, *known, target, first.terminated).mean()
 
         return reward, loss
-
-
-def _matrices(weights: Any) -> Any:
-    """Which leaves are matrices of layers: true for "kernel", false for biases and deviations."""
-    return jax.tree_util.tree_map_with_path(
-        lambda path, _: getattr(path[-1], "key", None) == "kernel", weights
-    )
 
 
 def _weights(model: Any, reward: Any) -> tuple[Any, Any]:

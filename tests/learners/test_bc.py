@@ -76,17 +76,20 @@ def test_actions_at_the_edge_are_bounded() -> None:
     np.testing.assert_allclose(mean, 0.9, atol=0.05)
 
 
-def test_weights_decay() -> None:
-    """After one step they differ by rate x decay x first weights from those without decay."""
-    policy, rate = TanhGaussian(hidden=(4,)), 0.01
+def test_matrices_decay_and_nothing_else() -> None:
+    """After one step by rate x decay x first matrix; biases and statistics as without decay."""
+    policy, rate = TanhGaussian(hidden=(4,), normalise=True), 0.01
     first, plain = (
         train(BehaviourCloning(policy, Shown(100), learning_rate=rate), n) for n in (0, 1)
     )
     decayed = train(BehaviourCloning(policy, Shown(100), learning_rate=rate, weight_decay=0.5), 1)
-    for w0, w, w_decayed in zip(
-        *(jax.tree.leaves(state.policy) for state in (first, plain, decayed)), strict=True
-    ):
-        np.testing.assert_allclose(w_decayed, w - rate * 0.5 * w0, rtol=1e-5, atol=1e-7)
+    trees = (jax.tree.leaves_with_path(state.policy) for state in (first, plain, decayed))
+    kinds = set()
+    for (path, w0), (_, w), (_, w_decayed) in zip(*trees, strict=True):
+        decay = rate * 0.5 if getattr(path[-1], "key", None) == "kernel" else 0.0
+        kinds.add(decay)
+        np.testing.assert_allclose(w_decayed, w - decay * w0, rtol=1e-5, atol=1e-7)
+    assert len(kinds) == 2
 
 
 def test_the_mean_of_the_weights_acts() -> None:

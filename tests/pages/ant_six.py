@@ -39,5 +39,6 @@ PLAIN = [
     "Seeds 0 to 9, 100 episodes a seed, one core of an AMD EPYC:",
     "on seeds 200 to 204. In the second",
     "is just above 95%",
+    "on seeds 200 to 204, among three",
     "less than 1,000. The\n",
 ]

@@ -39,8 +39,8 @@ CITED = [
         [float(f(shifted("hopper").seeds(50_000))) for f in (np.mean, np.min)],
     ),
     Text(
-        "At 50,000 the mean is # instead of #, two thirds of it because of one seed whose policy "
-        "had just lost its gait (#; it had # ten",
+        "At 50,000 the mean is # instead of #, two thirds of the difference because of one seed "
+        "whose policy had just lost its gait (#; it had # ten",
         [
             float(shifted("half-cheetah").seeds(50_000).mean()),
             float(shifted("half-cheetah", "default").seeds(50_000).mean()),
@@ -115,7 +115,7 @@ PLAIN = [
     "a time limit at 65,000 decisions",
     "At 50,000 the mean is",
     "and the lowest of ten seeds",
-    "From 25,000 on the IQM stays above 3,000",
+    "From 20,000 on the IQM stays above 3,000",
     "two of ten seeds had an evaluation below 2,800 at 40,000",
     "lost its gait",
     "200 to 204, at 20,000 decisions, it is behind",
