@@ -66,6 +66,17 @@ def test_a_signal_during_imports_is_one_line(command, number, after, tmp_path):
     assert ended(process, number) == ""
 
 
+def test_a_command_starts_no_process_while_it_imports(monkeypatch):
+    """A child gets the terminal's Ctrl-C too, and would print a traceback of its own."""
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    code = """
+sys.addaudithook(lambda event, what: event == "subprocess.Popen" and say(what[1]))
+import hybrid_rl.train, hybrid_rl.envs.mujoco.offscreen
+"""
+    out, err = start("-c", BEGIN + code).communicate(timeout=60)
+    assert (out, err) == ("", "")
+
+
 def test_a_signal_during_compiling_ends_the_run_at_once(tmp_path):
     off = ["compile_cache=null", f"run_dir={tmp_path}", "policy.hidden=[24,24]"]
     process = start("-m", "hybrid_rl.train", *TINY, "algo=hybrid_stochastic", *off)
