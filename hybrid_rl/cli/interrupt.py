@@ -44,7 +44,7 @@ def install() -> None:
     if _State.installed:
         return
     _State.installed = True
-    # Importing mujoco loads GLFW by a second Python process, which would print a traceback on Ctrl-C.
+    # Importing mujoco loads GLFW by a Python child, which would print a traceback on Ctrl-C.
     os.environ.setdefault("MUJOCO_GL", "disable")  # envs/mujoco/offscreen chooses its own backend
     heard, written = os.pipe()
     os.set_blocking(written, False)
