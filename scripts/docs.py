@@ -6,10 +6,13 @@
 The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that
 their links work on GitHub and on the site. A page per method is made from conf/algo, the section of
 docs/methods.md and the docstrings of its parts; the reference from all docstrings. A warning, such
-as a link that leads nowhere, is an error. `make docs` runs it in .venv-docs.
+as a link that leads nowhere, is an error. `make docs` runs it in .venv-docs. With the environment
+variable GITHUB_REPOSITORY=OWNER/NAME, which workflows on GitHub set, notebooks link to Binder.
 """
 
 import importlib
+import json
+import os
 import re
 import shutil
 import subprocess
@@ -86,6 +89,9 @@ def copy() -> None:
         shutil.copy(ROOT / name, SOURCE / name)
     trees = "".join(tree(caption, pages) for caption, pages in PAGES.items())
     write("index.md", (ROOT / "README.md").read_text(encoding="utf-8") + trees)
+    if repository := os.environ.get("GITHUB_REPOSITORY"):
+        for name in NOTEBOOKS:
+            on_binder(f"{name}.ipynb", repository)
     results = SOURCE / "docs" / "results" / "README.md"
     others = sorted(path.stem for path in results.parent.glob("*.md") if path != results)
     with results.open("a", encoding="utf-8") as page:
@@ -95,6 +101,16 @@ def copy() -> None:
     gallery = r"^\| \| \| \|\n(?:\|.*\n)+"
     framed = re.sub(gallery, r"```{container} atlas\n\g<0>```\n", text, flags=re.MULTILINE)
     atlas.write_text(framed, encoding="utf-8")
+
+
+def on_binder(name: str, repository: str) -> None:
+    """Put a link under the title of a notebook; .binder/ says what Binder installs."""
+    path = SOURCE / name
+    notebook = json.loads(path.read_text(encoding="utf-8"))
+    url = f"https://mybinder.org/v2/gh/{repository}/HEAD?labpath={name}"
+    title, *text = notebook["cells"][0]["source"]
+    notebook["cells"][0]["source"] = [title, "\n", f"[Run it on Binder]({url})\n", *text]
+    path.write_text(json.dumps(notebook), encoding="utf-8")
 
 
 def tree(caption: str, pages: list[str]) -> str:

@@ -4,11 +4,14 @@ import json
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from rotation import share
+
+from scripts import docs
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
@@ -21,6 +24,30 @@ def test_every_method_has_one_section():
         name for line in re.findall(r"^### (.+)$", page, re.MULTILINE) for name in line.split(", ")
     ]
     assert sorted(names) == sorted(path.stem for path in (ROOT / "conf" / "algo").glob("*.yaml"))
+
+
+def test_a_workflow_on_github_links_the_notebooks_to_binder(tmp_path, monkeypatch):
+    monkeypatch.setattr(docs, "SOURCE", tmp_path)
+    monkeypatch.setenv("GITHUB_REPOSITORY", "somebody/a_fork")
+    docs.copy()
+    for path in NOTEBOOKS:
+        plain, linked = (
+            json.loads((root / "docs" / "notebooks" / path.name).read_text(encoding="utf-8"))
+            for root in (ROOT, tmp_path)
+        )
+        url = f"https://mybinder.org/v2/gh/somebody/a_fork/HEAD?labpath=docs/notebooks/{path.name}"
+        text = "".join(linked["cells"][0].pop("source"))
+        assert text.count(f"\n\n[Run it on Binder]({url})\n\n") == 1
+        assert text.replace(f"[Run it on Binder]({url})\n\n", "") == "".join(
+            plain["cells"][0].pop("source")
+        )
+        assert linked == plain
+
+
+def test_binder_has_a_python_that_the_package_supports():
+    wanted = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    version = (ROOT / ".binder" / "runtime.txt").read_text(encoding="utf-8").split("-")[1].strip()
+    assert f"Programming Language :: Python :: {version}" in wanted["classifiers"]
 
 
 def test_the_page_of_concepts_plans_with_the_adjoint_core():

@@ -187,12 +187,12 @@ PLAIN = [
     "with 10,000 it has",
     "`nn_mppi` beyond 50,000",
     # what others published
-    "MBPO 9,573, DHMBPO 9,878, the strongest SAC 7,039",
-    "MBPO 7,963, DHMBPO 7,356, SAC 5,733",
-    "(DHMBPO 20,000, MBPO 26,000)",
-    "have higher values, 9,149 at 50,000 and 11,177 at 100,000",
+    "MBPO 9,573, DHMBPO 11,177, the strongest SAC 7,039",
+    "MBPO 7,963, DHMBPO 9,149, SAC 5,733",
+    "(MBPO 26,000)",
+    "is ahead of them at 50,000",
     "(MBPO 68,000, MACURA 35,000, DHMBPO 30,000 decisions)",
-    "MBPO 1,702, DHMBPO 3,470), and",
+    "MBPO 1,702, DHMBPO 3,500), and",
     "(DHMBPO 30,000, SAC and TD-MPC2 100,000 steps",
     # read from the console; the page says so
     "to 100,000 decisions, took about 19 minutes",

@@ -92,8 +92,7 @@ def plan(label: str, column: str) -> list[float]:
 
 def latency(label: str, column: str) -> list[float]:
     """Median time [us] of a call."""
-    settings = {"light": "light", "mbpo": "default"}[column]
-    return [read("latency")["rows"][f"{label}, {settings}"]["median_us"]]
+    return [read("latency")["rows"][f"{label}, {column}"]["median_us"]]
 
 
 def seeds(label: str, column: str) -> list[float]:
@@ -158,7 +157,7 @@ CITED = [
         "is # times as fast as the true one",
         [TRUE["1 learners"]["rate"] / TRUE["MPPI on the true model"]["rate"]],
     ),
-    Table("time of an action [us] | light | mbpo", latency),
+    Table("time of an action [us] | light | default | mbpo", latency),
     Table("evaluation return at 40,000, IQM and 95% band | hybrid_stochastic | sac", seeds),
     Text("SAC in #% [#, #] of pairs", ahead(area("seeds_64"), area("seeds_64", "sac"))),
     Text(
@@ -190,6 +189,7 @@ CITED = [
     ),
 ]
 PLAIN = [
+    "runs of 300 random decisions",
     # settings
     "A decision of an arm has 20 steps",
     "With 64 worlds and more the arms",
