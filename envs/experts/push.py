@@ -18,7 +18,7 @@ from hybrid_rl.types import Params, Spec
 
 @dataclass(frozen=True)
 class PushController:
-    """Acts on the observation of `sawyer_push`; the fields are those of the environment."""
+    """Acts on the positions of `sawyer_push`; the fields are those of the environment."""
 
     state_scale: float = SawyerPush.state_scale  # of the observation [1/m]
     speed: float = SawyerPush.speed  # [m/s] at a = 1
@@ -32,7 +32,7 @@ class PushController:
         self, params: Params, state: Array, obs: Array, key: Array
     ) -> tuple[Array, Array, dict[str, Array]]:
         """Action [2], filtered velocity [2], no metrics; deterministic."""
-        reach, remaining = jnp.split(obs / self.state_scale, 2)  # b - e, b - t
+        reach, remaining = jnp.split(obs[:4] / self.state_scale, 2)  # b - e, b - t
         direction = -remaining / jnp.maximum(jnp.linalg.norm(remaining), 1e-6)
         side = jnp.stack((-direction[1], direction[0]))
         along, across = -reach @ direction, -reach @ side

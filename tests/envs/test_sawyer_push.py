@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from worlds import jitted
 
+from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.sawyer_push import ASSET, EXTRA, HEIGHT, HOME, TIP, SawyerPush
+from hybrid_rl.types import Params
 
 ALL = SawyerPush("native", reward="code", extra=tuple(EXTRA))
 TARGET, COMMAND = np.array([0.6, -0.1]), np.array([0.06, -0.09])
@@ -104,3 +106,11 @@ def test_the_heading_is_the_side_that_faces_the_rod():
         heading = float(jax.jit(ALL.heading)(obs))
         assert abs(np.sin(2 * (heading - turn))) < 1e-4  # a multiple of 90 degrees
         assert np.cos(rod - heading) > np.cos(np.pi / 4) - 1e-5
+
+
+def test_the_expert_acts_on_the_positions_whatever_else_is_observed():
+    state = scene(turn=0.4, velocity=(0.05, 0.02))
+    key, memory = jax.random.key(0), jnp.array([0.05, -0.02])
+    action, *_ = PushController().act(Params(), memory, state.obs, key)
+    alone, *_ = PushController().act(Params(), memory, state.obs[:4], key)
+    np.testing.assert_array_equal(action, alone)
