@@ -16,3 +16,13 @@ def discount_and_tau(learner: Any) -> None:
         raise ValueError(f"policy_learner.discount={learner.discount}: must lie in [0, 1)")
     if not 0 < learner.tau <= 1:
         raise ValueError(f"policy_learner.tau={learner.tau}: must lie in (0, 1]")
+
+
+def edge_and_saturation(learner: Any, section: str) -> None:
+    """Raise ValueError for a learner that clips the actions below its policy's saturation."""
+    saturation = getattr(learner.policy, "saturation", None)
+    if saturation is not None and saturation > learner.edge:
+        raise ValueError(
+            f"policy.saturation={saturation}: must be at most {section}.edge={learner.edge}, to "
+            "which demonstrated actions are clipped"
+        )

@@ -23,6 +23,7 @@ from jax import Array
 
 from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lift, lifted_spec
+from hybrid_rl.core.ranges import edge_and_saturation
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -43,7 +44,8 @@ class BehaviourCloning:
     Without `demonstrations` it only holds the parameters of a trained policy.
 
     Raises:
-        ValueError: for a rate, an edge, a decay or an average out of range.
+        ValueError: for a rate, an edge, a decay or an average out of range, or a policy whose
+            saturation is above the edge.
     """
 
     policy: LearnedPolicy
@@ -71,6 +73,7 @@ class BehaviourCloning:
             raise ValueError(f"cloning_learner.weight_decay={self.weight_decay}: must be 0 or more")
         if self.average is not None and not 0 < self.average <= 1:
             raise ValueError(f"cloning_learner.average={self.average}: must lie in (0, 1], or null")
+        edge_and_saturation(self, "cloning_learner")
 
     def init(self, key: Array, spec: Spec) -> CloningState:
         """Initial parameters and optimiser. The key is consumed."""

@@ -25,6 +25,7 @@ from jax import Array
 
 from hybrid_rl.core import labels, statistics, teaching
 from hybrid_rl.core.branching import when_any
+from hybrid_rl.core.ranges import edge_and_saturation
 from hybrid_rl.core.teaching import Answer
 from hybrid_rl.protocols import Controller, LearnedPolicy, Model, Target
 from hybrid_rl.types import Batch, Params, Spec
@@ -98,6 +99,7 @@ class DAgger:
             self._refuse("learning_rate", "must be above 0")
         if not 0 < self.edge <= 1:
             self._refuse("edge", "must lie in (0, 1]")
+        edge_and_saturation(self, "dagger_learner")
         self._check_queries()
 
     def _check_queries(self) -> None:

@@ -251,6 +251,12 @@ def test_bad_fields_are_refused(fields: dict, line: str) -> None:
         DAgger(POLICY, Linear(), **fields)
 
 
+def test_a_saturation_above_the_edge_is_refused() -> None:
+    """It would have no effect."""
+    with pytest.raises(ValueError, match=r"at most dagger_learner\.edge=0\.9,"):
+        DAgger(Deterministic(saturation=0.95), Linear(), edge=0.9)
+
+
 def test_a_teacher_of_other_sizes_is_refused() -> None:
     """Of other actions, and of other observations."""
     with pytest.raises(ValueError, match=r"expert=Linear: decides \[1\], and must map 3 "):
