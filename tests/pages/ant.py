@@ -35,27 +35,12 @@ def spread(seeds: np.ndarray | list[float]) -> list[float]:
     return [float(np.mean(seeds)), float(np.min(seeds)), float(np.max(seeds))]
 
 
-def cloned(label: str, column: str) -> list[float]:
-    """A cell of the table of the ant's clones."""
-    if label == "6":
-        seeds, episodes = six().mean(1), six().shape[1]
-    else:
-        rows = ANT["server"]["rows"]
-        row = next(row for row in rows if row["demonstrations"] == int(label))
-        seeds, episodes = np.array(row["mean"]), row["episodes"]
-    values = {
-        "seeds": [len(seeds)],
-        "episodes a seed": [episodes],
-        "mean return": spread(seeds),
-        "share of the expert's": [100 * seeds.mean() / expert().mean()],
-    }
-    return [float(value) for value in values[column]]
-
-
-def walking() -> list[float]:
-    """Mean return from 6 demonstrations of the episodes with 1,000 or more; its share [%]."""
-    mean = six()[six() >= 1000].mean()
-    return [mean, 100 * mean / expert().mean()]
+def earlier(demonstrations: int) -> list[float]:
+    """Mean return of each seed with the earlier settings."""
+    if demonstrations == 6:
+        return six().mean(1).tolist()
+    (row,) = (row for row in ANT["server"]["rows"] if row["demonstrations"] == demonstrations)
+    return row["mean"]
 
 
 def below(returns: np.ndarray) -> float:
@@ -149,23 +134,23 @@ CITED = [
         "setting, six demonstrations | held-out error | mean return | episodes below 1,000", third
     ),
     Text("it reaches # [#, #] (mean, lowest, highest seed), #%", again("clipped")[:4]),
-    Text("#% of its episodes have less than 1,000. The setting", again("clipped")[4:]),
-    Text("by the same script, has # [#, #], #% and #%", again("chosen")),
-    Text("above has # for the setting chosen", cloned("6", "mean return")[:1]),
+    Text("#% of its episodes have less than 1,000. The earlier", again("clipped")[4:]),
+    Text("by the same script, have # [#, #], #% and #%", again("chosen")),
+    Text("above has # for the earlier settings", [float(np.mean(earlier(6)))]),
     Text("(Mann-Whitney over the seeds: p = #)", [apart()]),
     Text(
         "weight decay lower the held-out error from # to\n  #, more than a fifth demonstration"
         " does (#), and the share of low episodes stays: #% and #%",
         [
-            tried("the setting chosen")["held_out"],
+            tried("the earlier settings")["held_out"],
             tried(TANH)["held_out"],
             THIRD["five_demonstrations_held_out"],
             100 * tried(TANH)["below"],
-            100 * tried("the setting chosen")["below"],
+            100 * tried("the earlier settings")["below"],
         ],
     ),
     Text(
-        "In # of # episodes (the setting chosen, 60 a seed) the return is below 1,000, and in all"
+        "In # of # episodes (the earlier settings, 60 a seed) the return is below 1,000, and in all"
         " # the torso\n  turned over. It first leans by 60 degrees after # to # decisions",
         [FALLS["low"], FALLS["episodes"], FALLS["turned"], *min_and_max(FALLS["tilt"])],
     ),
@@ -182,7 +167,6 @@ CITED = [
         "the ant in another world | seeds | episodes a seed | mean return | episodes below 1,000",
         disturbed_world,
     ),
-    Table("demonstrations | seeds | episodes a seed | mean return | share of the expert's", cloned),
     Table("setting | seeds | episodes a seed | mean return", searched),
     Table(
         "clones of other six episodes | seeds | episodes a seed | mean return"
@@ -193,12 +177,6 @@ CITED = [
         "action noise | seeds | episodes a seed | mean return | share of that expert's", disturbed
     ),
     Text("the expert's ten episodes have #.", [expert().mean()]),
-    Text("Six demonstrations give #% of the expert's return", cloned("6", "share of the expert's")),
-    Text("eight demonstrations give #%", cloned("8", "share of the expert's")),
-    Text("ten #%.\n", cloned("10", "share of the expert's")),
-    Text("The median episode has #%.", [100 * np.median(six()) / expert().mean()]),
-    Text("#% of the episodes have\n  returns below 1,000", [below(six())]),
-    Text("the others reach # on average, #%", walking()),
     Text(
         "Of # more episodes of the clones of seed 0, # have less than 1,000, and in # of them the"
         " torso was upside down at some time; with\n  clones of another expert"
@@ -229,8 +207,8 @@ CITED = [
     ),
     Text("Without the #% of", [below(CLONES)]),
     Text("episodes below 1,000 they reach #.", [CLONES[CLONES >= 1000].mean()]),
-    Text("# [#, #] with the planner", spread(ANT["hybrid"]["full"])),
-    Text("# [#, #] with its cloned policy alone", spread(ANT["hybrid"]["policy"])),
+    Text("# [#, #] with the planner", spread(ANT["best_hybrid"]["full"])),
+    Text("# [#, #] with its cloned policy alone", spread(ANT["best_hybrid"]["policy"])),
     Text(
         "another six give #% here and #% above",
         [*disturbed("0", "share of that expert's"), 100 * CLONES.mean() / OWN],
@@ -243,12 +221,12 @@ CITED = [
 ]
 PLAIN = [
     "seeds 200 to 202, 120 episodes a seed, one core of an AMD EPYC",
-    "stays below 95% as well",
+    "of these twenty stays below 95%",
     "a standard error of about 1.3 points in each row",
     "order the settings between 3% and 7%",
     "On seeds 0 to 9, 100 episodes a seed, it reaches",
-    "of its episodes have less than 1,000. The setting",
-    "(the setting chosen, 60 a seed) the return is below 1,000",
+    "of its episodes have less than 1,000. The earlier",
+    "(the earlier settings, 60 a seed) the return is below 1,000",
     "It first leans by 60 degrees",
     "From 25 to 16 decisions before",
     "In the last 5 decisions",
@@ -259,10 +237,6 @@ PLAIN = [
     "31, 21, 11 and 2 frames before the end of an episode of 370 decisions",
     "(clones of `policies/ant.npz`, seed 1)",
     "A delay of one decision (0.05 s)",
-    "five clones of three layers of 256 silu units",
-    "2,500 gradient steps at 0.003 on",
-    "Return over 400 decisions, numbers in",
-    "returns below 1,000; the others",
     "have less than 1,000, and in",
     "of the episodes have less than 1,000",
     "(seeds 0 to 9, 100 episodes a seed). Without",

@@ -1,8 +1,7 @@
 """The numbers of README.md."""
 
 from pages import (
-    ant,
-    ant_six,
+    ant_best,
     chapter3,
     chapter6_values,
     chapter7_falls,
@@ -34,8 +33,7 @@ FALLS = chapter7_falls.methods("2")["koopman_active"]
 AT_REST = FALLS["at_rest"]["4"][0] * FALLS["trials"]
 SEARCH = chapter6_values.search(chapter6_values.SEARCHES["kle3_bayesopt"], "trials that reach it")
 CITED = [
-    Text("[#% with three changes]", ant_six.changed("seeds 0 to 9", "share")),
-    Text("from six demonstrations (#% of its", ant.cloned("6", "share of the expert's")),
+    Text("from six demonstrations (#% of its", [ant_best.share(ant_best.best(6))]),
     Text("to a return of # (one run)", [results.LIGHT.at(30_000)[0]]),
     Table(" | hybrid_stochastic | nn_mppi | sac", main_table),
     Text(

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from pages import ant, ant_six, failures, planned, sawyer
+from pages import ant, ant_best, failures, planned, sawyer
 from pages.ant import expert
 from pages.cited import ROOT, Table, Text
 from pages.values import ahead, curve, number, read
@@ -86,7 +86,7 @@ CITED = [
     *planned.CITED,
     *sawyer.CITED,
     *ant.CITED,
-    *ant_six.CITED,
+    *ant_best.CITED,
     *failures.CITED,
     Table(
         "after 20 episodes | evaluation return, IQM and 95% band",
@@ -174,7 +174,7 @@ PLAIN = [
     *planned.PLAIN,
     *sawyer.PLAIN,
     *ant.PLAIN,
-    *ant_six.PLAIN,
+    *ant_best.PLAIN,
     *failures.PLAIN,
     # settings
     "columns 1, 2 and 10 (`num_demonstrations=1,2,10`)",
