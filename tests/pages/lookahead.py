@@ -49,7 +49,7 @@ PUBLISHED: dict[str, list[float]] = {  # DHMBPO's means, and where at another de
     "half-cheetah, 20,000": [7_532],
     "half-cheetah, 30,000": [8_059],
     "half-cheetah, 50,000": [9_149],
-    "half-cheetah, 85,000": [11_177, 100_000],
+    "half-cheetah, 95,000": [11_177, 100_000],
     "hopper, 20,000": [2_898],
     "walker2d, 50,000": [6_150],
     "ant, 20,000": [5_000, 50_000],
@@ -81,6 +81,12 @@ def signal(label: str, column: str) -> list[float]:
 
 
 SPEED = read("lookahead_speed")["rows"]
+BESIDE = [
+    one["decisions_per_s"]
+    for one in read("lookahead_speed")["side_by_side"].values()
+    if isinstance(one, dict)
+]
+FIRST = curve("hybrid_halfcheetah_first", "hybrid_stochastic")
 
 
 CITED = [
@@ -99,7 +105,34 @@ CITED = [
         reported,
     ),
     Table("full method | mean | lowest seed | highest seed | DHMBPO", compared),
+    Text("at 95,000 the mean is #,", [float(hybrid("half-cheetah").seeds(95_000).mean())]),
     Text("the lowest has # at 50,000", [float(hybrid("half-cheetah").seeds(50_000).min())]),
+    Text(
+        "had # at 50,000 and # at 85,000 (IQM; stopped at 86,000), these runs # and #",
+        [one.at(step)[0] for one in (FIRST, hybrid("half-cheetah")) for step in (50_000, 85_000)],
+    ),
+    Text(
+        "seed 105 has # at 40,000 and # at 70,000",
+        [hybrid("walker2d").seeds(step)[5] for step in (40_000, 70_000)],
+    ),
+    Text(
+        "# [#, #] at 20,000 and # [#, #] at 40,000.",
+        [x for step in (20_000, 40_000) for x in hybrid("walker2d").at(step)],
+    ),
+    Table(
+        "walker2d, IQM and 95% band | 20,000 | 30,000 | 40,000",
+        lambda label, column: line("walker2d", label).at(number(column)),
+    ),
+    Text("with learned ends, above, it had #", [line("walker2d", BEFORE).at(40_000)[0]]),
+    Text(
+        "# on the half-cheetah and # on the hopper (target -1.5) at 30,000, "
+        "where the default has # and #",
+        [
+            line(task, label).at(30_000)[0]
+            for labels in (("target entropy -3", "target entropy -1.5"), (SETTINGS, SETTINGS))
+            for task, label in zip(("halfcheetah", "hopper"), labels, strict=True)
+        ],
+    ),
     Text(
         "had # at 20,000, these ten have #",
         [line("hopper").at(20_000)[0], hybrid("hopper").at(20_000)[0]],
@@ -141,12 +174,17 @@ CITED = [
     *layer_norm.CITED,
     Text("it was no faster, #.", [SPEED["loops in CUDA graphs"]["decisions_per_s"]]),
     Text(
-        "The run of the picture made #, on",
+        "The first runs of seeds 100 to 109 made #, on",
         [SPEED["half-cheetah, reported seeds"]["decisions_per_s"]],
     ),
     Text(
         "# decisions after # s, # s of which compiling",
         [SPEED["half-cheetah, reported seeds"][key] for key in ("step", "wall_s", "compile_s")],
+    ),
+    Text(
+        "ten half-cheetahs made # decisions/s beside two programs of five walkers each, with # and "
+        "#: # together",
+        [*BESIDE, sum(BESIDE)],
     ),
     Table("half-cheetah | plain | per unit of variance | variance", signal),
 ]
@@ -156,14 +194,30 @@ PLAIN = [
     "are random (`policy_learner.early`): 5,000 random decisions on the walking robots, 1,000 on",
     "first temperature is 0.1",
     "The discount is 0.995",
-    "Seeds 100 to 109, one",
+    "Seeds 100 to 109, TF32, on one",
+    "Seeds 100 to 109, one H100",
     "on seeds 200 to 204 of",
-    "the half-cheetah at 86,000 decisions, the walker at 70,000, hopper and ant after 20,000",
-    "`nn_mppi`: seeds 0 to 9",
+    "half-cheetah after 95,000 decisions, the walker at 70,000, hopper and ant after 20,000",
+    "`sac`: seeds 0 to 9",
+    "on the walker: seeds 100 to 109",
     "published curve at 20,000, 30,000 and 50,000",
     "at 50,000 ahead",
-    "At 85,000 the mean",
-    "DHMBPO has at 100,000",
+    "at 95,000 the mean",
+    "at 50,000 and",
+    "at 85,000 (IQM; stopped at 86,000)",
+    "seed 105 has",
+    "at 40,000 and",
+    "at 70,000. [What",
+    "Seeds 200 to 204, one change each from today's default, 40,000 decisions",
+    "reported seeds 100 to 109 for that long",
+    "at 20,000 and 3",
+    "at 40,000.\n",
+    "discount of 0.99 it has little more",
+    "than 0.995 was not",
+    "after 20,000 decisions it is ahead, after 30,000 behind",
+    "(target -1.5) at 30,000",
+    "The first runs of seeds 100 to 109",
+    "DHMBPO has 11,177 at 100,000.",
     "gait of about 2,000",
     "at 50,000. Ten seeds",
     "at 20,000, these ten",
