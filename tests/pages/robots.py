@@ -209,5 +209,5 @@ PLAIN = [
     "Not varied by themselves: two layers of 64",
     "With the thesis' observation two layers of 256",
     "20 episodes per seed): the expert drives for 80 decisions",
-    "10,000 random decisions on MJX. The Sawyer's 20 episodes",
+    "The Sawyer's 20 episodes",
 ]
