@@ -233,6 +233,7 @@ PLAIN = [
     "at 40,000.\n",
     "discount of 0.99 it has little more",
     "than 0.995 was not",
+    "after 0, 100, 200 and 400 decisions",
     "(one run of 200,000 decisions, seed 300, one core of an AMD EPYC; its policy has 2,732)",
     "after 20,000 decisions it is ahead, after 30,000 behind",
     "(target -1.5) at 30,000",
