@@ -193,6 +193,9 @@ PLAIN = [
     # settings
     "A decision of an arm has 20 steps",
     "With 64 worlds and more the arms",
+    # read from the console; the page says so
+    "5,682 steps per second with one Sawyer and 21,475 with 64, and 2,448 with one Panda",
+    ": 0.03 to 0.16 of MuJoCo C",
     "with 6 to 16 cores of its host",
     "jax 0.11.2, MuJoCo 3.17.0, warp-lang 1.18.0",
     "a plan of K 20 and T 10",
