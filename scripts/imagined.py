@@ -33,7 +33,7 @@ def futures(run: Path, after: int, worlds: int) -> dict[str, dict[str, list[floa
         UsageError: unless the policy of the run learns from a model.
     """
     trained = load(run)
-    learner = config.build(run_folder.read(run, "run")).agent.learners.get("policy")
+    learner: Any = config.build(run_folder.read(run, "run")).agent.learners.get("policy")
     if not hasattr(learner, "reward"):
         raise UsageError(f"{run}: its policy learns without a model; choose algo=hybrid_stochastic")
     policy, model, reward, episode = learner.policy, learner.model, learner.reward, trained.episode
