@@ -10,6 +10,7 @@ steps of 0.002 s. Terminates when not alive, a rule of each robot and reward.
 Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium; pybullet_envs.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -28,7 +29,7 @@ DT = 0.008  # [s] of a decision
 
 
 @dataclass(frozen=True)
-class PlanarLegs:
+class PlanarLegs(ABC):
     """A robot by its `asset` and `alive`; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
@@ -39,9 +40,9 @@ class PlanarLegs:
         one_of("reward", self.reward, ("gymnasium", "pybullet"))
         check(self.physics)
 
+    @abstractmethod
     def alive(self, qpos: Array, qvel: Array) -> Array:
         """Whether [] an episode goes on at qpos without x [nq - 1] and qvel [nv]."""
-        raise NotImplementedError
 
     @property
     def spec(self) -> Spec:

@@ -241,7 +241,6 @@ def test_python_does_what_the_commands_do(tmp_path):
     assert contents(tmp_path) == before
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are read from /proc")
 @pytest.mark.parametrize(("given", "threads"), [({}, max(8, cores())), ({"NPROC": "3"}, 3)])
 def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
     code = (

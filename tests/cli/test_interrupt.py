@@ -44,7 +44,6 @@ def listens(process):
     return bool(caught >> (signal.SIGTERM - 1) & 1)
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize(
     ("command", "number", "after"),
     [
