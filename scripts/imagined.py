@@ -1,16 +1,18 @@
 """Does a learned model imagine what happens? Its future beside the world's, from the same states.
 
-    python scripts/imagined.py runs/walker2d/hybrid_stochastic/TIME --after 20,100,300
+    python scripts/imagined.py runs/walker2d/hybrid_stochastic/TIME --after 20 100 300
 
-The policy of a run acts, with its noise, in many worlds. From the states that they reach after so
-many decisions it goes on in the world, and in the model with its reward. Compared are the share of
-episodes that end, and the mean reward of those that go on: a model that imagines falls makes a
-policy too careful, one that imagines too much reward deceives it.
+The policy of a run's first seed acts, with its noise, in many worlds. From the states that they
+reach after so many decisions it goes on in the world, and in the model with its reward. Compared
+are the share of episodes that end, and the mean reward of those that go on: a model that imagines
+falls makes a policy too careful, one that imagines too much reward deceives it.
 """
 
 import argparse
 import json
 import sys
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,18 +21,18 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl import config
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import CheckpointError, UsageError
 from hybrid_rl.evaluate import load
 from hybrid_rl.run import folder as run_folder
 
 COUNTS = (5, 10, 25)  # decisions ahead
 
 
-def futures(run: Path, after: int, worlds: int) -> dict[str, dict[str, list[float]]]:
-    """{world, model}: ended, the share of episodes, and reward per decision, after COUNTS.
+def futures(run: Path, afters: Sequence[int], worlds: int) -> dict[int, dict[str, Any]]:
+    """For each of `afters` {world, model}: ended, the share of episodes, and reward, after COUNTS.
 
     Raises:
-        UsageError: unless the policy of the run learns from a model.
+        UsageError: unless the policy of the run learns from a model, and episodes last so long.
     """
     trained = load(run)
     learner: Any = config.build(run_folder.read(run, "run")).agent.learners.get("policy")
@@ -55,8 +57,8 @@ def futures(run: Path, after: int, worlds: int) -> dict[str, dict[str, list[floa
         rewards, ends = outcome(params.reward, x, u, next_x)
         return next_x, (ends > 0, rewards)
 
-    @jax.jit
-    def run_from(key: Array) -> tuple:
+    @partial(jax.jit, static_argnums=0)
+    def run_from(after: int, key: Array) -> tuple:
         starting, first, second, third = jax.random.split(key, 4)
         state = jax.vmap(episode.reset)(jax.random.split(starting, worlds))
         state, (ended, _) = jax.lax.scan(in_world, state, jax.random.split(first, after))
@@ -65,13 +67,16 @@ def futures(run: Path, after: int, worlds: int) -> dict[str, dict[str, list[floa
         imagined = jax.lax.scan(in_model, state.obs, jax.random.split(third, COUNTS[-1]))[1]
         return ~ended.any(0), world, imagined
 
-    alive, *both = jax.tree.map(np.asarray, run_from(jax.random.key(0)))
-    if not alive.any():
-        raise UsageError(f"--after {after}: every episode has ended by then")
-    return {
-        name: measured(ended[:, alive], rewards[:, alive])
-        for name, (ended, rewards) in zip(("world", "model"), both, strict=True)
-    }
+    rows = {}
+    for after in afters:
+        alive, *both = jax.tree.map(np.asarray, run_from(after, jax.random.key(0)))
+        if not alive.any():
+            raise UsageError(f"--after {after}: every episode has ended by then")
+        rows[after] = {
+            name: measured(ended[:, alive], rewards[:, alive])
+            for name, (ended, rewards) in zip(("world", "model"), both, strict=True)
+        }
+    return rows
 
 
 def measured(ended: np.ndarray, rewards: np.ndarray) -> dict[str, list[float]]:
@@ -88,18 +93,18 @@ def main() -> int:
     """The command."""
     parser = argparse.ArgumentParser(description="Futures in the learned model and in the world")
     parser.add_argument("run", type=Path)
-    parser.add_argument("--after", default="20,100,300", help="decisions before the comparison")
+    parser.add_argument("--after", type=int, nargs="+", default=[20, 100, 300], help="decisions")
     parser.add_argument("--worlds", type=int, default=256)
     parser.add_argument("--out", type=Path, help="JSON with the numbers")
     arguments = parser.parse_args()
-    rows = {}
-    for after in map(int, arguments.after.split(",")):
-        try:
-            rows[after] = futures(arguments.run, after, arguments.worlds)
-        except UsageError as error:
-            return print(error, file=sys.stderr) or 1
+    try:
+        rows = futures(arguments.run, arguments.after, arguments.worlds)
+    except (UsageError, CheckpointError) as error:
+        print(error, file=sys.stderr)
+        return 1
+    for after, row in rows.items():
         print(f"after {after} decisions, within {', '.join(map(str, COUNTS))} more:")
-        for name, one in rows[after].items():
+        for name, one in row.items():
             ended = ", ".join(f"{100 * share:.1f}%" for share in one["ended"])
             reward = ", ".join(f"{each:.2f}" for each in one["reward"])
             print(f"  {name}: {ended} end; reward {reward} per decision")
