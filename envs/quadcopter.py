@@ -93,6 +93,13 @@ class Quadcopter:
         thrust = model.actuator_gear[:4, 2].mean()
         return float(model.body_mass.sum() * -model.opt.gravity[2] / (4 * thrust))
 
+    def equilibrium(self) -> tuple[Array, Array]:
+        """Hovering, for track at the target."""
+        down = jnp.asarray(self._body.model.opt.gravity)
+        obs = jnp.concatenate((down, jnp.zeros(self.spec.obs - 3)))
+        u = self.hovering / MAX_CONTROL
+        return obs, jnp.full(4, u if self.bidirectional else 2 * u - 1)
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(SCENE)

@@ -141,3 +141,13 @@ def test_another_asset(tmp_path):
 def test_an_unknown_task_raises():
     with pytest.raises(ValueError, match="task='loop': choose one of hover, track"):
         Quadcopter(task="loop")
+
+
+@pytest.mark.parametrize("task", ["hover", "track"])
+@pytest.mark.parametrize("bidirectional", [False, True])
+def test_at_equilibrium_it_hovers(task, bidirectional):
+    env = Quadcopter("native", task, bidirectional=bidirectional, start_speed=0, target_distance=0)
+    obs, action = env.equilibrium()
+    after = jitted(env, "step")(env.reset(jax.random.key(0)), action)
+    np.testing.assert_allclose(after.obs, obs, atol=1e-6)
+    assert abs(after.reward) < 1e-9
