@@ -119,7 +119,7 @@ PLAIN = [
     "two of ten seeds had an evaluation below 2,800 at 40,000",
     "lost its gait",
     "200 to 204, at 20,000 decisions, it is behind",
-    "after 20,000 decisions on the hopper",
+    "has as much from 30,000 decisions on (first table)",
     "nothing else on its 16 processors",
     "so 64 learners do",
     "With 64 learners more than half",
