@@ -61,6 +61,7 @@ CITED = [
     Text("(position weight 500) # against #", chapter6_values.QUICK[::-1]),
 ]
 PLAIN = [
+    "gait of about 2,000. On the hopper",
     # settings and versions
     "(Northwestern University, 2020)",
     "Python 3.11 to 3.13",
