@@ -1,7 +1,7 @@
-"""docs/results/lookahead.md: runs made twice, fifty seeds, and each half alone."""
+"""docs/results/lookahead.md: runs made twice, fifty seeds, each half alone, the critic's error."""
 
 from pages.cited import Table, Text
-from pages.values import Curve, curve, number
+from pages.values import Curve, curve, number, read
 
 
 def both_times(task: str) -> list[float]:
@@ -26,7 +26,12 @@ def half(task: str, label: str) -> Curve:
     return curve("light_halves", label, task=task.replace("-", ""))
 
 
+ERROR = read("critic_error")["rows"]
 CITED = [
+    Table(
+        "the critic's error | 10,000 | 20,000 | 40,000",
+        lambda label, column: [100 * ERROR[label][str(round(number(column)))]["relative"]],
+    ),
     Text("stopped at 20,000 with # there, these have #:", both_times("hopper")),
     Text("Its first runs had # at 20,000, these have #.", both_times("ant")),
     Table(
@@ -46,6 +51,7 @@ CITED = [
     ),
 ]
 PLAIN = [
+    "ended them after 10,000 decisions",
     "Seeds 100 to 149 in one program",
     "stopped it after 49,000 decisions",
     "gait of about 2,000**",
