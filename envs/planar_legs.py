@@ -3,9 +3,10 @@
     gymnasium   r = 1[alive] + dx/dt - 0.001 |a|^2
     pybullet    r as in `locomotion`
 
-qpos: x, z, pitch, joints. o = (qpos without x, qvel clipped to [-10, 10]); a: torques, as fractions
-of full torque; start: qpos and qvel ~ U(-0.005, 0.005) around the upright pose; a decision is 4
-steps of 0.002 s. Terminates when not alive, a rule of each robot and reward.
+qpos: x, z, pitch, joints. o = (qpos without x, qvel); observed velocities are clipped to
+[-velocity_limit, velocity_limit], by default 10 as in Gymnasium. a: torques, as fractions of full
+torque; start: qpos and qvel ~ U(-0.005, 0.005) around the upright pose; a decision is 4 steps of
+0.002 s. Terminates when not alive, a rule of each robot and reward.
 
 Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium; pybullet_envs.
 """
@@ -34,11 +35,14 @@ class PlanarLegs(ABC):
 
     physics: str = "auto"
     reward: str = "gymnasium"  # or pybullet
+    velocity_limit: float | None = 10.0  # of observed velocities [m/s, rad/s]
     asset: ClassVar[str]
 
     def __post_init__(self) -> None:
         one_of("reward", self.reward, ("gymnasium", "pybullet"))
         check(self.physics)
+        if self.velocity_limit is not None and self.velocity_limit <= 0.0:
+            raise ValueError(f"velocity_limit={self.velocity_limit}: must be above 0, or null")
 
     @abstractmethod
     def alive(self, qpos: Array, qvel: Array) -> Array:
@@ -64,7 +68,7 @@ class PlanarLegs(ABC):
         ]
         zero = jnp.float32(0.0)
         data = self._body.reset(upright + noise[0], noise[1])
-        return _state(data, zero, jnp.zeros((), bool), zero)
+        return self._state(data, zero, jnp.zeros((), bool), zero)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [m] in [-1, 1]."""
@@ -77,7 +81,16 @@ class PlanarLegs(ABC):
         else:
             limits = jnp.asarray(self._body.model.jnt_range[3:], jnp.float32)
             reward = pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
-        return _state(data, reward, ~alive, speed)
+        return self._state(data, reward, ~alive, speed)
+
+    def _state(
+        self, data: PhysicsState, reward: Array, terminated: Array, speed: Array
+    ) -> EnvState:
+        seen, limit = data.qvel, self.velocity_limit
+        if limit is not None:
+            seen = jnp.clip(seen, -limit, limit)
+        obs = jnp.concatenate((data.qpos[1:], seen))
+        return EnvState(data, obs, reward, terminated, jnp.zeros((), bool), {"speed": speed}, {})
 
     def ended(self, obs: Array) -> Array:
         """Whether [] an episode terminates at obs [o]."""
@@ -91,8 +104,3 @@ class PlanarLegs(ABC):
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [nq] for rendering."""
         return state.data.qpos
-
-
-def _state(data: PhysicsState, reward: Array, terminated: Array, speed: Array) -> EnvState:
-    obs = jnp.concatenate((data.qpos[1:], jnp.clip(data.qvel, -10.0, 10.0)))
-    return EnvState(data, obs, reward, terminated, jnp.zeros((), bool), {"speed": speed}, {})
