@@ -28,6 +28,7 @@ PAGES = [
     "paper",
     "robots",
     "speed",
+    "walker",
 ]
 OTHERS = {"README.md", "paper/paper.md"}  # pages that cite results
 

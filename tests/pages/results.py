@@ -136,7 +136,7 @@ PLAIN = [
     "at 120,000 decisions (mean of seeds 200 and 201",
     "on seeds 200 and 201 among six variants",
     "batches of 128",
-    "`light_halves` | two cores of an AMD EPYC | float32",
+    "`velocity_share` | two cores of an AMD EPYC | float32",
     # read from the console; the page says so
     "takes 1.3 ms per decision",
     "takes about 9 ms",
