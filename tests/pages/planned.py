@@ -123,6 +123,7 @@ def mistaken(label: str, column: str) -> list[float]:
 
 
 GPU = read("world_planning")["gpu"]
+GPU_PANDA = read("world_planning")["gpu_panda"]
 AS_TRAINED = disturbed("as in training", "Sawyer")[0]
 MILD = set(KEYS) | {"twice the friction"}
 CITED = [
@@ -155,6 +156,13 @@ CITED = [
             0.1 * GPU["decisions"] / GPU["evaluation_wall_s"],
         ],
     ),
+    Text(
+        "and # s for one Panda, # of real time",
+        [
+            GPU_PANDA["evaluation_wall_s"] / GPU_PANDA["decisions"],
+            0.1 * GPU_PANDA["decisions"] / GPU_PANDA["evaluation_wall_s"],
+        ],
+    ),
     Text("on other processors, has #% after", [share("hybrid_stochastic", "60")[0]]),
     Text("costs the Sawyer # points", [AS_TRAINED - disturbed("half the friction", "Sawyer")[0]]),
     Text(
@@ -180,6 +188,7 @@ PLAIN = [
     "from 5 demonstrations; 100 episodes a seed",
     "the 400 physics steps of a plan wait for one another, and 64 candidates",
     "(30 decisions of an evaluation",
+    "(30 decisions, compiled before)",
     "after 6,000 decisions.\n",
     "10,000 random decisions in each of 256 worlds, MuJoCo Warp",
     "(0.1 and 0.4 in the Sawyer's, 0.1 and 1 in the Panda's world)",

@@ -74,6 +74,19 @@ def arms(label: str, column: str) -> list[float]:
     return [{"bare loop": bare, "ours": ours}.get(column, ours / bare)]
 
 
+def arms_on_h200(label: str, column: str) -> list[float]:
+    """A cell of the table of the Sawyer on an H200."""
+    what = f"sawyer_push, {label.split(', ')[1]}"
+    (table,) = (one for one in read("speed_arms")["h200"]["tables"] if one["what"] == what)
+    name = {
+        "bare loop, MuJoCo C": "bare mujoco.rollout",
+        "ours, MuJoCo C": "ours, native",
+        "bare loop, Warp": "bare mjx.step, Warp",
+        "ours, Warp": "ours, warp",
+    }[column]
+    return [one["rate"] for one in table["rows"] if one["name"] == name]
+
+
 def plan(label: str, column: str) -> list[float]:
     """Model steps per second: three digits, or in millions."""
     learners = f"{column.removesuffix(' learner')} learners"
@@ -137,6 +150,11 @@ CITED = [
     Table("GPUs, 512 learners and 16 cores each, native | 1 | 2 | 4", gpus),
     Table(" | bare loop | ours | ratio", physics),
     Table("one core | bare loop | ours | ratio", arms),
+    Table(
+        "physics steps per second | bare loop, MuJoCo C | ours, MuJoCo C | bare loop, Warp "
+        "| ours, Warp",
+        arms_on_h200,
+    ),
     Text(
         "ours is at # of the bare loop",
         physics("half-cheetah, 64 worlds, native (8 cores)", "ratio"),
@@ -192,6 +210,10 @@ PLAIN = [
     "runs of 300 random decisions",
     # settings
     "A decision of an arm has 20 steps",
+    "one of two H200 and 16 cores of their host",
+    "stopped it before 1,024 worlds",
+    "With 64 worlds 16 cores are still ahead",
+    "MJX of 64 Sawyers did not finish compiling in 300 s",
     "With 64 worlds and more the arms",
     # read from the console; the page says so
     "5,682 steps per second with one Sawyer and 21,475 with 64, and 2,448 with one Panda",
