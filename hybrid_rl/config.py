@@ -147,7 +147,8 @@ def expert(config: DictConfig) -> Controller:
         raise UsageError(
             f"task={config.task}: has no scripted expert; give expert=babble or run=DIR"
         )
-    with _usage(config):
+    check_kinds(config.expert, "expert.")
+    with _usage(config, "its expert"):
         return _instantiate(config.expert)
 
 
@@ -181,8 +182,11 @@ def _instantiate(node: Any) -> Any:
 
 
 @contextmanager
-def _usage(config: DictConfig) -> Iterator[None]:
-    """Turn a ValueError that a part raises about its fields into a UsageError."""
+def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
+    """Turn a ValueError that a part raises about its fields into a UsageError.
+
+    who: what needs a kind of environment that the task is not; None: the method.
+    """
     try:
         yield
     except (InstantiationException, ValueError) as error:
@@ -193,7 +197,7 @@ def _usage(config: DictConfig) -> Iterator[None]:
         for needs, method in NEEDS.items():
             if needs in line:
                 names = ", ".join(tasks_with(method))
-                line = f"task={config.task}: {config.algo} {needs}; choose one of {names}"
+                line = f"task={config.task}: {who or config.algo} {needs}; choose one of {names}"
         field = line.partition("=")[0]  # a field of the world is typed as env.FIELD
         raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error
 

@@ -196,7 +196,7 @@ def _without_demonstrations(config: Any) -> Any:
     config = config.copy()
     config.pretrain = 0
     for part in (config.replay, *config.learners.values()):
-        if "demonstrations" in part:
+        if part is not None and "demonstrations" in part:
             part.demonstrations = None
     return config
 

@@ -8,7 +8,7 @@ import pytest
 from tiny import TINY, call, call_train, run
 from tiny import demonstrate as recorded
 
-from hybrid_rl import config, demonstrate, evaluate
+from hybrid_rl import config, demonstrate, evaluate, train
 from hybrid_rl.cli import command
 from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.experts.push import PushController
@@ -88,3 +88,36 @@ def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
     printed = capsys.readouterr().err
     assert printed.count("\n") == 1
     assert f"{file}: no such file" in printed
+
+
+def test_a_regulator_of_recordings_outlives_them(tmp_path):
+    """The model that it learned from them is in the checkpoint."""
+    task, file = "task=van_der_pol", tmp_path / "babble.npz"
+    given = [task, "expert=babble", "episodes=2", "episode.steps=30", f"out={file}"]
+    assert call(lambda: command.guarded(demonstrate.main), *given) == 0
+    folder = tmp_path / "run"
+    few = ["total_steps=4", "checkpoint_every=4", "episode.steps=2", "compile_cache=null"]
+    given = [task, "algo=koopman_known", f"demonstrations={file}", f"run_dir={folder}", *few]
+    train.train(config.load(given))
+    before = evaluate.evaluate(evaluate.load(folder), "full", 2)["return"]
+    file.unlink()
+    after = evaluate.evaluate(evaluate.load(folder), "full", 2)["return"]
+    np.testing.assert_array_equal(after, before)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ("expert=regulator", "task=quadcopter: its expert needs an analytic environment; choose"),
+        (
+            "expert=babble expert.controller.action=[0.4]",
+            "expert.controller.action=[0.4]: must be a number",
+        ),
+    ],
+)
+def test_an_expert_that_does_not_fit_is_named(given, line, tmp_path, capsys):
+    out = tmp_path / "none.npz"
+    main = [*given.split(), "task=quadcopter", "episodes=1", f"out={out}"]
+    assert call(lambda: command.guarded(demonstrate.main), *main) == 2
+    assert line in capsys.readouterr().err
+    assert not out.exists()

@@ -23,6 +23,7 @@ from hybrid_rl.models.world import World
 from hybrid_rl.networks import ACTIVATIONS
 from hybrid_rl.objectives.known_reward import KnownReward
 from hybrid_rl.policies.deterministic import Clones
+from hybrid_rl.policies.linear import Linear
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.policies.unit_gaussian import UnitGaussian
 from hybrid_rl.proposals.policy import PolicyProposal
@@ -136,6 +137,17 @@ def test_the_first_of_several_clones_is_written(tmp_path):
     want = clones.mean(params, jnp.asarray(OBS))
     assert (np.abs(want) == 1).any()
     np.testing.assert_allclose(in_numpy(tmp_path, clones, params), want, atol=1e-5)
+
+
+def test_a_linear_policy_is_one_layer(tmp_path):
+    rng = np.random.default_rng(1)
+    params = {key: jnp.zeros((SPEC.act, SPEC.n)) for key in ("gain", "inverse")}
+    params |= {"gain": jnp.asarray(rng.normal(size=(SPEC.act, SPEC.n)), jnp.float32)}
+    params |= {"goal": jnp.arange(SPEC.n, dtype=jnp.float32) / 3, "hold": jnp.full(SPEC.act, 0.2)}
+    want = np.stack([Linear().mean(params, x) for x in jnp.asarray(OBS)])
+    assert (np.abs(want) == 1).any()
+    assert (np.abs(want) < 1).any()
+    np.testing.assert_allclose(in_numpy(tmp_path, Linear(), params), want, atol=1e-5)
 
 
 def test_a_state_of_several_types_comes_back():

@@ -47,7 +47,7 @@ class LeastSquares:
     mean: str = "identity"  # K_0 = [I 0], or zero
     deviation: float = 0.0  # s [1/s] of K_0
     until: int | None = None  # decisions of the run until learning ends; None: never
-    recorded: Demonstrations | None = None  # decisions that are learned before the first one
+    demonstrations: Demonstrations | None = None  # decisions that are learned before the first one
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("model",)
@@ -78,8 +78,8 @@ class LeastSquares:
         mean = jnp.eye(n, r) * (-1.0 if self.mean == "zero" else 0.0)
         mean = mean + self.deviation * spec.dt * jax.random.normal(of_mean, (n, r))
         state = RegressionState(least_squares.begin(mean, self.prior), mean, model)
-        if self.recorded is not None:
-            decisions = self.recorded.load()
+        if self.demonstrations is not None:
+            decisions = self.demonstrations.load()
             if len(decisions.obs) < r:
                 raise ValueError(
                     f"demonstrations: {len(decisions.obs)} decisions are too few for {r} "

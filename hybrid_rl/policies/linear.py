@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
+from hybrid_rl.networks import Perceptron
 from hybrid_rl.types import Spec, Step
 
 
@@ -47,3 +49,9 @@ class Linear:
     def variance(self, params: dict[str, Array], x: Array) -> Array:
         """Zero [m]: the policy is deterministic."""
         return jnp.zeros_like(params["hold"])
+
+    def perceptron(self, params: dict[str, Array], spec: Spec) -> Perceptron:
+        """The policy as arrays: one layer, actions clipped to [-1, 1]."""
+        gain, goal, hold = (np.asarray(params[key]) for key in ("gain", "goal", "hold"))
+        ones = np.ones_like(goal)
+        return Perceptron(goal, ones, (-gain.T,), (hold,), "relu", "clip")

@@ -21,7 +21,7 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.run import divergence, memory, provenance, rows
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.duration import Duration
-from hybrid_rl.run.evaluations import Evaluations
+from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import Progress
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
@@ -30,6 +30,7 @@ from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
+RETURNS = [f"{prefix}return" for prefix in EVALUATED.values()]  # the first of them is the result
 
 
 @dataclass
@@ -47,7 +48,7 @@ class Session:
     before_s: float = 0.0  # [s] in earlier sessions
     began: float = field(default_factory=monotonic)
     returns: list[list[tuple[int, float]]] = field(default_factory=list)  # per seed: (step, return)
-    final_eval: list[float | None] = field(default_factory=list)  # per seed: the latest, mode full
+    final_eval: list[float | None] = field(default_factory=list)  # per seed: the latest
     learning: Speed = field(default_factory=Speed)  # over all sessions of the run
     stop: int | None = None  # the signal that asked for an end
     unevaluated: bool = False  # an evaluation is due at this step
@@ -236,7 +237,7 @@ class Session:
         self._write(sorted(rows_left + ended, key=lambda row: row["seed"]))
         self._continue(bool(ended))
         for s, outcome in left.items():
-            self.final_eval[s] = outcome.get("eval/return")
+            self.final_eval[s] = next((outcome[key] for key in RETURNS if key in outcome), None)
         means = {n: float(np.mean([each[n] for each in left.values()])) for n in outcomes[0]}
         self._show(means, say=True)
 
@@ -294,5 +295,5 @@ class Session:
         return means
 
     def final_evaluations(self) -> list[float | None]:
-        """Last evaluation of mode full, per seed; None if it diverged."""
+        """Last evaluation per seed, of mode full if it was evaluated; None if it diverged."""
         return [v if s not in self.diverged.ends else None for s, v in enumerate(self.final_eval)]

@@ -61,8 +61,8 @@ def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
         words = f"{' or '.join(tasks)}, " if tasks else ""
         raise UsageError(f"{key}={folder}: needs {words}num_envs=1, checkpoint_replay=true")
     for learner in config.learners.values():
-        if learner is not None and "recorded" in learner:
-            learner.recorded = None  # its file is not needed
+        if learner is not None and "demonstrations" in learner:
+            learner.demonstrations = None  # its file is not needed
     run = build(config)
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
     like = like.replace(env=None, control=None, learners=None, key=None)
