@@ -30,7 +30,9 @@ def put(node: Any, **values: Any) -> None:
 def with_demonstrations(composed: DictConfig, folder: Path) -> DictConfig:
     """The configuration with a file of random decisions, if its method learns from one."""
     learners = composed.learners.values()
-    if composed.replay.demonstrations or any(each and each.get("demonstrations") for each in learners):
+    if composed.replay.demonstrations or any(
+        each and each.get("demonstrations") for each in learners
+    ):
         put(composed, file=demonstrate(folder, composed).partition("=")[2])
     return composed
 
