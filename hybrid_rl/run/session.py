@@ -23,7 +23,7 @@ from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.duration import Duration
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.progress import DRAWN, Progress
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.store import Store
 from hybrid_rl.training.loop import Loop
@@ -236,10 +236,11 @@ class Session:
         rows_left = [{"step": self.step, "seed": seeds[s]} | each for s, each in left.items()]
         self._write(sorted(rows_left + ended, key=lambda row: row["seed"]))
         self._continue(bool(ended))
+        result = next(key for key in RETURNS if key in outcomes[0])
         for s, outcome in left.items():
-            self.final_eval[s] = next((outcome[key] for key in RETURNS if key in outcome), None)
+            self.final_eval[s] = outcome[result]
         means = {n: float(np.mean([each[n] for each in left.values()])) for n in outcomes[0]}
-        self._show(means, say=True)
+        self._show({**means, DRAWN: means[result]}, say=True)
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[rows.Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""

@@ -116,10 +116,11 @@ def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp
     assert summary(folder)["final_eval"] == summary(whole)["final_eval"]
 
 
-def test_the_result_is_that_of_the_policy_where_only_it_is_evaluated(tmp_path):
+def test_the_result_is_that_of_the_policy_where_only_it_is_evaluated(tmp_path, capsys):
     result = run(tmp_path / "run", *SAC, "eval_modes=[policy]")
     last = [row for row in rows(tmp_path / "run") if "eval/policy_return" in row][-1]
     np.testing.assert_allclose(result["final_eval"][-1], last["eval/policy_return"], rtol=1e-6)
+    assert f"eval {np.mean(result['final_eval']):,.1f}" in capsys.readouterr().out
 
 
 def break_learner(patch, number, step):
