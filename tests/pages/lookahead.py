@@ -1,6 +1,6 @@
 """docs/results/lookahead.md."""
 
-from pages import halves, layer_norm, published
+from pages import layer_norm, light, published
 from pages.cited import Table, Text
 from pages.values import Curve, curve, number, read
 
@@ -190,7 +190,7 @@ CITED = [
         [line("walker2d", label).at(25_000)[0] for label in (SETTINGS, BEFORE)],
     ),
     Table("at 10,000 decisions | mean return | lowest seed | highest seed", parts),
-    *halves.CITED,
+    *light.CITED,
     *layer_norm.CITED,
     Text("it was no faster, #.", [SPEED["loops in CUDA graphs"]["decisions_per_s"]]),
     Text(
@@ -280,7 +280,7 @@ PLAIN = [
     "gait of about 2,000**",
     "below 2,500 at 10,000",
     "and 20,000 have more than 5,000 from 30,000 on; the evaluation at 50,000 is",
-    *halves.PLAIN,
+    *light.PLAIN,
     *layer_norm.PLAIN,
     # what others published
     "Gymnasium's version 4",
