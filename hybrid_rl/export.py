@@ -11,9 +11,9 @@ with action = f.call(obs) for a policy. A controller that plans is
     action, state = f.call(obs, state, key)
 
 state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at each decision. A
-.npz holds the layers of a policy that is a multilayer perceptron; the Python file next to it has
-its function act(obs), in NumPy. Both formats include the parameters and the normalisation of the
-observations [o]. Actions are [m] in [-1, 1], without exploration.
+.npz holds the layers of a multilayer perceptron, or of a linear policy; the Python file next to it
+has its function act(obs), in NumPy. Both formats include the parameters and the normalisation of
+the observations [o]. Actions are [m] in [-1, 1], without exploration.
 """
 
 if __name__ == "__main__":
