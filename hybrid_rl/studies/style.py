@@ -60,11 +60,14 @@ def legend_below(axes: "Axes") -> None:
     """A legend below the label of the x axis, where it covers no curve."""
     from matplotlib.transforms import ScaledTranslation
 
-    texts = axes.get_legend_handles_labels()[1]
+    handles, texts = axes.get_legend_handles_labels()
+    texts = [textwrap.fill(text, LEGEND_WIDTH) for text in texts]
     columns = int(LEGEND_WIDTH / (max(map(len, texts), default=1) + 7))
     down = (BELOW if axes.get_xlabel() else BELOW_TICKS) / 72
     lower = ScaledTranslation(0, -down, axes.figure.dpi_scale_trans)
     axes.legend(
+        handles,
+        texts,
         loc="upper left",
         bbox_to_anchor=(0, 0),
         bbox_transform=axes.transAxes + lower,

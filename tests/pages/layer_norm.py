@@ -61,8 +61,8 @@ CITED = [
     ),
     Table("learners | decisions/s | compilation [s] | a round [ms]", speed),
     Text(
-        "A round of ten learners takes # ms: # in the world and the memory, # for two updates of "
-        "the models, # for two of policy and critic, # for the planner",
+        "On the H100, a round of ten learners takes # ms: # in the world and the memory, # for "
+        "two updates of the models, # for two of policy and critic, # for the planner",
         [LEARNERS["default"]["10"]["ms_per_round"], *ROUND["ms_of_ten_learners"].values()],
     ),
     Table(
@@ -101,7 +101,7 @@ CITED = [
         ],
     ),
     Text(
-        "at the speed above they take # minutes",
+        "they take # minutes on the H100",
         [
             (
                 1e6 / LEARNERS["default"]["10"]["decisions_per_s"]

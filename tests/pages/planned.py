@@ -122,8 +122,13 @@ def mistaken(label: str, column: str) -> list[float]:
     return [float(success.sum() if "of 10" in column else np.median(decisions[success == 1]))]
 
 
-GPU = read("world_planning")["gpu"]
-GPU_PANDA = read("world_planning")["gpu_panda"]
+def on_gpu(label: str, column: str) -> list[float]:
+    """A cell of the table of planning on a GPU."""
+    one = read("world_planning")["gpu"]["tasks"][label.split(",")[0].lower()]
+    seconds = one["evaluation_wall_s"] / one["decisions"]
+    return [seconds if "seconds" in column else one["decision_s"] / seconds]
+
+
 AS_TRAINED = disturbed("as in training", "Sawyer")[0]
 MILD = set(KEYS) | {"twice the friction"}
 CITED = [
@@ -149,20 +154,7 @@ CITED = [
         "the Sawyer at # and the Panda at # of real time",
         [real_time("sawyer_code"), real_time("panda_joined")],
     ),
-    Text(
-        "took # s per decision for one Sawyer, # of real time",
-        [
-            GPU["evaluation_wall_s"] / GPU["decisions"],
-            0.1 * GPU["decisions"] / GPU["evaluation_wall_s"],
-        ],
-    ),
-    Text(
-        "and # s for one Panda, # of real time",
-        [
-            GPU_PANDA["evaluation_wall_s"] / GPU_PANDA["decisions"],
-            0.1 * GPU_PANDA["decisions"] / GPU_PANDA["evaluation_wall_s"],
-        ],
-    ),
+    Table("mppi on an H200 | seconds per decision | share of real time", on_gpu),
     Text("on other processors, has #% after", [share("hybrid_stochastic", "60")[0]]),
     Text("costs the Sawyer # points", [AS_TRAINED - disturbed("half the friction", "Sawyer")[0]]),
     Text(
@@ -186,9 +178,8 @@ PLAIN = [
     "A decision lasts 0.1 s",
     "Sawyer after 6,000 decisions",
     "from 5 demonstrations; 100 episodes a seed",
-    "the 400 physics steps of a plan wait for one another, and 64 candidates",
-    "(30 decisions of an evaluation",
-    "(30 decisions, compiled before)",
+    "wait for one another, 400 of them for an arm, and 64 candidates",
+    "30 decisions of an evaluation",
     "after 6,000 decisions.\n",
     "10,000 random decisions in each of 256 worlds, MuJoCo Warp",
     "(0.1 and 0.4 in the Sawyer's, 0.1 and 1 in the Panda's world)",

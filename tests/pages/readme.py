@@ -73,6 +73,7 @@ CITED = [
     Text("(position weight 500) # against #", chapter6_values.QUICK[::-1]),
 ]
 PLAIN = [
+    "none of [64 seeds]",
     "gait of about 2,000. Where",
     "to 3,364 at 50,000",
     "to 7,445 at 100,000",

@@ -12,6 +12,7 @@ RUNS = {
     "one H200, 64 seeds, default": "seeds_64_tf32",
     "two cores, 5 seeds": "seeds_5_two_cores",
 }
+ARMS = {"Sawyer": "sawyer_push", "Panda": "panda_stack", "half-cheetah": "halfcheetah"}
 PLANS = {
     "reward of one layer; default": "hybrid_stochastic, K 20, T 10, default, one-layer reward",
     "reward of two layers, the thesis'; default": "hybrid_stochastic, K 20, T 10, default",
@@ -66,25 +67,32 @@ def physics(label: str, column: str) -> list[float]:
 def arms(label: str, column: str) -> list[float]:
     """Bare and ours on one core: "Sawyer, 64 worlds"."""
     robot, worlds = label.split(", ")
-    task = {"Sawyer": "sawyer_push", "Panda": "panda_stack", "half-cheetah": "halfcheetah"}[robot]
     (table,) = (
-        each["rows"] for each in read("speed_arms")["tables"] if each["what"] == f"{task}, {worlds}"
+        each["rows"]
+        for each in read("speed_arms")["tables"]
+        if each["what"] == f"{ARMS[robot]}, {worlds}"
     )
     bare, ours = (row["rate"] for row in table)
     return [{"bare loop": bare, "ours": ours}.get(column, ours / bare)]
 
 
 def arms_on_h200(label: str, column: str) -> list[float]:
-    """A cell of the table of the Sawyer on an H200."""
-    what = f"sawyer_push, {label.split(', ')[1]}"
-    (table,) = (one for one in read("speed_arms")["h200"]["tables"] if one["what"] == what)
+    """A cell of the table of the arms on an H200."""
+    robot, worlds = label.split(", ")
     name = {
         "bare loop, MuJoCo C": "bare mujoco.rollout",
         "ours, MuJoCo C": "ours, native",
         "bare loop, Warp": "bare mjx.step, Warp",
         "ours, Warp": "ours, warp",
+        "bare loop, MJX": "bare mjx.step",
+        "ours, MJX": "ours, mjx",
     }[column]
-    return [one["rate"] for one in table["rows"] if one["name"] == name]
+    return [
+        row["rate"]
+        for table in read("speed_arms")["h200"]["tables"]
+        for row in table["rows"]
+        if table["what"] == f"{ARMS[robot]}, {worlds}" and row["name"] == name
+    ]
 
 
 def plan(label: str, column: str) -> list[float]:
@@ -137,6 +145,7 @@ TRUE = rows("plan", PLANS["reward of one layer; default"])
 FLOAT, LOW = ends("seeds_64"), ends("seeds_64_tf32")
 BEFORE = [curve("fig_3_2_halfcheetah", label).at(40_000)[0] for label in (LOOP, "sac")]
 BARE_MJX = rows("physics", "halfcheetah, 65,536 worlds", "ours, mjx")
+MJX_PANDAS = arms_on_h200("Panda, 64 worlds", "ours, MJX")[0]
 CITED = [
     Table("learners | 1 | 64 | 512 | 4,096 | memory per learner", loop),
     Text(
@@ -151,9 +160,23 @@ CITED = [
     Table(" | bare loop | ours | ratio", physics),
     Table("one core | bare loop | ours | ratio", arms),
     Table(
-        "physics steps per second | bare loop, MuJoCo C | ours, MuJoCo C | bare loop, Warp "
-        "| ours, Warp",
+        "one H200 | bare loop, MuJoCo C | ours, MuJoCo C | bare loop, Warp | ours, Warp",
         arms_on_h200,
+    ),
+    Text(
+        "# times for the Sawyer and # times for the Panda",
+        [
+            arms_on_h200(f"{robot}, 1,024 worlds", "ours, Warp")[0]
+            / arms_on_h200(f"{robot}, 1,024 worlds", "ours, MuJoCo C")[0]
+            for robot in ("Sawyer", "Panda")
+        ],
+    ),
+    Text(
+        "64 Pandas make # steps per second, # times a bare MJX loop",
+        [
+            MJX_PANDAS,
+            MJX_PANDAS / arms_on_h200("Panda, 64 worlds", "bare loop, MJX")[0],
+        ],
     ),
     Text(
         "ours is at # of the bare loop",
@@ -210,10 +233,12 @@ PLAIN = [
     "runs of 300 random decisions",
     # settings
     "A decision of an arm has 20 steps",
-    "one of two H200 and 16 cores of their host",
-    "stopped it before 1,024 worlds",
-    "With 64 worlds 16 cores are still ahead",
-    "MJX of 64 Sawyers did not finish compiling in 300 s",
+    "One H200 and 16 cores of its host, physics steps",
+    "Warp a program",
+    "**16 cores are ahead of Warp with 64 worlds, Warp with 1,024**",
+    "up to 40 worlds per core, 640 here",
+    "64 Pandas make",
+    "64 Sawyers did not finish compiling in 15 minutes",
     "With 64 worlds and more the arms",
     # read from the console; the page says so
     "5,682 steps per second with one Sawyer and 21,475 with 64, and 2,448 with one Panda",
