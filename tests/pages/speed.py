@@ -145,6 +145,7 @@ TRUE = rows("plan", PLANS["reward of one layer; default"])
 FLOAT, LOW = ends("seeds_64"), ends("seeds_64_tf32")
 BEFORE = [curve("fig_3_2_halfcheetah", label).at(40_000)[0] for label in (LOOP, "sac")]
 BARE_MJX = rows("physics", "halfcheetah, 65,536 worlds", "ours, mjx")
+SETTINGS = read("speed_arms")["settings"]["robots"]
 MJX_PANDAS = arms_on_h200("Panda, 64 worlds", "ours, MJX")[0]
 CITED = [
     Table("learners | 1 | 64 | 512 | 4,096 | memory per learner", loop),
@@ -159,6 +160,24 @@ CITED = [
     Table("GPUs, 512 learners and 16 cores each, native | 1 | 2 | 4", gpus),
     Table(" | bare loop | ours | ratio", physics),
     Table("one core | bare loop | ours | ratio", arms),
+    Table(
+        "changed setting | Sawyer | Panda",
+        lambda label, column: [SETTINGS[column][label]["ratio"]],
+    ),
+    Text(
+        "differ from those of the short one by up to # and # m or rad",
+        [SETTINGS[robot]["twice the time step"]["difference_max"] for robot in ("Sawyer", "Panda")],
+    ),
+    Text(
+        "Euler's integrator, # times as fast with the Sawyer, differs by up to # and #.",
+        [
+            SETTINGS["Sawyer"]["integrator Euler"]["ratio"],
+            *(
+                SETTINGS[robot]["integrator Euler"]["difference_max"]
+                for robot in ("Sawyer", "Panda")
+            ),
+        ],
+    ),
     Table(
         "one H200 | bare loop, MuJoCo C | ours, MuJoCo C | bare loop, Warp | ours, Warp",
         arms_on_h200,
@@ -237,6 +256,9 @@ PLAIN = [
     "Warp a program",
     "**16 cores are ahead of Warp with 64 worlds, Warp with 1,024**",
     "up to 40 worlds per core, 640 here",
+    "A bare loop of 64 worlds on one core",
+    "(8 iterations, `implicitfast`, pyramidal cones, 0.005 s; 2 and 7 explicit pairs",
+    "After 2 s the positions",
     "64 Pandas make",
     "64 Sawyers did not finish compiling in 15 minutes",
     "With 64 worlds and more the arms",
