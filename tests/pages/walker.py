@@ -66,7 +66,8 @@ CITED = [
         ],
     ),
     Table(
-        "IQM and 95% band, ten seeds | hybrid_stochastic | flash_sac | sac | sac, all velocities",
+        "IQM and 95% band, ten seeds | hybrid_stochastic | flash_sac | sac | sac, all velocities "
+        "| nn_mppi, all velocities",
         compared,
     ),
     Text(
@@ -147,6 +148,8 @@ CITED = [
 PLAIN = [
     "last returns at 80,000 decisions and above them at 90,000",
     "walks by 100,000, with",
+    "does not walk by 30,000",
+    "which makes 45 decisions/s there, to 30,000",
     "stopped at 96,000 by a time limit",
     "branches of 40 decisions instead of 20",
     "gains from 40 at 100,000 decisions (7,564 instead of 6,457 with one update); a time limit "
