@@ -2,8 +2,11 @@
 
 import numpy as np
 
+from hybrid_rl.studies.curves import iqm
 from pages.cited import Table, Text
 from pages.values import Curve, curve, number, read, spread
+
+TEN = "a planner of ten decisions"
 
 
 def half(task: str, label: str) -> Curve:
@@ -60,6 +63,15 @@ CITED = [
         lambda label, column: half(label.split(",")[0], column).at(number(label)),
     ),
     Text(
+        "trained with it, have # [#, #] at 25,000 and # [#, #] at 30,000 decisions, its policy "
+        "alone # there; with the planner of `settings=light` they have # [#, #] and # [#, #].",
+        [
+            *(x for step in (25_000, 30_000) for x in half("hopper", TEN).at(step)),
+            float(iqm(np.array(read("planner_trained")["policy_of_ten_decisions"]))),
+            *(x for step in (25_000, 30_000) for x in half("hopper", "hybrid_stochastic").at(step)),
+        ],
+    ),
+    Text(
         "is as good as both (# at 30,000 on the half-cheetah, # on the hopper)",
         [
             half(task, "hybrid_stochastic, its policy").at(30_000)[0]
@@ -68,6 +80,8 @@ CITED = [
     ),
 ]
 PLAIN = [
+    "at 25,000 and",
+    "at 30,000 decisions, its policy",
     "after 30,000 decisions, evaluated again with other fields of their planner (16 candidates, "
     "all of the policy, 3 decisions, temperature 0.3)",
     "seeds 100 to 109, one core of an AMD EPYC, float32; one change",
