@@ -217,7 +217,7 @@ PLAIN = [
     "at 85,000 on an H100",
     "at 95,000;",
     "at 90,000 (`hybrid",
-    "at 70,000. The reason",
+    "at 70,000; `flash_sac` is as good by 80,000",
     "Seeds 100, 101 and 102",
     "after 237,000 of 400,000 decisions",
     "at 100,000.\n* **Ant",
