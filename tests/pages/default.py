@@ -87,7 +87,7 @@ PLAIN = [
     "Seed 114 was slow",
     "at 10,000, ",
     "at 50,000); seed 150",
-    "fell in its evaluation at 20,000",
+    "did badly in its evaluation at 20,000",
     "at 50,000. The lowest two at 50,000",
     "at 30,000: they lost",
     "stopped at 49,000 by a time limit",
