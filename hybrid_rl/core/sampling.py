@@ -85,7 +85,11 @@ def weights(
 
     `normalise` divides S by its standard deviation over K, so that `temperature` is a pure
     number; otherwise it has the unit of a return. `log_prob` [K, T] is added to the exponent.
+
+    Only differences of returns matter, so the best return is first subtracted. A compiled softmax
+    would otherwise round a large S / lambda differently where it uses it twice, and overflow.
     """
+    reward_to_go = reward_to_go - reward_to_go.max(axis=0, keepdims=True)
     if normalise:
         std = jnp.std(reward_to_go, axis=0, keepdims=True)
         reward_to_go = reward_to_go / (std + 1e-6)
