@@ -1,17 +1,12 @@
 """docs/results/lookahead.md: 64 seeds of the default, its parts taken away, speed on an H200."""
 
 from pages.cited import Table, Text
-from pages.values import Curve, ahead, curve, number, read
+from pages.values import ahead, curve, number, parts, read
 
 SPEED, MANY = (read("lookahead_speed")[key] for key in ("h200", "many"))
 SEEDS = curve("hybrid_many", "hybrid_stochastic")
 EARLIER = curve("hybrid_many", "an earlier run")
 LOWEST = SEEDS.seeds(50_000).argsort()[:2]  # of the seeds from 100 on
-
-
-def part(label: str) -> Curve:
-    """A line of the picture of the default's parts."""
-    return curve("default_parts", label)
 
 
 def one(seed: int, *steps: int) -> list[float]:
@@ -27,14 +22,6 @@ def many(label: str, column: str) -> list[float]:
     if column == "lowest seed":
         return [float(each.min())]
     return [float((each < 2_500).sum())] if "below" in column else SEEDS.at(number(label))
-
-
-def taken_away(label: str, column: str) -> list[float]:
-    """A cell of the table of parts."""
-    step = number(column.split(", ")[-1])
-    if "lowest" in column:
-        return [float(part(label).seeds(step).min())]
-    return part(label).at(step)
 
 
 def speed(label: str, column: str) -> list[float]:
@@ -65,10 +52,18 @@ CITED = [
         "had # [#, #] at 40,000, the lowest #.",
         [*EARLIER.at(40_000), float(EARLIER.seeds(40_000).min())],
     ),
-    Table("default, one change | IQM and band, 10,000 | 20,000 | lowest seed, 20,000", taken_away),
+    Table(
+        "default, one change | IQM and band, 10,000 | 20,000 | lowest seed, 20,000",
+        parts("default_parts"),
+    ),
     Text(
         "ahead of the default in #% [#, #] of pairs",
-        ahead(*(part(x).seeds(20_000) for x in ("the policy alone", "the default"))),
+        ahead(
+            *(
+                curve("default_parts", label).seeds(20_000)
+                for label in ("the policy alone", "the default")
+            )
+        ),
     ),
     Table("learners, H200 | decisions/s | memory per learner, MB", speed),
     Text("One program of ten makes # there", [SPEED["default"]["10"]["decisions_per_s"]]),

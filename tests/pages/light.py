@@ -4,7 +4,7 @@ import numpy as np
 
 from hybrid_rl.studies.curves import iqm
 from pages.cited import Table, Text
-from pages.values import Curve, curve, number, read, spread
+from pages.values import Curve, curve, number, parts, read, spread
 
 TEN = "a planner of ten decisions"
 
@@ -12,13 +12,6 @@ TEN = "a planner of ten decisions"
 def half(task: str, label: str) -> Curve:
     """A line of the picture of each half alone."""
     return curve("light_halves", label, task=task.replace("-", ""))
-
-
-def part(label: str, column: str) -> list[float]:
-    """A cell of the table of parts."""
-    one = curve("light_parts", label)
-    step = number(column.split(", ")[-1])
-    return [float(one.seeds(step).min())] if "lowest" in column else one.at(step)
 
 
 def planned(label: str, column: str) -> list[float]:
@@ -56,7 +49,7 @@ CITED = [
     ),
     Table(
         "settings=light, one change | IQM and band, 10,000 | 20,000 | 30,000 | lowest seed, 30,000",
-        part,
+        parts("light_parts"),
     ),
     Table(
         "settings=light, IQM and 95% band | hybrid_stochastic | policy alone | planner alone",

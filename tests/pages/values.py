@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -66,6 +67,17 @@ def curve(name: str, label: str, metric: str = "", task: str = "") -> Curve:
     )
     each = np.array(one["each"])
     return Curve(np.array(one["x"]), each, iqm(each), *band(each))
+
+
+def parts(name: str) -> Callable[[str, str], list[float]]:
+    """Cells of a table of NAME.json's lines: at a column's step, or there its lowest seed."""
+
+    def cell(label: str, column: str) -> list[float]:
+        one = curve(name, label)
+        step = number(column.split(", ")[-1])
+        return [float(one.seeds(step).min())] if "lowest" in column else one.at(step)
+
+    return cell
 
 
 def band(each: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
