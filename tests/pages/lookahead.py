@@ -90,7 +90,7 @@ CITED = [
     ),
     Table(
         "evaluation return, IQM and 95% band, ten seeds | hybrid_stochastic | its policy alone "
-        "| settings=mbpo | sac",
+        "| settings=mbpo | sac | flash_sac",
         reported,
     ),
     Table(
@@ -208,6 +208,11 @@ PLAIN = [
     "Seeds 100 to 109, one H100",
     "on seeds 200 to 204 of",
     "`sac`: seeds 0 to 9",
+    "baseline: seeds 100 to 109, TF32",
+    "and at 100,000 the bands do not overlap; `flash_sac` needs 100,000",
+    "what the hybrid has after 40,000",
+    "needs 50,000 decisions for what the hybrid has after 20,000",
+    "overlap at 50,000. On the walker",
     "on the walker: seeds 100 to 109",
     "published curve at 20,000, 30,000 and 50,000",
     "at 50,000 ahead",
