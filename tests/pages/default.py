@@ -97,6 +97,7 @@ PLAIN = [
     "at 20,000 decisions it is ahead of the default in",
     "the band at 10,000 decisions is below the default's; at 20,000 they overlap",
     "with a discount of 0.99 one seed has",
+    "at 20,000. The default has its discount",
     "One H200 and 16 processors",
     # read from the console; the page says so
     "made 255, 1,427, 3,280 and 3,611 on an H200",

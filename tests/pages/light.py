@@ -89,7 +89,7 @@ CITED = [
 PLAIN = [
     "during the 5,000 random decisions",
     "on seeds 200 to 204 (in the picture). Here seeds 100 to 109",
-    "at 10,000 and 20,000 decisions, at 30,000 they do",
+    "overlap at 20,000 decisions; at 10,000 and 30,000 they do",
     "overlap at 20,000; at 30,000 the IQM",
     "It costs 5,000 more decisions",
     "at 25,000 and",

@@ -164,7 +164,7 @@ CITED = [
 ]
 PLAIN = [
     "at 100,000, the hybrid",
-    "needs 80,000 decisions for what the hybrid has after 50,000",
+    "After 100,000 decisions it has what the hybrid has after 50,000",
     "last returns, at 70,000, by 90,000",
     "walks by 100,000, with",
     "at 100,000. On the hopper",
