@@ -27,13 +27,17 @@ def more(task: str, label: str) -> float:
     return 100 * (planned(label, task)[0] / planned("policy alone", task)[0] - 1)
 
 
+def ten_seeds(task: str, label: str = "settings=light") -> Curve:
+    """A line of the picture of updates from the start."""
+    return curve("light_early", label, task=task.replace("-", ""))
+
+
 def early(label: str, column: str) -> list[float]:
     """A cell of the table of updates from the start."""
     task, step = label.split(", ")
-    line = "settings=light" if "lowest" in column else column
-    one = curve("light_early", line, task=task.replace("-", ""))
-    at = number(step)
-    return [float(one.seeds(at).min())] if "lowest" in column else one.at(at)
+    if column == "lowest seed":
+        return [float(ten_seeds(task).seeds(number(step)).min())]
+    return ten_seeds(task, column).at(number(step))
 
 
 CITED = [

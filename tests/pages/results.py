@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from pages import light
 from pages.cited import Table, Text
 from pages.values import curve, number, p_value, read
 
@@ -57,9 +58,7 @@ LIGHT, LIGHT_SAC = (
 MINUTES = {task: curve("light_minutes", "settings=light", task=task) for task in LIGHT_TASKS}
 
 
-TEN, TEN_HOPPERS = (
-    curve("light_early", "settings=light", task=task) for task in ("halfcheetah", "hopper")
-)
+TEN, TEN_HOPPERS = (light.ten_seeds(task) for task in ("half-cheetah", "hopper"))
 
 
 def speed(label: str, column: str) -> list[float]:

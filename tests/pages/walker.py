@@ -79,6 +79,13 @@ CITED = [
         ],
     ),
     Text(
+        "it has # [#, #] at 50,000 instead of # [#, #]",
+        [
+            *observed("walker2d", "flash_sac, all velocities").at(50_000),
+            *lookahead.hybrid("walker2d", "flash_sac").at(50_000),
+        ],
+    ),
+    Text(
         "does not walk at all**: # [#, #] at 100,000. On the hopper with all velocities it has "
         "# [#, #] there",
         [
@@ -165,6 +172,8 @@ CITED = [
 PLAIN = [
     "at 100,000, the hybrid",
     "After 100,000 decisions it has what the hybrid has after 50,000",
+    "at 50,000 instead of",
+    "at 90,000 the bands overlap. With clipped velocities",
     "last returns, at 70,000, by 90,000",
     "walks by 100,000, with",
     "at 100,000. On the hopper",
