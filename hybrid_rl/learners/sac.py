@@ -9,11 +9,6 @@ With a `lookahead` the policy maximises the soft return V_0 of H decisions in a 
 the states of the batch; with `expand` the critic learns the y_t of the same H decisions, and
 nothing from the batch's own transitions (both in `core.soft_return`). A time limit does not
 terminate the task: `truncated` is not used.
-
-With `average` the policy that acts and plans has the running mean of the learned weights w (Polyak
-and Juditsky 1992, with exponential weights), while critic and gradient keep to w itself:
-
-    w_bar <- w_bar + average (w - w_bar)   after every gradient step; w_bar = w at first
 """
 
 from dataclasses import dataclass
@@ -43,7 +38,6 @@ class SACState:
     policy_optimiser: Any
     critic_optimiser: Any
     alpha_optimiser: Any
-    average: Any = None  # of `policy` over the steps; None: `policy` itself acts
 
 
 @dataclass(frozen=True)
@@ -51,7 +45,7 @@ class SAC:
     """Soft actor-critic on a policy and a critic.
 
     Raises:
-        ValueError: for rates, a discount, tau or an average out of range.
+        ValueError: for rates, a discount or tau out of range.
     """
 
     policy: LearnedPolicy
@@ -70,7 +64,6 @@ class SAC:
     lookahead: Imagination | None = None  # the policy maximises V_0; None: the critic
     expand: bool = False  # the critic learns from the lookahead, too
     max_grad_norm: float | None = None  # of the policy's gradient; None: no limit
-    average: float | None = None  # share of the new weights in the mean that acts; None: no mean
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
@@ -84,8 +77,6 @@ class SAC:
             raise ValueError(
                 f"policy_learner.max_grad_norm={self.max_grad_norm}: must be above 0, or null"
             )
-        if self.average is not None and not 0 < self.average <= 1:
-            raise ValueError(f"policy_learner.average={self.average}: must lie in (0, 1], or null")
         if self.expand and self.lookahead is None:
             raise ValueError(
                 "policy_learner.expand=true: needs policy_learner.lookahead=${lookahead}"
@@ -105,13 +96,11 @@ class SAC:
             optax.adam(self.policy_learning_rate).init(policy),
             optax.adam(self.critic_learning_rate).init(critic),
             optax.adam(self.alpha_learning_rate).init(log_alpha),
-            None if self.average is None else jax.tree.map(jnp.copy, policy),
         )
 
     def params(self, state: SACState) -> dict[str, Any]:
-        """The policy that acts, and the critic."""
-        policy = state.policy if self.average is None else state.average
-        return {"policy": policy, "critic": state.critic}
+        """The policy and the critic."""
+        return {"policy": state.policy, "critic": state.critic}
 
     def update(
         self, state: SACState, params: Params, batch: Batch, key: Array
@@ -142,12 +131,10 @@ class SAC:
             state.alpha_optimiser,
             state.log_alpha,
         )
-        target, average = optax.incremental_update(state.critic, state.target, self.tau), None
-        if self.average is not None:
-            average = optax.incremental_update(state.policy, state.average, self.average)
+        target = optax.incremental_update(state.critic, state.target, self.tau)
         metrics = {**of_critic, **of_policy, "sac/alpha": alpha}
         return state.replace(
-            target=target, log_alpha=log_alpha, alpha_optimiser=alpha_optimiser, average=average
+            target=target, log_alpha=log_alpha, alpha_optimiser=alpha_optimiser
         ), metrics
 
     def _evaluated(

@@ -89,29 +89,6 @@ def test_the_temperature_meets_its_target() -> None:
     assert -float(log_prob.mean()) == pytest.approx(-1.0, abs=0.1)
 
 
-def test_the_mean_of_the_weights_acts() -> None:
-    """It is the recursion in NumPy over the learned weights, which are those without it."""
-    draw = partial(batch, terminated=1.0, truncated=0.0, of_action=True)
-    plain, averaged = learner(), learner(average=0.2)
-    states = [sac.init(jax.random.key(0), SPEC) for sac in (plain, averaged)]
-    updates = [jax.jit(sac.update) for sac in (plain, averaged)]
-    wanted = [np.asarray(leaf, np.float64) for leaf in jax.tree.leaves(states[0].policy)]
-    for key in jax.random.split(jax.random.key(1), 3):
-        states = [
-            update(state, Params(), draw(key), key)[0]
-            for update, state in zip(updates, states, strict=True)
-        ]
-        new = jax.tree.leaves(states[0].policy)
-        wanted = [mean + 0.2 * (leaf - mean) for leaf, mean in zip(new, wanted, strict=True)]
-        jax.tree.map(np.testing.assert_array_equal, states[0].policy, states[1].policy)
-    got = jax.tree.leaves(averaged.params(states[1])["policy"])
-    for leaf, mean in zip(got, wanted, strict=True):
-        np.testing.assert_allclose(leaf, mean, rtol=1e-4, atol=1e-6)
-    assert plain.params(states[0])["policy"] is states[0].policy
-    with pytest.raises(ValueError, match=r"policy_learner\.average=0"):
-        learner(average=0)
-
-
 @pytest.mark.parametrize("normalise", [False, True])
 def test_the_policy_normalises_states_by_the_batches(normalise) -> None:
     """With `normalise` the statistics are those of the batches; gradients do not change them."""
