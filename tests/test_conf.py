@@ -194,6 +194,9 @@ def test_default_of_hybrid_learning() -> None:
         assert (learner.memory, learner.learner.lookahead, learner.learner.updates) == (0, None, 10)
         assert c.random_steps == 1000
         config.build(c)
+    c = config.load(["settings=fast"])
+    assert (c.learners.policy.learner.updates, c.learners.model.updates) == (1, 1)
+    assert c.learners.policy.learner.lookahead.steps == 5
 
 
 def test_thesis_parameters() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pages import default, layer_norm, light, published
+from pages import default, fast, layer_norm, light, published
 from pages.cited import Table, Text
 from pages.values import Curve, curve, number, read
 
@@ -195,6 +195,7 @@ CITED = [
     ),
     Table("at 10,000 decisions | mean return | lowest seed | highest seed", parts),
     *default.CITED,
+    *fast.CITED,
     *light.CITED,
     *layer_norm.CITED,
     Text("it was no faster, #.", [SPEED["loops in CUDA graphs"]["decisions_per_s"]]),
@@ -289,6 +290,7 @@ PLAIN = [
     "over seeds 100 to 109:",
     "Ten learners to 100,000 decisions within 8 minutes, the aim, need about 2,400",
     *default.PLAIN,
+    *fast.PLAIN,
     *light.PLAIN,
     *layer_norm.PLAIN,
     # what others published
