@@ -50,8 +50,8 @@ CITED = [
     ),
     Text(
         "decisions in # minutes**, from the command to the end, with # s of compiling and ten "
-        "evaluations, on one H100 and eight processors with nothing else on them (a run of its own, "
-        "with the same returns); ten walkers in #. The",
+        "evaluations, on one H100 and eight processors with nothing else on them (a run of its "
+        "own, with the same returns); ten walkers in #. The",
         [
             TIMES["halfcheetah"]["wall_s"] / 60,
             TIMES["halfcheetah"]["compile_s"],
