@@ -125,7 +125,7 @@ def test_without_replay_it_goes_on_and_says_so(interrupt, whole, tmp_path, capsy
 
 
 def test_seeds_side_by_side_are_the_seeds_alone(interrupt, halves, tmp_path):
-    """To rounding, which grows with every decision: 2e-5 after 100, 2e-4 after 300.
+    """To rounding, which grows with every decision: 2e-5 after 100, 2e-4 to 5e-4 after 300.
 
     The agreement signal is a small difference of predicted returns: in units of those. The means of
     observations and actions are small sums of entries of about 1: in units of 1.
