@@ -3,7 +3,9 @@
     goal = argmax_i |std f(x_i)|,   x_i = z(o + e_i),  e_i ~ U(-radius, radius)^o
 
 With a Koopman model in z, whose variance is s' S s, this is active learning by a Gaussian process
-with the kernel z'z, the thesis' baseline (section 7.3). Points and radius are ours.
+with the kernel z'z, the thesis' baseline (section 7.3). Points and radius are ours. Each entry of
+an observation varies alone, so entries that depend on one another, such as those of a rotation,
+also make candidates that no motion reaches.
 """
 
 from dataclasses import dataclass, replace

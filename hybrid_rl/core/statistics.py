@@ -6,7 +6,11 @@ with a = max(1 / batches, rate): exact for the first 1 / rate batches, then expo
 statistics follow a growing replay memory.
 """
 
+from typing import Any
+
+import jax
 import jax.numpy as jnp
+import optax
 from flax import struct
 from jax import Array
 
@@ -53,6 +57,20 @@ def update(
     variance = (1 - a) * stats.std**2 + a * batch.var(0) + a * (1 - a) * step**2
     now = Running(stats.mean + a * step, jnp.sqrt(variance), stats.min_std, count)
     return now.replace(min_std=FLOOR * (now.magnitude if magnitude is None else magnitude))
+
+
+def following(old: Any, new: Any, tau: float) -> Any:
+    """Target parameters: (1 - tau) old + tau new, with the statistics of `new`.
+
+    A network's inputs and outputs have the units of its statistics, so a target in older units
+    would have another value for the same weights.
+    """
+
+    def followed(new: Any, old: Any) -> Any:
+        running = isinstance(new, Running)
+        return new if running else optax.incremental_update(new, old, tau)
+
+    return jax.tree.map(followed, new, old, is_leaf=lambda node: isinstance(node, Running))
 
 
 def normalise(stats: Running, x: Array) -> Array:

@@ -17,6 +17,7 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import statistics
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.protocols import Critic, LearnedPolicy, Model
@@ -88,7 +89,6 @@ class DDPG:
         batch = lifted_batch(self.model, params.model, batch)
         state = state.replace(
             policy=self.policy.observe(state.policy, batch.obs),
-            target_policy=self.policy.observe(state.target_policy, batch.obs),
             critic=self.critic.observe(state.critic, batch.obs, batch.reward / (1 - self.discount)),
         )
         after = self.critic.value(
@@ -116,8 +116,8 @@ class DDPG:
         change, policy_optimiser = adam.update(grads, state.policy_optimiser)
         policy: Any = optax.apply_updates(state.policy, change)
         targets = [
-            optax.incremental_update(new, old, self.tau)
-            for new, old in ((policy, state.target_policy), (critic, state.target_critic))
+            statistics.following(old, new, self.tau)
+            for old, new in ((state.target_policy, policy), (state.target_critic, critic))
         ]
         metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
         return DDPGState(

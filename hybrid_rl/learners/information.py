@@ -2,9 +2,10 @@
 
     I_j = N mean_i |F_ij|^2 / sigma^2,   F = df / dtheta at a transition i of the replay memory
 
-N is the number of decisions. The mean is a running one over batches, since theta changes. I is kept
-in `belief`; a method has one. The model is fitted to one-step transitions, so F is the derivative
-by step (core/fisher.py).
+N is the number of decisions before the present ones. The mean is a running one over batches, since
+theta changes; its oldest batches, about 1 / `rate` of them, also had an older unit of the change,
+the model's running deviation. I is kept in `belief`; a method has one. The model is fitted to
+one-step transitions, so F is the derivative by step (core/fisher.py).
 """
 
 from dataclasses import dataclass

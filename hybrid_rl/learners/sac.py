@@ -20,7 +20,7 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import soft_return
+from hybrid_rl.core import soft_return, statistics
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.protocols import Critic, Imagination, LearnedPolicy, Model
@@ -112,15 +112,16 @@ class SAC:
             policy=self.policy.observe(state.policy, batch.obs),
             critic=self.critic.observe(state.critic, batch.obs, batch.reward / (1 - self.discount)),
         )
-        noise = jax.random.normal(key, (2, *batch.action.shape))
+        acting, ahead = jax.random.split(key)
+        noise = jax.random.normal(acting, (2, *batch.action.shape))
         if self.expand:
-            state, paths, of_policy = self._improved(state, params, alpha, batch, key, noise[1])
+            state, paths, of_policy = self._improved(state, params, alpha, batch, ahead, noise[1])
             state, of_critic = self._expanded(state, alpha, paths)
         else:
             y = self._target(state, alpha, batch, noise[0])
             weight = jnp.ones_like(y)
             state, of_critic = self._evaluated(state, batch.obs, batch.action, y, weight)
-            state, _, of_policy = self._improved(state, params, alpha, batch, key, noise[1])
+            state, _, of_policy = self._improved(state, params, alpha, batch, ahead, noise[1])
 
         target_entropy = self.target_entropy
         if target_entropy is None:
@@ -131,7 +132,7 @@ class SAC:
             state.alpha_optimiser,
             state.log_alpha,
         )
-        target = optax.incremental_update(state.critic, state.target, self.tau)
+        target = statistics.following(state.target, state.critic, self.tau)
         metrics = {**of_critic, **of_policy, "sac/alpha": alpha}
         return state.replace(
             target=target, log_alpha=log_alpha, alpha_optimiser=alpha_optimiser
@@ -172,7 +173,10 @@ class SAC:
         key: Array,
         noise: Array,
     ) -> tuple[SACState, Any, dict[str, Array]]:
-        """The policy after a step from the states of `batch`, the lookahead, and metrics."""
+        """The policy after a step from the states of `batch`, the lookahead, and metrics.
+
+        The key is consumed by the lookahead, noise [B, m] by decisions without one.
+        """
         params = params._replace(critic=state.critic)
 
         def loss(policy: Any) -> tuple[Array, tuple[Array, Any]]:
@@ -181,8 +185,7 @@ class SAC:
                 v, log_prob = self.policy.sample(policy, batch.obs, noise)
                 value = self.critic.value(state.critic, batch.obs, v) - alpha * log_prob
                 return -value.mean(), (log_prob, None)
-            ahead, m = jax.random.fold_in(key, 1), batch.action.shape[-1]
-            paths = self.lookahead.imagine(known, batch.obs, m, ahead)
+            paths = self.lookahead.imagine(known, batch.obs, batch.action.shape[-1], key)
             last = self.critic.value(state.critic, paths.x[-1], paths.u[-1])
             y = soft_return.returns(paths, alpha, self.discount, last)
             return -(y[0] - alpha * paths.log_prob[0]).mean(), (paths.log_prob[0], paths)

@@ -1,7 +1,7 @@
 """Runs in which a robot feels contact: the trials, and how good their maps and poses are.
 
-objects   touched: a twentieth of their outline lies within 5 cm of a contact
-outline   share of the outlines within 5 cm of a contact
+objects   touched: a twentieth of their outline lies within 5 cm of a true contact
+outline   share of the outlines within 5 cm of a true contact
 iou       intersection over union of p > 1/2, holes filled, and the positions d < r of contact
 cells     share of 10 x 10 free cells in which the path was
 position  distance [m] of the mean pose; angle: difference [rad]; good: below 3 cm and 0.1 rad
@@ -40,6 +40,7 @@ class Trials(NamedTuple):
     start: np.ndarray  # [S, 4]
     s: np.ndarray  # [S, T, 2] positions after each decision
     y: np.ndarray  # [S, T] measured contacts
+    touch: np.ndarray  # [S, T] measured contacts that are true
     rows: dict[str, np.ndarray]  # metric -> [S, T] of metrics.jsonl
 
 
@@ -57,7 +58,10 @@ def _of(recorded: Recorded, label: str) -> Trials:
     made = one_episode(recorded)
     world = recorded.run.agent.episode.env
     s, y = made.next_obs[..., :2], made.reward
-    return Trials(label, recorded, world, made.obs[:, 0], s, y, _rows(recorded, y.shape))
+    rows = _rows(recorded, y.shape)
+    true = rows.get("world/touch", np.full(y.shape, np.nan))  # an idle robot has no such row
+    touch = y * np.where(np.isnan(true), y, true)
+    return Trials(label, recorded, world, made.obs[:, 0], s, y, touch, rows)
 
 
 def _rows(recorded: Recorded, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
@@ -126,8 +130,8 @@ def quality(run: Trials, f: np.ndarray, marks: list[int]) -> dict[str, np.ndarra
     for trial, maps in enumerate(f):
         row: dict[str, list[float]] = {}
         for count, one in zip(marks, maps, strict=True):
-            s, y = run.s[trial, :count], run.y[trial, :count]
-            apart = np.linalg.norm(outline[:, None] - s[y > 0.5][None], axis=-1)
+            s, touch = run.s[trial, :count], run.touch[trial, :count]
+            apart = np.linalg.norm(outline[:, None] - s[touch > 0.5][None], axis=-1)
             near = apart.min(1, initial=np.inf) < CLOSE
             touched = [near[owner == i].mean() >= TOUCHED for i in range(len(world.objects))]
             for name, value in {
@@ -147,8 +151,8 @@ def touched_all(run: Trials) -> np.ndarray:
     """Time [S] [s] at which every object was touched; NaN if one never was."""
     outline, owner = _outline(run.world)
     result = []
-    for s, y in zip(run.s, run.y, strict=True):
-        when = np.flatnonzero(y > 0.5)
+    for s, touch in zip(run.s, run.touch, strict=True):
+        when = np.flatnonzero(touch > 0.5)
         near = np.linalg.norm(outline[:, None] - s[when][None], axis=-1) < CLOSE
         first = np.where(near, when[None] + 1.0, np.inf).min(1, initial=np.inf)  # of each point
         each = [np.sort(first[owner == i]) for i in range(len(run.world.objects))]

@@ -150,6 +150,25 @@ def test_scaled_values_begin_at_zero_and_reach_large_returns() -> None:
     assert abs(found[1]) < 200
 
 
+def test_the_target_has_the_critic_s_statistics() -> None:
+    """After one update both are in units of the same return and see states in the same units."""
+    critic = EnsembleQ(hidden=(8,), scale=True, normalise=True)
+    sac = replace(learner(discount=0.9), critic=critic)
+    first = sac.init(jax.random.key(0), SPEC)
+
+    def at_seven(key: Array) -> Batch:
+        return batch(key, 0.0, 0.0, False)._replace(obs=jnp.full((B, 1), 7.0))
+
+    state = train(sac, at_seven, 1)
+    assert float(state.target["value"].magnitude[0]) == pytest.approx(10)
+    assert float(state.target["state"].mean[0]) == pytest.approx(7)
+    for old, new, target in zip(
+        *(jax.tree.leaves(each["weights"]) for each in (first.critic, state.critic, state.target)),
+        strict=True,
+    ):
+        np.testing.assert_allclose(target, 0.95 * old + 0.05 * new, rtol=1e-5, atol=1e-8)
+
+
 @dataclass(frozen=True)
 class Staying:
     """Three decisions in one state with reward 1; after the second the episode ends or not."""

@@ -24,7 +24,7 @@ NO_RUN: Any = None
 
 def trials(s: np.ndarray, y: np.ndarray) -> Any:
     """Trials with these positions [S, T, 2] and measurements [S, T]."""
-    return SimpleNamespace(world=WORLD, s=s, y=y)
+    return SimpleNamespace(world=WORLD, s=s, y=y, touch=y)
 
 
 def test_measures_of_a_path_around_one_of_two_discs() -> None:
@@ -58,7 +58,9 @@ def test_time_to_touch_all_objects_and_mean_over_time() -> None:
     first = np.array([0.3, 0.5]) + 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
     second = np.array([0.75, 0.5]) - 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1)
     s = np.stack([np.concatenate([first, first, second]), np.concatenate([first] * 3)])
-    run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s.astype(np.float32), np.ones((2, 30)), {})
+    run = contacts.Trials(
+        "", NO_RUN, WORLD, s[:, 0], s.astype(np.float32), *[np.ones((2, 30))] * 2, {}
+    )
     seconds = contacts.touched_all(run)
     assert seconds[0] == pytest.approx(2.1, abs=0.15)
     assert np.isnan(seconds[1])
@@ -84,7 +86,7 @@ def test_false_contacts_by_hand() -> None:
     s = np.tile(np.linspace([0.05, 0.05], [0.95, 0.05], 40)[None], (2, 1, 1)).astype(np.float32)
     y, touch = np.zeros((2, 40)), np.zeros((2, 40))
     y[0, 4] = y[0, 35] = touch[1, 7] = 1
-    run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s, y, {"world/touch": touch})
+    run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s, y, y * touch, {"world/touch": touch})
     f = np.full((2, contacts.GRID, contacts.GRID), -1.0)
     f[:, : contacts.GRID // 2] = 1.0
     got = false_contacts.measures(run, f)
@@ -92,6 +94,18 @@ def test_false_contacts_by_hand() -> None:
     np.testing.assert_array_equal(got["count"]["each"], [2, 0])
     np.testing.assert_array_equal(got["rejected"]["each"], [0.5])
     assert false_contacts.measures(run._replace(y=touch), f) == {}
+
+
+def test_false_contacts_touch_nothing() -> None:
+    """Of readings at the first disc only the true ones count, as for the time to touch all."""
+    angle = np.linspace(0, 0.6, 10)
+    s = (np.array([0.3, 0.5]) + 0.13 * np.stack([np.cos(angle), np.sin(angle)], -1))[None]
+    y, touch = np.ones((1, 10)), np.zeros((1, 10))
+    f = np.full((1, 1, contacts.GRID, contacts.GRID), -1.0)
+    for true, objects in ((touch, 0), (y, 1)):
+        run = contacts.Trials("", NO_RUN, WORLD, s[:, 0], s.astype(np.float32), y, true, {})
+        assert contacts.quality(run, f, [10])["objects"][0, 0] == objects
+        assert np.isnan(contacts.touched_all(run)[0])
 
 
 def test_a_pose_is_found_where_it_stays_good() -> None:
