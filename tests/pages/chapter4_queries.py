@@ -9,8 +9,8 @@ from pages.cited import Table, Text
 from pages.values import read
 
 ANT, LANDER, RULES = (read(f"fig_4_2{name}") for name in ("", "_lander", "_rules"))
-NORMALISED, RADIUS, EIGHTY = (
-    read(f"fig_4_2_{name}") for name in ("normalised", "radius", "eighty")
+NORMALISED, RADIUS, EIGHTY, RAW = (
+    read(f"fig_4_2_{name}") for name in ("normalised", "radius", "eighty", "raw")
 )
 SETTINGS = read("fig_4_2_settings")
 
@@ -68,7 +68,6 @@ NAMES = {
     "oracle": "oracle",
 }
 FIRST = ("N = 1", "2", "4")
-RAW = SETTINGS["ant_raw_radius_inverse_mean_over_N"]
 CLONING, RANDOM = "behaviour cloning", "RQ-DAgger"
 CITED = [
     Table(
@@ -95,7 +94,23 @@ CITED = [
         [middle(ANT, label, "mean over N") for label in ("oracle", RANDOM)],
     ),
     Text("above that of behaviour cloning (# [#, #])", cell(ANT, CLONING, "mean over N")),
-    Text("has # [#, #] in the mean over N: no difference", RAW),
+    Table(
+        "rule, radius 0.2 raw | N = 1 | 2 | 4 | 8 | 12 | mean over N"
+        " | refit, N = 4 | refit, N = 12",
+        lambda label, column: cell(RAW, label, column),
+    ),
+    Text("RQ-DAgger in #% of the pairs [#%, #%], and in", pairs(RAW, "DAgger")),
+    Text("and in #% after the refit", pairs(RAW, "DAgger", key="refit")[:1]),
+    Text("RQ-DAgger reaches # of", [middle(RAW, RANDOM, "12")]),
+    Text("at N = 12, and # after the refit.", [middle(RAW, RANDOM, "refit, N = 12")]),
+    Text(
+        "with bands apart (# to # against #)",
+        [middle(RAW, f"DAIL, {name}", "mean over N") for name in ("trace", "inverse")]
+        + [middle(RAW, "DAgger", "mean over N")],
+    ),
+    Text("random queries in #% of the pairs [#%, #%], by `trace`", pairs(RAW, "DAIL, inverse")),
+    Text("by `trace` in #% [#%, #%]", pairs(RAW, "DAIL, trace")),
+    Text("here either: # at N", [middle(RAW, "DAIL, inverse", "2")]),
     Text(
         "RQ-DAgger has #, #, # at N = 1, 2, 4, where",
         [middle(NORMALISED, RANDOM, N) for N in FIRST],
@@ -164,9 +179,11 @@ PLAIN = [
     "A refit takes 15,000 steps",
     "Radius: 0.2 standard",
     "(the thesis: 0.2 in raw",
+    "thesis prints 0.2 in raw units. Of positions and angles that is 2 to 25 times",
     "10 seeds (0 to 9), 10 episodes of 1,000 decisions",
     "one program of 10 seeds",
     "[95% band]",
+    "at N = 2, with one step",
     "rule reaches 90% of",
     "any N up to 12",
     "at N = 1 and",
