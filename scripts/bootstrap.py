@@ -2,6 +2,7 @@
 
 `make` runs it; it needs nothing but the standard library. Where Python came without
 pip (Debian's python3 does), the pip that the lock names is fetched from the index.
+What has to be built is built with the locked tools: pip fetches none of its own.
 A set-up that was interrupted starts over; of two at the same time, one waits for the other.
 """
 
@@ -36,9 +37,16 @@ def make_venv() -> None:
         subprocess.run([*command, "--without-pip", str(VENV)], check=True)
 
 
+def locked(name: str) -> str:
+    """What the lock says about one package: NAME==VERSION and its hashes."""
+    [lines] = re.findall(rf"^{name}==\S+(?: \\\n +--hash=\S+)+", LOCK.read_text(), re.M)
+    return lines
+
+
 def fetch_pip() -> Path:
     """The locked pip, as a wheel; it runs without being installed."""
-    [(version, hashes)] = re.findall(r"^pip==(\S+)((?: \\\n +--hash=\S+)+)", LOCK.read_text(), re.M)
+    hashes = locked("pip")
+    version = hashes.split()[0].removeprefix("pip==")
     wheel = VENV / f"pip-{version}-py3-none-any.whl"
     index = os.environ.get("PIP_INDEX_URL", "https://pypi.org/simple").rstrip("/") + "/pip/"
     page = urllib.request.urlopen(index).read().decode()
@@ -64,8 +72,12 @@ def main() -> None:
     UNFINISHED.touch()
     pip = ["-m", "pip"] if works(PYTHON, "-m", "pip", "--version") else [f"{fetch_pip()}/pip"]
     install = [str(PYTHON), *pip, "install", "-qq", "--disable-pip-version-check"]
-    subprocess.run([*install, "--require-hashes", "-r", str(LOCK)], check=True)
-    subprocess.run([*install, "--no-deps", "--no-build-isolation", "-e", str(ROOT)], check=True)
+    install += ["--no-build-isolation"]
+    first = VENV / "first.txt"
+    first.write_text(locked("setuptools"))
+    for lock in (first, LOCK):
+        subprocess.run([*install, "--require-hashes", "-r", str(lock)], check=True)
+    subprocess.run([*install, "--no-deps", "-e", str(ROOT)], check=True)
     STAMP.touch()
     UNFINISHED.unlink()
 
