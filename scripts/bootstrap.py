@@ -58,28 +58,33 @@ def fetch_pip() -> Path:
     return wheel
 
 
-def main() -> None:
-    """Bring .venv up to date with the lock."""
-    guard = ROOT.joinpath(".venv.lock").open("w")
-    fcntl.flock(guard, fcntl.LOCK_EX)
-    newest = max(path.stat().st_mtime for path in (LOCK, PROJECT, Path(__file__)))
-    if STAMP.exists() and STAMP.stat().st_mtime >= newest:
-        return
-    print("Setting up .venv from requirements.lock: 500 MB, a minute or two ...", flush=True)
+def install() -> None:
+    """Put the locked dependencies and this project into .venv; if it is unfinished, a fresh one."""
     supported = "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))"
     if UNFINISHED.exists() or not works(PYTHON, "-c", supported):
         make_venv()
     UNFINISHED.touch()
     pip = ["-m", "pip"] if works(PYTHON, "-m", "pip", "--version") else [f"{fetch_pip()}/pip"]
-    install = [str(PYTHON), *pip, "install", "-qq", "--disable-pip-version-check"]
-    install += ["--no-build-isolation"]
-    first = VENV / "first.txt"
-    first.write_text(locked("setuptools"))
-    for lock in (first, LOCK):
-        subprocess.run([*install, "--require-hashes", "-r", str(lock)], check=True)
-    subprocess.run([*install, "--no-deps", "-e", str(ROOT)], check=True)
+    command = [str(PYTHON), *pip, "install", "-qq", "--disable-pip-version-check"]
+    command += ["--no-build-isolation"]  # else pip fetches build tools without a hash
+    tools = VENV / "tools.txt"
+    tools.write_text(locked("setuptools"))
+    for lock in (tools, LOCK):
+        subprocess.run([*command, "--require-hashes", "-r", str(lock)], check=True)
+    subprocess.run([*command, "--no-deps", "-e", str(ROOT)], check=True)
     STAMP.touch()
     UNFINISHED.unlink()
+
+
+def main() -> None:
+    """Bring .venv up to date with the lock."""
+    newest = max(path.stat().st_mtime for path in (LOCK, PROJECT, Path(__file__)))
+    with ROOT.joinpath(".venv.lock").open("w") as guard:
+        fcntl.flock(guard, fcntl.LOCK_EX)
+        if STAMP.exists() and STAMP.stat().st_mtime >= newest:
+            return
+        print("Setting up .venv from requirements.lock: 500 MB, a minute or two ...", flush=True)
+        install()
 
 
 if __name__ == "__main__":
