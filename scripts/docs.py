@@ -1,7 +1,7 @@
 """Build the documentation site in build/docs/html, with Sphinx and MyST-NB.
 
     python scripts/docs.py
-    python scripts/docs.py fast     the same without running the notebooks, in a minute or two
+    python scripts/docs.py fast     the same without running the notebooks
     python scripts/docs.py links    requests every external link instead; needs the network
 
 The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that

@@ -8,6 +8,7 @@ by itself.
 
 import os
 from dataclasses import dataclass, field
+from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -60,7 +61,7 @@ class Duration:
 
 def instead(config: DictConfig) -> str:
     """settings=light for hybrid learning and its baselines; fewer decisions for other methods."""
-    light = OmegaConf.load(CONF / "settings" / "light.yaml")
+    light: Any = OmegaConf.load(CONF / "settings" / "light.yaml")
     networks = ["reward"]
     if "lookahead" in config.get("policy_learner", ()):  # that of SAC
         networks.append("critic")

@@ -85,7 +85,7 @@ def write(folder: Path, config: DictConfig) -> None:
     single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
     order = dict.fromkeys(["task", "algo", *single, *SECTIONS, *config])
     values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
-    made = OmegaConf.create({"version": __version__} | values | {"resume": None})
+    made: Any = OmegaConf.create({"version": __version__} | values | {"resume": None})
     write_text(folder / "config.yaml", as_yaml(made))
 
 
