@@ -30,14 +30,15 @@ format: setup
 	$(RUN) ruff check --fix
 	$(RUN) ruff format
 
-# The site in build/docs/html; make docs ARGS=links requests the external links instead. Sphinx is in .venv-docs; everything else is imported from .venv.
+# The site in build/docs/html; make docs ARGS=fast does not run the notebooks, ARGS=links requests the external links instead.
+# Sphinx is in .venv-docs; everything else is imported from .venv.
 docs: setup .venv-docs/.installed
 	PYTHONPATH=$(CURDIR):$$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))') \
 	  .venv-docs/bin/python scripts/docs.py $(ARGS)
 
 .venv-docs/.installed: docs/requirements.lock
 	$(RUN) uv venv --quiet --clear --python .venv/bin/python .venv-docs
-	$(RUN) uv pip install --quiet --python .venv-docs --require-hashes -r docs/requirements.lock
+	$(RUN) uv pip install --quiet --python .venv-docs --no-build --require-hashes -r docs/requirements.lock
 	touch $@
 
 # One lock for Python 3.11 to 3.13, Linux and macOS; JAX for the CPU. The extra docs has its own.

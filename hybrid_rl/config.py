@@ -72,14 +72,23 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 def resolved(config: DictConfig) -> DictConfig:
     """A copy with every interpolation replaced by its value.
 
-    Single values at the root that no section of the run refers to are left out.
+    What the run does not read is left out; all that the user may override is in it.
     """
-    read = reached(plain(config), READ)
     values: Any = OmegaConf.to_container(config, resolve=True)
-    used = {key: value for key, value in values.items() if key in read or isinstance(value, dict)}
-    made: Any = OmegaConf.create(used)
+    made: Any = OmegaConf.create(_of(values, reached(plain(config), READ)))
     OmegaConf.set_struct(made, True)
     return made
+
+
+def _of(values: dict[str, Any], read: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """The values whose full keys are in `read`, and the groups that hold one."""
+    kept = {}
+    for key, value in values.items():
+        path = f"{where}{key}"
+        inner = _of(value, read, f"{path}.") if isinstance(value, dict) else {}
+        if path in read or inner:
+            kept[key] = value if path in read else inner
+    return kept
 
 
 def build(config: DictConfig) -> Run:

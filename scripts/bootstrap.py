@@ -2,6 +2,7 @@
 
 `make` runs it; it needs nothing but the standard library. Where Python came without
 pip (Debian's python3 does), the pip that the lock names is fetched from the index.
+What has to be built is built with the locked tools: pip fetches none of its own.
 A set-up that was interrupted starts over; of two at the same time, one waits for the other.
 """
 
@@ -36,9 +37,16 @@ def make_venv() -> None:
         subprocess.run([*command, "--without-pip", str(VENV)], check=True)
 
 
+def locked(name: str) -> str:
+    """What the lock says about one package: NAME==VERSION and its hashes."""
+    [lines] = re.findall(rf"^{name}==\S+(?: \\\n +--hash=\S+)+", LOCK.read_text(), re.M)
+    return lines
+
+
 def fetch_pip() -> Path:
     """The locked pip, as a wheel; it runs without being installed."""
-    [(version, hashes)] = re.findall(r"^pip==(\S+)((?: \\\n +--hash=\S+)+)", LOCK.read_text(), re.M)
+    hashes = locked("pip")
+    version = hashes.split()[0].removeprefix("pip==")
     wheel = VENV / f"pip-{version}-py3-none-any.whl"
     index = os.environ.get("PIP_INDEX_URL", "https://pypi.org/simple").rstrip("/") + "/pip/"
     page = urllib.request.urlopen(index).read().decode()
@@ -50,24 +58,33 @@ def fetch_pip() -> Path:
     return wheel
 
 
-def main() -> None:
-    """Bring .venv up to date with the lock."""
-    guard = ROOT.joinpath(".venv.lock").open("w")
-    fcntl.flock(guard, fcntl.LOCK_EX)
-    newest = max(path.stat().st_mtime for path in (LOCK, PROJECT, Path(__file__)))
-    if STAMP.exists() and STAMP.stat().st_mtime >= newest:
-        return
-    print("Setting up .venv from requirements.lock: 500 MB, a minute or two ...", flush=True)
+def install() -> None:
+    """Put the locked dependencies and this project into .venv; if it is unfinished, a fresh one."""
     supported = "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))"
     if UNFINISHED.exists() or not works(PYTHON, "-c", supported):
         make_venv()
     UNFINISHED.touch()
     pip = ["-m", "pip"] if works(PYTHON, "-m", "pip", "--version") else [f"{fetch_pip()}/pip"]
-    install = [str(PYTHON), *pip, "install", "-qq", "--disable-pip-version-check"]
-    subprocess.run([*install, "--require-hashes", "-r", str(LOCK)], check=True)
-    subprocess.run([*install, "--no-deps", "--no-build-isolation", "-e", str(ROOT)], check=True)
+    command = [str(PYTHON), *pip, "install", "-qq", "--disable-pip-version-check"]
+    command += ["--no-build-isolation"]  # else pip fetches build tools without a hash
+    tools = VENV / "tools.txt"
+    tools.write_text(locked("setuptools"))
+    for lock in (tools, LOCK):
+        subprocess.run([*command, "--require-hashes", "-r", str(lock)], check=True)
+    subprocess.run([*command, "--no-deps", "-e", str(ROOT)], check=True)
     STAMP.touch()
     UNFINISHED.unlink()
+
+
+def main() -> None:
+    """Bring .venv up to date with the lock."""
+    newest = max(path.stat().st_mtime for path in (LOCK, PROJECT, Path(__file__)))
+    with ROOT.joinpath(".venv.lock").open("w") as guard:
+        fcntl.flock(guard, fcntl.LOCK_EX)
+        if STAMP.exists() and STAMP.stat().st_mtime >= newest:
+            return
+        print("Setting up .venv from requirements.lock: 500 MB, a minute or two ...", flush=True)
+        install()
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Build the documentation site in build/docs/html, with Sphinx and MyST-NB.
 
     python scripts/docs.py
+    python scripts/docs.py fast     the same without running the notebooks
     python scripts/docs.py links    requests every external link instead; needs the network
 
 The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that
@@ -228,16 +229,17 @@ def build(builder: str, out: Path, *options: str) -> None:
 
 def main() -> None:
     """Copy, make and build."""
-    if sys.argv[1:] not in ([], ["links"]):
-        sys.exit("usage: python scripts/docs.py [links]")
+    if sys.argv[1:] not in ([], ["fast"], ["links"]):
+        sys.exit("usage: python scripts/docs.py [fast | links]")
+    still = ("-D", "nb_execution_mode=off") if sys.argv[1:] else ()
     copy()
     methods()
     reference()
-    if sys.argv[1:]:
-        build("linkcheck", LINKS, "-D", "nb_execution_mode=off")
+    if "links" in sys.argv:
+        build("linkcheck", LINKS, *still)
         print(LINKS / "output.txt")
     else:
-        build("html", HTML)
+        build("html", HTML, *still)
         print(HTML / "index.html")
 
 

@@ -239,9 +239,10 @@ PLANNERS = [  # methods that have mode=planner
 def test_the_planner_of_a_method_has_neither_policy_nor_critic(algo: str) -> None:
     """Nor does its objective; if that of the full method has a critic, its horizon is longer."""
     composed = config.load([f"algo={algo}"])
+    used = "objective" if "_target_" in composed.get("objective", {}) else "model_objective"
     planner, full = (
         instantiate(node, _convert_="all")
-        for node in (composed.controllers.planner, composed.objective)
+        for node in (composed.controllers.planner, composed[used])
     )
     assert (planner.policy, planner.objective.critic, planner.objective.policy) == (None,) * 3
     assert planner.objective == dataclasses.replace(full, critic=None, policy=None)

@@ -109,3 +109,19 @@ def test_a_notebook_runs(path, tmp_path):
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(("mode", "runs"), [([], True), (["fast"], False)])
+def test_the_fast_site_has_the_same_checks_and_runs_no_notebook(mode, runs, monkeypatch):
+    lines = []
+    done = subprocess.CompletedProcess([], 0)
+    monkeypatch.setattr(subprocess, "run", lambda line, cwd: lines.append(line) or done)
+    for step in ("copy", "methods", "reference"):
+        monkeypatch.setattr(docs, step, lambda: None)
+    monkeypatch.setattr(docs, "HTML", ROOT / "none")
+    monkeypatch.setattr(sys, "argv", ["docs.py", *mode])
+    docs.main()
+    (line,) = lines
+    assert "--fail-on-warning" in line
+    assert line[line.index("--builder") + 1] == "html"
+    assert ("nb_execution_mode=off" in line) == (not runs)

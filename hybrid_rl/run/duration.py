@@ -8,6 +8,7 @@ by itself.
 
 import os
 from dataclasses import dataclass, field
+from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -60,8 +61,11 @@ class Duration:
 
 def instead(config: DictConfig) -> str:
     """settings=light for hybrid learning and its baselines; fewer decisions for other methods."""
-    light = OmegaConf.load(CONF / "settings" / "light.yaml")
-    for_it = "lookahead" in config.get("policy_learner", ())
-    if not for_it or config.critic.hidden == light.critic.hidden:
+    light: Any = OmegaConf.load(CONF / "settings" / "light.yaml")
+    networks = ["reward"]
+    if "lookahead" in config.get("policy_learner", ()):  # that of SAC
+        networks.append("critic")
+    sizes = [(OmegaConf.select(config, f"{name}.hidden"), light[name].hidden) for name in networks]
+    if all(size in (None, smaller) for size, smaller in sizes):
         return "a smaller total_steps"
     return "settings=light"

@@ -1,8 +1,9 @@
 """A run folder and its config.yaml, which holds what the run was built from.
 
-config.yaml names the version that wrote it, the single values of the configuration, and the
-SECTIONS with every interpolation resolved. A part that occurs several times, such as a model that
-both the planner and a learner have, is written once and referenced by a YAML anchor.
+config.yaml names the version that wrote it, the single values of the configuration, the SECTIONS
+with every interpolation resolved, and the parts that they refer to, by the keys that a user
+overrides. A part that occurs several times, such as a model that both the planner and a learner
+have, is written once and referenced by a YAML anchor.
 """
 
 import json
@@ -79,17 +80,13 @@ def writable(folder: Path, key: str) -> Path:
     return folder
 
 
-def pruned(config: DictConfig) -> DictConfig:
-    """A resolved configuration without the parts that are not built; it builds the same run."""
-    single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
-    order = dict.fromkeys(["task", "algo", *single, *SECTIONS])
-    values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
-    return OmegaConf.create({"version": __version__} | values | {"resume": None})
-
-
 def write(folder: Path, config: DictConfig) -> None:
     """Write config.yaml of a run with the resolved configuration `config`."""
-    write_text(folder / "config.yaml", as_yaml(pruned(config)))
+    single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
+    order = dict.fromkeys(["task", "algo", *single, *SECTIONS, *config])
+    values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
+    made: Any = OmegaConf.create({"version": __version__} | values | {"resume": None})
+    write_text(folder / "config.yaml", as_yaml(made))
 
 
 def as_yaml(config: DictConfig) -> str:

@@ -137,8 +137,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
 
 def _same(old: DictConfig, config: DictConfig) -> bool:
     """Whether the whole configuration that the user gave is that of the run."""
-    keys = folder.pruned(config).keys() - set(OF_A_SESSION)
-    return all(old.get(key, UNKNOWN) == config[key] for key in keys)
+    return all(old[key] == config[key] for key in old if key in config and key not in OF_A_SESSION)
 
 
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:

@@ -1,7 +1,8 @@
 """Run folders, read for figures: the rows of metrics.jsonl and the settings of a run.
 
-A setting is named by its full key in config.yaml, such as controllers.full.horizon, or by the last
-names of that key, such as horizon or full.horizon. Runs of older versions are read, too.
+A setting is named by a key that train takes, such as planner.horizon, by its full key in
+config.yaml, such as controllers.full.horizon, or by the last names of that key, such as
+full.horizon or horizon. Runs of older versions are read, too.
 """
 
 import difflib
@@ -144,6 +145,7 @@ class RunFolder:
         leaves = {name.rpartition(".")[2] for name in self.settings} - {"_target_"}
         close = difflib.get_close_matches(last, leaves, n=1)
         names = [name for name in self.settings if name.rpartition(".")[2] in close]
+        names.sort(key=lambda name: name.count("."))
         return f"; it has {', '.join(names[:MOST_SUGGESTED])}" if names else ""
 
 
@@ -157,23 +159,26 @@ def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 
 def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
-    """Run folders that match a glob, or that lie in the given folders."""
+    """Run folders with metrics that match a glob, or that lie in the given folders."""
     if isinstance(runs, (str, Path)):
         matches = [Path(match) for match in glob.glob(str(Path(runs).expanduser()), recursive=True)]
     else:
         matches = [Path(run) for run in runs]
-    below = {path.parent for match in matches for path in match.glob("**/metrics.jsonl")}
-    if not below:
+    files = sorted({path for match in matches for path in match.glob("**/metrics.jsonl")})
+    if not files:
         raise UsageError(f"runs={runs}: no run there (a folder that holds metrics.jsonl)")
-    return sorted(below)
+    if begun := [path.parent for path in files if path.stat().st_size]:
+        return begun  # a start that failed leaves an empty file
+    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+    raise UsageError(f"runs={runs}: {files[0]}{more}: no row of metrics yet")
 
 
 def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:
     """For each run the settings in which the runs differ: key -> value, as words.
 
     The sections `env`, `episode`, `replay`, `controllers` and `learners` are compared, and the
-    single values at the root that all runs have; not the other parts that config.yaml of an older
-    version holds. A value that occurs in several sections counts once, by its shortest key.
+    single values at the root that all runs have. A value that occurs several times, as in the parts
+    that these sections refer to, counts once, by its shortest key: the one that a user overrides.
     expected: keys that may differ, with all settings that have the same values.
     """
     settings = [run.settings for run in runs]

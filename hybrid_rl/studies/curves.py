@@ -73,10 +73,9 @@ def curves(
         UsageError: if no run matches, no run has the metric, or a file is damaged.
     """
     folders = [RunFolder(path) for path in find(runs)]
-    with_rows = [run for run in folders if run.rows]
     groups: dict[Key, list[Learner]] = {}
     notes: dict[Key, list[str]] = {}
-    for key, (members, settings) in _grouped(with_rows, x, group).items():
+    for key, (members, settings) in _grouped(folders, x, group).items():
         every = [each for run in members for each in learners(run, metric, _time(x))]
         groups[key] = [each for each in every if each.counts]
         notes[key] = [*settings, *_without_metric(metric, every), *_truncated(members)]
@@ -88,14 +87,14 @@ def curves(
             groups[key] = members
             notes[key] += lines
     if x not in TIMES:
-        numbers = {run.path: run.number(x) for run in with_rows}
+        numbers = {run.path: run.number(x) for run in folders}
         for key, members in groups.items():
             notes[key] += _duplicates([(each.seed, numbers[each.run]) for each in members])
             groups[key] = swept(members, numbers)
     drawn = sorted(
         key for key, members in groups.items() if any(np.isfinite(each.y).any() for each in members)
     )
-    lines = _lines(notes, drawn, folders)
+    lines = _lines(notes, drawn)
     return [_curve(key, metric, groups[key], smooth, lines[key]) for key in drawn]
 
 
@@ -168,13 +167,10 @@ def improvement(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     return rate(x, y), float(low), float(high)
 
 
-def _lines(
-    notes: dict[Key, list[str]], drawn: list[Key], folders: list[RunFolder]
-) -> dict[Key, list[str]]:
+def _lines(notes: dict[Key, list[str]], drawn: list[Key]) -> dict[Key, list[str]]:
     """The notes of each curve that is drawn; those of no curve are with the first one."""
     lines = {key: [f"{', '.join(key)}: {note}" for note in notes[key]] for key in sorted(notes)}
     lines[drawn[0]] += [line for key in lines if key not in drawn for line in lines[key]]
-    lines[drawn[0]] += [f"{run.path}: no rows yet; left out" for run in folders if not run.rows]
     return lines
 
 
@@ -218,15 +214,8 @@ def _truncated(members: list[RunFolder]) -> list[str]:
 def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:
     """The error if no run has the metric; it names those that the runs have."""
     names = {name for run in folders for row in run.rows for name in row} - set(NOT_ROWS)
-    if names:
-        return UsageError(
-            f"metric={metric}: not in these runs; they have {', '.join(sorted(names))}"
-        )
-    more = f" and {len(folders) - 1} more" if len(folders) > 1 else ""
-    return UsageError(
-        f"metric={metric}: not in these runs; {folders[0].path / 'metrics.jsonl'}{more}: "
-        "no metric yet"
-    )
+    has = ", ".join(sorted(names)) or "none yet"
+    return UsageError(f"metric={metric}: not in these runs; they have {has}")
 
 
 def _duplicates(learners: list[tuple[int, float]]) -> list[str]:

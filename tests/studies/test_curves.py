@@ -98,15 +98,28 @@ def test_a_short_run_without_a_common_step_is_a_point_of_its_own(tmp_path):
 def test_a_run_without_the_metric_yet_is_left_out_with_a_note(tmp_path):
     run(tmp_path / "a", [1.0], 0)
     late = run(tmp_path / "b", [0.5], 1, metric="sac/alpha")
-    begun = run(tmp_path / "c", [], 2)
     run(tmp_path / "d", [0.5], 0, metric="sac/alpha", algo="ddpg")
     (curve,) = curves(tmp_path)
     assert curve.seeds == (0,)
     assert set(curve.notes) == {
         f"hopper, sac: seed 1 of {late} has no train/return yet; left out",
         "hopper, ddpg: no train/return",
-        f"{begun}: no rows yet; left out",
     }
+
+
+def test_a_start_that_failed_is_no_run(tmp_path):
+    """It has no config.yaml, and no row or only a lock; alone it is named."""
+    failed = tmp_path / "failed"
+    failed.mkdir()
+    (failed / "lock").touch()
+    with pytest.raises(UsageError, match=r"runs=.*: no run there"):
+        curves(tmp_path)
+    (failed / "metrics.jsonl").touch()
+    with pytest.raises(UsageError, match=rf"runs=.*: {failed}/metrics.jsonl: no row of metrics"):
+        curves(tmp_path)
+    folder = run(tmp_path / "a", [1.0])
+    (curve,) = curves(f"{tmp_path}/*")
+    assert (curve.runs, curve.notes) == ((str(folder),), ())
 
 
 def test_a_task_without_the_metric_is_left_out_with_a_note(tmp_path):
@@ -203,7 +216,7 @@ def test_another_class_is_one_difference(tmp_path):
         ("metrics.jsonl", b'{"step": 1, "seed": 0, "wall_s": 1}\nnonsense\n', "line 2 is no row"),
         ("metrics.jsonl", b"[1]\n", "line 1 is no row of metrics"),
         ("metrics.jsonl", b"\xa0\xff\n", "is not text"),
-        ("metrics.jsonl", b"", "metrics.jsonl: no metric yet"),
+        ("metrics.jsonl", b"", "metrics.jsonl: no row of metrics yet"),
         ("config.yaml", b"a: [\n", "config.yaml, line 2: is not YAML"),
         ("config.yaml", b"", "config.yaml: is empty, or no group of keys"),
         ("config.yaml", b"\xa0\xff", "config.yaml: is not text"),

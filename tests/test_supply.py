@@ -1,0 +1,54 @@
+"""What the project takes from others: pinned, checked by hashes, and named with its licence."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from scripts import bootstrap
+
+ROOT = Path(__file__).resolve().parents[1]
+ASSETS = ROOT / "envs" / "assets"
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.stem)
+def test_a_workflow_takes_actions_by_commit(path):
+    """A tag or a branch may be moved to other code."""
+    text = path.read_text(encoding="utf-8")
+    used = re.findall(r"uses: (.*)", text)
+    assert used
+    pinned = re.compile(r"[\w-]+/[\w-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+")
+    assert [action for action in used if not pinned.fullmatch(action)] == []
+    assert "pipx" not in text
+
+
+@pytest.mark.parametrize("name", ["pip", "setuptools"])
+def test_the_tools_of_the_set_up_are_locked_with_hashes(name):
+    lines = bootstrap.locked(name).splitlines()
+    assert re.fullmatch(rf"{name}==[\d.]+ \\", lines[0])
+    assert all(re.fullmatch(r" +--hash=sha256:[0-9a-f]{64}( \\)?", line) for line in lines[1:])
+
+
+def test_the_set_up_checks_the_hash_of_all_that_it_installs(tmp_path, monkeypatch):
+    """Also of what builds a source distribution, which comes first and is used as it is."""
+    lines = []
+    monkeypatch.setattr(bootstrap, "VENV", tmp_path)
+    for name in ("STAMP", "UNFINISHED"):
+        monkeypatch.setattr(bootstrap, name, tmp_path / name)
+    monkeypatch.setattr(bootstrap, "works", lambda *_: True)
+    monkeypatch.setattr(bootstrap, "make_venv", lambda: None)
+    monkeypatch.setattr(bootstrap.subprocess, "run", lambda line, check: lines.append(line))
+    bootstrap.install()
+    tools, rest, ours = lines
+    assert all("--no-build-isolation" in line for line in lines)
+    assert "--require-hashes" in tools
+    assert "--require-hashes" in rest
+    assert Path(tools[-1]).read_text() == bootstrap.locked("setuptools")
+    assert rest[-1] == str(bootstrap.LOCK)
+    assert "--no-deps" in ours
+
+
+def test_every_model_is_named_with_its_source():
+    text = (ASSETS / "NOTICES.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"`(\w+\.xml)`", text)) == sorted(p.name for p in ASSETS.glob("*.xml"))
