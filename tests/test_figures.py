@@ -152,7 +152,7 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
         (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),
         (["runs=RUNS", "colour=red"], "colour=red: unknown argument"),
-        (["runs=RUNS", "view=cost"], "give key=value with study, out, runs, metric, x, group"),
+        (["runs=RUNS", "view=cost"], "give key=value with study, out, from, runs, metric, x"),
         (["out=a.png"], "runs: not given"),
         (["study=toys", "--help"], "study=toys: unknown; choose one of active_learning, "),
         (["study=toys"], "learning_curves, model_learning, toy (did you mean toy?)"),

@@ -27,6 +27,7 @@ from hybrid_rl.studies import contact_frames, contact_maps_picture, contact_pose
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE
 
+DRAWN = {"pose": contact_poses.draw_poses, "absence": contact_poses.draw_absence}
 LINES = {
     "map": contact_maps_picture.lines,
     "pose": contact_poses.lines,
@@ -55,6 +56,18 @@ def figure(
     with matplotlib.rc_context(STYLE):
         figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
+
+
+def draw(numbers: dict[str, Any]) -> Any:
+    """The picture of numbers from a JSON of view=pose or view=absence.
+
+    Raises:
+        KeyError: for other views, whose JSON has no maps.
+    """
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        return DRAWN[numbers["view"]](numbers)
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:

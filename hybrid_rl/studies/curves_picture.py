@@ -2,12 +2,12 @@
 
 import itertools
 import math
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hybrid_rl.studies import rows
 from hybrid_rl.studies.curves import Curve, plural
 from hybrid_rl.studies.style import (
     ENTRY,
@@ -16,7 +16,7 @@ from hybrid_rl.studies.style import (
     STYLE,
     legend_below,
     legend_outside,
-    lines,
+    line_styles,
     thousands,
     words,
     wrapped,
@@ -51,8 +51,8 @@ LABELS = {
 }
 PANELS = ((4.4, 3.1), (4.4, 3.1), (3.0, 2.5))  # [in] of 1, 2, 3 across, without a legend
 FEW, MOST_LINES = 3, 4  # up to FEW points of more lines are rows
-ROWS = (6.0, 0.9, 0.36)  # [in] of their panel: width, height without rows, height of a row
-ROW = 40  # [characters] of a line of the name of a row
+PER_INCH = 22  # [characters/in] fewer in the legend of a narrow panel
+ROWS = 6.0, 0.9  # [in] of their panel: width, and height without them
 SHADE = 0.8  # sum of the opacities of the bands of a panel
 MARGIN = 1.02  # of the last step, so that the marker there is whole
 TIMES = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))  # [s]
@@ -71,31 +71,32 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
     metrics, tasks = (list(dict.fromkeys(names)) for names in zip(*pairs, strict=True))
     wanted = [pair for pair in itertools.product(metrics, sorted(tasks)) if pair in pairs]
     each = [[c for c, own in zip(drawn, pairs, strict=True) if own == pair] for pair in wanted]
-    styles = lines([curve.label for curve in drawn])
+    styles = line_styles([curve.label for curve in drawn])
     across = _across(len(wanted), len(tasks) if len(metrics) > 1 else 0)
     down = math.ceil(len(wanted) / across)
     width, height = PANELS[across - 1]
-    if rows := len(drawn) > MOST_LINES and max(len(curve.x) for curve in drawn) <= FEW:
+    if short := len(drawn) > MOST_LINES and max(len(curve.x) for curve in drawn) <= FEW:
         across, down, width = 1, len(wanted), ROWS[0]
-        height = ROWS[1] + ROWS[2] * max(map(len, each))
+        height = ROWS[1] + rows.HEIGHT * max(map(len, each))
     own = [note for curve in drawn for note in curve.notes if note.startswith(f"{curve.task}, ")]
     notes = wrapped(own, round(NOTE_WIDTH * across * width / PANELS[0][0]))
-    one_legend = len(wanted) > 1 and len({tuple(map(_entry, some)) for some in each}) == 1
-    entries = 1 if rows else len(each[0]) if one_legend else down * max(map(len, each))
+    same = len({tuple(map(_entry, some)) for some in each}) == 1
+    one_legend = len(wanted) > 1 and same and not notes
+    entries = 1 if short else len(each[0]) if one_legend else down * max(map(len, each))
     with matplotlib.rc_context(STYLE):
         size = width * across, height * down + ENTRY * (entries + len(notes))
         figure = Figure(figsize=size, layout="constrained")
         panels = list(figure.subplots(down, across, squeeze=False).flat)
         for axes, some, (metric, task) in zip(panels, each, wanted, strict=False):
             axes.set_title(words(task))
-            if rows:
+            if short:
                 axes.set_xlabel(LABELS.get(metric, metric))
-                _rows(axes, some, styles)
+                _rows(axes, some)
                 continue
             _panel(axes, some, styles, x)
             axes.set_ylabel(LABELS.get(metric, metric))
             if not one_legend:
-                legend_below(axes, round(LEGEND_WIDTH * width / PANELS[0][0]))
+                legend_below(axes, LEGEND_WIDTH - round(PER_INCH * (PANELS[0][0] - width)))
         if one_legend:
             legend_outside(panels[0])
         for axes in panels[len(wanted) :]:
@@ -134,8 +135,8 @@ def _panel(axes: "Axes", drawn: list[Curve], styles: dict[str, Any], x: str) -> 
         axis.set_major_formatter(FuncFormatter(thousands))
 
 
-def _rows(axes: "Axes", drawn: list[Curve], styles: dict[str, Any]) -> None:
-    """A row for each curve, a point with its band for each of few decisions; the last is filled."""
+def _rows(axes: "Axes", drawn: list[Curve]) -> None:
+    """A row for each curve, a point with its band for each of few decisions."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     entries, counts = list(map(_entry, drawn)), {plural(len(c.seeds), "seed") for c in drawn}
@@ -143,21 +144,14 @@ def _rows(axes: "Axes", drawn: list[Curve], styles: dict[str, Any]) -> None:
         entries = [words(curve.label) for curve in drawn]
         axes.set_title(f"{axes.get_title()}, {counts.pop()}")
     times = sorted({at for curve in drawn for at in curve.x})
-    for row, curve in enumerate(drawn):
-        colour = styles[curve.label]["color"]
-        for k, at in enumerate(curve.x):
-            y = row + 0.3 * (times.index(at) - (len(times) - 1) / 2)
-            axes.plot([curve.low[k], curve.high[k]], [y, y], color=colour, lw=1.2)
-            face = colour if at == times[-1] else "white"
-            axes.plot(curve.iqm[k], y, "o", ms=5, color=colour, mfc=face)
-    for at in times:
-        face = "#444444" if at == times[-1] else "white"
-        axes.plot([], [], "o", color="#444444", mfc=face, label=f"{thousands(at)} decisions")
-    axes.set_yticks(range(len(drawn)), [textwrap.fill(entry, ROW) for entry in entries])
-    axes.set_ylim(len(drawn) - 0.5, -0.5)
+    spreads = {curve.label: np.full((len(times), 3), np.nan) for curve in drawn}
+    for curve in drawn:
+        at = [times.index(each) for each in curve.x]
+        spreads[curve.label][at] = np.stack([curve.iqm, curve.low, curve.high], 1)
+    rows.points(axes, spreads, [f"{thousands(at)} decisions" for at in times], entries)
+    legend_below(axes)
     axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.xaxis.set_major_formatter(FuncFormatter(thousands))
-    legend_below(axes)
 
 
 def _line(axes: "Axes", curve: Curve, at: np.ndarray, style: Any, shade: float) -> None:

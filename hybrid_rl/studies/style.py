@@ -52,6 +52,7 @@ WORDS = {  # label or its beginning -> what a reader sees
     "gain": "information gain",
     "norm": "norm of actions",
     "noise": "noise",
+    "none": "none",
     "computed_torque": "computed torque",
     "no_feedforward": "no feed-forward",
     "thesis_weights": "thesis' weights",
@@ -65,6 +66,7 @@ WORDS = {  # label or its beginning -> what a reader sees
 }
 STROKES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)), (0, (9, 3)))
 MARKERS = ("o", "s", "^", "D")
+MOST_DASHED = 3  # settings of a method that is alone in a picture
 ENTRY = 0.15  # [in] height of a line of a legend or of a note
 LEGEND_WIDTH, FIGURE_WIDTH = 55, 130  # [characters] under a panel of 4.4 in, a figure of 9 in
 BELOW, BELOW_TICKS = 34, 20  # [pt] from the axes to a legend: below the x label, below the ticks
@@ -89,33 +91,43 @@ STYLE: dict[Any, Any] = {
 }
 
 
-def lines(labels: Iterable[str]) -> dict[str, dict[str, Any]]:
-    """Colour, dashes and marker of each line of a picture; no two have both colour and dashes.
+def colours(labels: Iterable[str]) -> dict[str, str]:
+    """The colour of each label of a picture.
 
-    A method has its colour of METHODS, and its variants other dashes. Other labels have the colours
-    that are left; one that begins with another label is its variant. Beyond all pairs of colours
-    and dashes the markers differ.
+    A method has that of METHODS everywhere. Other labels have the colours that are left; one that
+    begins with another label has the same. Many settings of one method alone differ in colour.
     """
     distinct = list(dict.fromkeys(labels))
     family = {each: beginning(each, METHODS) or beginning(each, distinct, min) for each in distinct}
+    if len(set(family.values())) == 1 and len(distinct) > MOST_DASHED:
+        family |= {label: label for label in distinct[1:]}
     taken = {METHODS[name] for name in family.values() if name in METHODS}
     spare = itertools.cycle([colour for colour in COLOURS if colour not in taken] or COLOURS)
-    colours = dict(METHODS)
+    of_family = dict(METHODS)
+    for name in family.values():
+        if name not in of_family:
+            of_family[name] = next(spare)
+    return {label: of_family[name] for label, name in family.items()}
+
+
+def line_styles(labels: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """Colour, dashes and marker of each line of a picture; no two have both colour and dashes.
+
+    The colours are those of `colours` while there are dashes left. Beyond all pairs of colours and
+    dashes the markers differ.
+    """
+    wanted = colours(labels)
     used, styles = dict.fromkeys(COLOURS, 0), {}
-    order = list(METHODS) + distinct
-    for label in sorted(
-        distinct, key=lambda each: (order.index(family[each]), each != family[each])
-    ):
-        if family[label] not in colours:
-            colours[family[label]] = next(spare)
-        colour = colours[family[label]]
+    plain = {name: i for i, name in enumerate(METHODS)}  # these are whole lines
+    for label in sorted(wanted, key=lambda each: plain.get(each, len(plain))):
+        colour = wanted[label]
         if used[colour] >= len(STROKES):
             colour = min(COLOURS, key=lambda each: used[each])
         turn, stroke = divmod(used[colour], len(STROKES))
         used[colour] += 1
         marker = MARKERS[(stroke + turn) % len(MARKERS)]
         styles[label] = {"color": colour, "linestyle": STROKES[stroke], "marker": marker}
-    return {label: styles[label] for label in distinct}
+    return {label: styles[label] for label in wanted}
 
 
 def beginning(label: str, names: Iterable[str], best: Callable[..., str] = max) -> str:
@@ -182,13 +194,17 @@ def legend_outside(axes: "Axes") -> None:
     figure.legend(handles, labels, loc=below, ncols=max(1, min(len(labels), columns)))
 
 
-def plain_log(axis: Any) -> None:
-    """A few tick labels, as plain numbers, on a logarithmic axis; call it after plotting."""
+def plain_log(axis: Any, narrow: bool = False) -> None:
+    """A few tick labels, as plain numbers, on a logarithmic axis; call it after plotting.
+
+    narrow: an axis along which fewer labels have room.
+    """
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
     low, high = axis.get_view_interval()
-    parts = (1, 2, 5) if high < 2000 * low else (1,)  # of a decade
-    axis.set_major_locator(LogLocator(subs=parts) if high > 8 * low else MaxNLocator(5))
+    parts = (1, 2, 5) if high < (20 if narrow else 2000) * low else (1,)  # of a decade
+    decades = LogLocator(subs=parts, numticks=5 if narrow else "auto")
+    axis.set_major_locator(decades if high > 8 * low else MaxNLocator(3 if narrow else 5))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(thousands))
 
