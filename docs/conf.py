@@ -106,7 +106,9 @@ def link_pictures(app, tree, page):  # noqa: ANN001, ANN201
         if not isinstance(picture.parent, nodes.reference) and picture["uri"] in app.env.images:
             file = f"{app.builder.imagedir}/{app.env.images[picture['uri']][1]}"
             to = relative_uri(app.builder.get_target_uri(page), file)
-            picture.replace_self(nodes.reference("", "", picture.deepcopy(), refuri=to))
+            picture.replace_self(
+                nodes.reference("", "", picture.deepcopy(), refuri=to, internal=True)
+            )
 
 
 def setup(app):  # noqa: ANN001, ANN201
