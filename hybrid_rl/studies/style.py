@@ -117,7 +117,8 @@ def line_styles(labels: Iterable[str]) -> dict[str, dict[str, Any]]:
     dashes the markers differ.
     """
     wanted = colours(labels)
-    used, styles = dict.fromkeys(COLOURS, 0), {}
+    used: dict[str, int] = dict.fromkeys(COLOURS, 0)
+    styles: dict[str, dict[str, Any]] = {}
     plain = {name: i for i, name in enumerate(METHODS)}  # these are whole lines
     for label in sorted(wanted, key=lambda each: plain.get(each, len(plain))):
         colour = wanted[label]
@@ -203,7 +204,7 @@ def plain_log(axis: Any, narrow: bool = False) -> None:
 
     low, high = axis.get_view_interval()
     parts = (1, 2, 5) if high < (20 if narrow else 2000) * low else (1,)  # of a decade
-    decades = LogLocator(subs=parts, numticks=5 if narrow else "auto")
+    decades = LogLocator(subs=parts, numticks=5 if narrow else None)
     axis.set_major_locator(decades if high > 8 * low else MaxNLocator(3 if narrow else 5))
     axis.set_minor_locator(NullLocator())
     axis.set_major_formatter(FuncFormatter(thousands))

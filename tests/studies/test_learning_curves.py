@@ -142,8 +142,8 @@ def test_a_line_is_thin_where_seeds_are_missing():
 def test_more_lines_than_colours_stay_apart():
     drawn = [curve(label=f"algo{i:02}") for i in range(2 * len(COLOURS) + 1)]
     lines = plot(drawn).axes[0].lines
-    looks = {(line.get_color(), str(line._dash_pattern)) for line in lines}
-    assert len(looks) == len(drawn)
+    styles = {(line.get_color(), str(line._dash_pattern)) for line in lines}
+    assert len(styles) == len(drawn)
 
 
 def test_many_lines_of_few_points_are_rows_with_their_bands():

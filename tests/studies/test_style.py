@@ -45,7 +45,7 @@ def label_sets():
             yield from (list(part) for part in parts if isinstance(part, dict))
 
 
-def looks(styles, *names):
+def shown_by(styles, *names):
     return [tuple(str(style[name]) for name in names) for style in styles.values()]
 
 
@@ -58,10 +58,10 @@ def test_no_two_lines_of_a_picture_share_colour_and_dashes():
     each = [*label_sets(), *some, *others]
     assert len(each) > 200
     for labels in each:
-        shown = looks(line_styles(labels), "color", "linestyle")
+        shown = shown_by(line_styles(labels), "color", "linestyle")
         assert len(set(shown)) == len(set(labels)), labels
     many = [f"label {i}" for i in range(2 * len(COLOURS) * len(STROKES))]
-    assert len(set(looks(line_styles(many), "color", "linestyle", "marker"))) == len(many)
+    assert len(set(shown_by(line_styles(many), "color", "linestyle", "marker"))) == len(many)
 
 
 def test_a_method_has_one_colour_in_every_picture():
@@ -110,7 +110,7 @@ def test_labels_are_words(label, shown):
     ("study", "name"), [(study, name) for study, names in REDRAWN.items() for name in names]
 )
 def test_a_picture_is_drawn_again_from_its_json(study, name):
-    """In it no two named lines look alike, and no text is smaller than 7 pixels at 700."""
+    """In it no two named lines have the same style, and no text is smaller than 7 pixels at 700."""
     module = import_module(f"hybrid_rl.studies.{study}")
     figure, numbers = redrawn(module, str(RESULTS / f"{name}.json"))
     assert numbers == json.loads((RESULTS / f"{name}.json").read_text())
