@@ -1,6 +1,7 @@
 """The style of all pictures: colours, legends, notes, and tick labels."""
 
 import itertools
+import math
 import re
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
@@ -203,7 +204,9 @@ def plain_log(axis: Any, narrow: bool = False) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
     low, high = axis.get_view_interval()
-    parts = (1, 2, 5) if high < (20 if narrow else 2000) * low else (1,)  # of a decade
+    inside = math.floor(math.log10(high)) - math.ceil(math.log10(low)) + 1  # powers of ten
+    whole = inside > 1 if narrow else high >= 2000 * low
+    parts = (1,) if whole else (1, 2, 5)  # of a decade
     decades = LogLocator(subs=parts, numticks=5 if narrow else None)
     axis.set_major_locator(decades if high > 8 * low else MaxNLocator(3 if narrow else 5))
     axis.set_minor_locator(NullLocator())
