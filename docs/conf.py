@@ -4,7 +4,9 @@ import inspect
 import re
 from pathlib import Path
 
+from docutils import nodes
 from nbclient import NotebookClient
+from sphinx.util.osutil import relative_uri
 
 import hybrid_rl
 
@@ -98,7 +100,19 @@ def skip(_app, _what, _name, obj, skipped, _options):  # noqa: ANN001, ANN201
     return True if type(obj).__name__ == "_tuplegetter" else skipped
 
 
+def link_pictures(app, tree, page):  # noqa: ANN001, ANN201
+    """Make each picture that is no link a link to its file, which is as large as it was drawn."""
+    for picture in list(tree.findall(nodes.image)) if app.builder.format == "html" else ():
+        if not isinstance(picture.parent, nodes.reference) and picture["uri"] in app.env.images:
+            file = f"{app.builder.imagedir}/{app.env.images[picture['uri']][1]}"
+            to = relative_uri(app.builder.get_target_uri(page), file)
+            picture.replace_self(
+                nodes.reference("", "", picture.deepcopy(), refuri=to, internal=True)
+            )
+
+
 def setup(app):  # noqa: ANN001, ANN201
-    """Register what changes docstrings."""
+    """Register what changes docstrings and pictures."""
+    app.connect("doctree-resolved", link_pictures)
     app.connect("autodoc-skip-member", skip)
     app.connect("autodoc-process-docstring", convert, priority=400)

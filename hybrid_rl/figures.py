@@ -2,10 +2,11 @@
 
     python -m hybrid_rl.figures runs="runs/halfcheetah/*/*" metric=train/return out=figure.png
     python -m hybrid_rl.figures study=model_learning runs="runs/quadcopter_se3/*/*"
+    python -m hybrid_rl.figures study=koopman from=docs/results/fig_7_3.json out=fig_7_3.png
     python -m hybrid_rl.figures study=model_learning --help
 
 study=NAME --help shows what a study measures and its arguments; study=list lists the studies. A
-summary of the numbers is printed.
+summary of the numbers is printed. from=FILE.json draws a picture again, without its runs.
 """
 
 if __name__ == "__main__":
@@ -41,12 +42,13 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".pdf", ".svg")
 TABLE = ".csv"  # of studies with a function `table`
-DPI = 200
+DPI, MOST_PIXELS = 200, 1600  # of a .png; across
 DEFAULT = "learning_curves"
 ARGUMENTS = (  # of every study
     Argument("study", DEFAULT, "name of the study, or list"),
     Argument("out", "figure.png", f"the picture: {', '.join(SUFFIXES)}; JSON next to it"),
 )
+FROM = Argument("from", "", "instead of runs: the JSON of a picture, which is drawn again")
 
 
 class Study(Protocol):
@@ -63,6 +65,8 @@ class Study(Protocol):
 
     A third function, `table(numbers)`, returns the text of a table, which out=FILE.csv saves.
     """
+    draw: Callable[[dict[str, Any]], "Figure"]
+    """If it is there: the picture of numbers from a JSON, with arrays for its lists."""
 
 
 def studies() -> dict[str, str]:
@@ -99,7 +103,8 @@ def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
     out.parent.mkdir(parents=True, exist_ok=True)
     undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
     with matplotlib.rc_context(STYLE):
-        figure.savefig(out, dpi=DPI, metadata=undated)
+        dpi = min(DPI, MOST_PIXELS / figure.get_figwidth())
+        figure.savefig(out, dpi=dpi, metadata=undated)
     file, values = out.with_suffix(".json"), _plain(numbers)
     if not (file.exists() and _content(file) == values):
         file.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
@@ -122,6 +127,33 @@ def _content(file: Path) -> Any:
         return json.loads(file.read_text(encoding="utf-8"))
     except ValueError:
         return None
+
+
+def redrawn(study: Study, file: str) -> tuple["Figure", dict[str, Any]]:
+    """The picture of a JSON, and its content.
+
+    Raises:
+        UsageError: if it has no numbers that the study draws.
+    """
+    try:
+        content = json.loads(Path(file).read_text(encoding="utf-8"))
+        return study.draw(arrays(content)), content
+    except OSError as error:
+        raise UsageError(f"from={file}: cannot be read ({error.strerror})") from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise UsageError(f"from={file}: has no numbers of this study") from error
+
+
+def arrays(value: Any) -> Any:
+    """A value from JSON with lists of numbers as arrays, and null in them as NaN."""
+    if isinstance(value, dict):
+        return {name: arrays(each) for name, each in value.items()}
+    if not isinstance(value, list):
+        return value
+    try:
+        return np.array(value, float)
+    except (TypeError, ValueError):
+        return [arrays(each) for each in value]
 
 
 def _listing(known: dict[str, str]) -> str:
@@ -153,8 +185,15 @@ def main() -> None:
     if set(HELP) & set(line) and not any(text.startswith("study=") for text in line):
         doc = f"{inspect.cleandoc(__doc__ or '')}\n\nStudies (study=NAME):\n{_listing(known)}"
         doc += f"\n\nThe arguments below are those of study={DEFAULT}."
-    of_all = replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]
-    values, _ = read(doc, (*of_all, *arguments(study)))
+    of_all, again = (replace(ARGUMENTS[0], default=name), *ARGUMENTS[1:]), hasattr(study, "draw")
+    if again and any(text.startswith("from=") for text in line):
+        values, _ = read(doc, (*of_all, FROM))
+        out = output("out", values["out"], SUFFIXES, ".json")
+        save(*redrawn(study, values["from"]), out)
+        print(out)
+        return
+    values, _ = read(doc, (*of_all, *(FROM,) * again, *arguments(study)))
+    values.pop("from", None)
     table = getattr(study, "table", None)
     suffixes = SUFFIXES if table is None else (*SUFFIXES, TABLE)
     out = output("out", values.pop("out"), suffixes, ".json")

@@ -121,7 +121,10 @@ def test_pictures_fit_a_screen_and_bars_begin_at_zero(tmp_path):
     rates = [row["rate"] for row in numbers["tables"][-1]["rows"]]
     assert [bar.get_width() for bar in axes.patches] == rates
     assert axes.get_xlim()[0] == 0 == axes.patches[0].get_x()
-    assert [text.get_text() for text in axes.texts] == [f"{rate:,.0f}" for rate in rates]
+    shown = [text.get_text() for text in axes.texts]
+    assert (rates[0], shown[0]) == (pytest.approx(7384, abs=1), "7,380")
+    assert (rates[1], shown[1]) == (pytest.approx(1305043, abs=1), "1.31 million")
+    assert axes.get_yticklabels()[0].get_text() == "1 robot"
 
 
 @pytest.mark.parametrize(

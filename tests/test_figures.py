@@ -152,8 +152,11 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["runs=RUNS", "smooth=much"], "smooth=much: must be a number"),
         (["runs=RUNS", "threshold=high"], "threshold=high: must be a number in the metric's unit"),
         (["runs=RUNS", "colour=red"], "colour=red: unknown argument"),
-        (["runs=RUNS", "view=cost"], "give key=value with study, out, runs, metric, x, group"),
+        (["runs=RUNS", "view=cost"], "give key=value with study, out, from, runs, metric, x"),
         (["out=a.png"], "runs: not given"),
+        (["from=nowhere.json"], "from=nowhere.json: cannot be read (No such file or directory)"),
+        (["from=RUNS/../numbers.json"], "numbers.json: has no numbers of this study"),
+        (["study=toy", "from=a.json"], "from=a.json: unknown argument; give key=value with study"),
         (["study=toys", "--help"], "study=toys: unknown; choose one of active_learning, "),
         (["study=toys"], "learning_curves, model_learning, toy (did you mean toy?)"),
         (["study=curves"], "study=curves: unknown"),
@@ -167,6 +170,7 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
 )
 def test_bad_usage_is_one_line_and_code_2(toy, tmp_path, monkeypatch, capsys, arguments, line):
     folder = runs(tmp_path / "runs")
+    (tmp_path / "numbers.json").write_text('{"view": "falls"}')
     monkeypatch.chdir(tmp_path)
     before = sorted(path.name for path in tmp_path.iterdir())
     assert draw(*(text.replace("RUNS", str(folder)) for text in arguments)) == 2

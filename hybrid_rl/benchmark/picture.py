@@ -5,18 +5,19 @@ python -c "from hybrid_rl.benchmark.picture import redraw; redraw('benchmark.jso
 
 import json
 import math
+import re
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.studies.style import COLOURS, STYLE
+from hybrid_rl.studies.style import GREY, STYLE, VERMILION
 
 Table = dict[str, Any]  # part, what, unit, rows of name and rate
 WIDTH, BAR, HEAD = 4.2, 0.27, 0.5  # [in] of a panel; heights of a bar, and of a panel's title
 TITLE = 44  # [characters] of a line of a title
+MOST_ACROSS = 2  # panels
 ASPECT = 1.6  # width over height of a screen
-OTHERS = "#999999"  # colour of what ours is compared with
 
 
 def draw(tables: Sequence[Table], out: Path) -> list[Path]:
@@ -42,7 +43,8 @@ def _picture(tables: Sequence[Table], out: Path) -> None:
     from matplotlib.figure import Figure
 
     across = min(
-        range(1, len(tables) + 1), key=lambda n: abs(math.log(_aspect(tables, n) / ASPECT))
+        range(1, min(len(tables), MOST_ACROSS) + 1),
+        key=lambda n: abs(math.log(_aspect(tables, n) / ASPECT)),
     )
     heights = _heights(tables, across)
     with rc_context(STYLE):
@@ -70,15 +72,12 @@ def _aspect(tables: Sequence[Table], across: int) -> float:
 
 def _bars(axes: Any, table: Table, room: float) -> None:
     """One table; room: height of the panel [in], so that all bars of a picture are as thick."""
-    names = [row["name"] for row in table["rows"]]
+    names = [re.sub(r"^1 (\w+)s\b", r"1 \1", row["name"]) for row in table["rows"]]
     rates = [row["rate"] for row in table["rows"]]
     compared = any(name.startswith("ours") for name in names)
     ours = [not compared or name.startswith("ours") for name in names]
-    bars = axes.barh(
-        names, rates, color=[COLOURS[0] if own else OTHERS for own in ours], height=0.65
-    )
-    values = [f"{rate:,.0f}" if rate >= 100 else f"{rate:.3g}" for rate in rates]
-    axes.bar_label(bars, values, padding=3, fontsize=8)
+    bars = axes.barh(names, rates, color=[VERMILION if own else GREY for own in ours], height=0.65)
+    axes.bar_label(bars, list(map(rounded, rates)), padding=3, fontsize=8)
     axes.set_xlim(0, 1.35 * max(rates))  # room for the value at the longest bar
     axes.set_ylim((room - HEAD) / BAR - 0.4, -0.6)
     axes.grid(False)
@@ -86,3 +85,9 @@ def _bars(axes: Any, table: Table, room: float) -> None:
     axes.spines["bottom"].set_visible(False)
     axes.tick_params(axis="y", length=0, labelsize=8)
     axes.set_title(textwrap.fill(table["what"], TITLE), loc="left", fontsize=8)
+
+
+def rounded(rate: float) -> str:
+    """Three digits: 0.123, 58,400, 216 million."""
+    three = float(f"{rate:.3g}")
+    return f"{three / 1e6:,g} million" if three >= 1e6 else f"{three:,g}"

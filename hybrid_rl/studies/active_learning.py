@@ -35,7 +35,7 @@ from hybrid_rl.studies import unseen
 from hybrid_rl.studies.curves import band, iqm
 from hybrid_rl.studies.recorded import Recorded, matching, read
 from hybrid_rl.studies.significant import rounded
-from hybrid_rl.studies.style import COLOURS, STROKES, STYLE, legend_below
+from hybrid_rl.studies.style import STYLE, legend_outside, line_styles, words
 from hybrid_rl.studies.unseen import Unseen
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch
@@ -52,8 +52,8 @@ PANELS = {  # quantity -> title
     "cost": "Cost per decision",
     "loss_box": "Held-out loss, uniform",
     "loss_swing_up": "Held-out loss, swing-ups",
-    "log_det": "log det I under the reference",
-    "trace": "tr I under the reference",
+    "log_det": "Information, log determinant",
+    "trace": "Information, trace",
     "upright": "Share upright in the last second",
 }
 LOG = ("loss_box", "loss_swing_up", "trace")
@@ -71,7 +71,7 @@ def figure(
     if against not in [folder.name for folder in folders]:
         names = ", ".join(folder.name for folder in folders)
         raise UsageError(f"against={against}: no such run; choose one of {names}")
-    folders = sorted(folders, key=lambda folder: folder.name != against)  # it is drawn in black
+    folders = sorted(folders, key=lambda folder: folder.name != against)  # it is the first line
     data = unseen.collect(EXPERIMENT, size, episodes, SEED)
     first = read(folders[0], TASK).run
     small = next((r for f in folders if _single(r := read(f, TASK).run)), first)
@@ -99,7 +99,7 @@ def figure(
             label: refitted(one, data, small, refit) for label, one in recorded.items()
         }
     numbers["differences"] = differences(numbers["methods"], against)
-    return picture(each, numbers["exact_model"]), rounded(numbers)
+    return draw(numbers), rounded(numbers)
 
 
 def _single(run: Any) -> bool:
@@ -247,34 +247,34 @@ def _banded(values: Any) -> str:
     return f"{middle:.4g} [{low:.4g}, {high:.4g}]"
 
 
-def picture(each: dict[str, dict[str, np.ndarray]], exact: dict[str, Any]) -> Any:
-    """A panel for each quantity."""
+def draw(numbers: dict[str, Any]) -> Any:
+    """A panel for each quantity; information is that of one reference model."""
     import matplotlib
     from matplotlib.figure import Figure
 
+    methods, exact = numbers["methods"], numbers["exact_model"]
+    styles = line_styles(methods)
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(12, 7.6), layout="constrained")
+        figure = Figure(figsize=(9, 5.6), layout="constrained")
         panels = np.ravel(figure.subplots(2, 3))
         for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
-            for i, (label, one) in enumerate(each.items()):
-                style = COLOURS[i % len(COLOURS) - 1], STROKES[i // len(COLOURS)]
-                _curve(axes, label, one[name], style)
+            for label, one in methods.items():
+                _curve(axes, words(label), np.asarray(one[name]), styles[label])
             axes.set(title=title, xlabel="Episodes")
             if name in LOG:
                 axes.set_yscale("log")
         panels[0].axhline(exact["cost"][0], color="k", lw=0.8, ls=":", label="exact model")
         panels[0].set_ylim(-0.5, MOST_COST)
         panels[-1].set_ylim(-0.02, 1.02)
-        panels[-1].axhline(exact["upright"], color="k", lw=0.8, ls=":", label="exact model")
-        for axes in panels[3:]:
-            legend_below(axes)
+        panels[-1].axhline(exact["upright"], color="k", lw=0.8, ls=":")
+        legend_outside(panels[0])
     return figure
 
 
-def _curve(axes: Any, label: str, values: np.ndarray, style: tuple[str, str]) -> None:
-    """IQM and band of values [S, E]; the share of a yes or no is its mean."""
-    episodes, (colour, stroke) = np.arange(1, values.shape[1] + 1), style
-    shown = values.mean(0) if np.isin(values, (0, 1)).all() else iqm(values)
-    axes.plot(episodes, shown, color=colour, linestyle=stroke, label=label, lw=1.2)
-    if not np.isin(values, (0, 1)).all():
-        axes.fill_between(episodes, *band(values, 500), color=colour, alpha=0.1, lw=0)
+def _curve(axes: Any, label: str, values: np.ndarray, style: dict[str, Any]) -> None:
+    """IQM and band [3, E], or the share of a yes or no [E]."""
+    middle, *ends = np.atleast_2d(values)
+    episodes = np.arange(1, len(middle) + 1)
+    axes.plot(episodes, middle, label=label, lw=1.2, **style | {"marker": None})
+    if ends:
+        axes.fill_between(episodes, *ends, color=style["color"], alpha=0.1, lw=0)

@@ -18,8 +18,9 @@ from hybrid_rl.studies.backflips import (
     trained,
 )
 from hybrid_rl.studies.curves import band, improvement, iqm
-from hybrid_rl.studies.style import COLOURS, STROKES, plain_log
+from hybrid_rl.studies.style import STROKES, line_styles, plain_log, words
 
+HATCHES = ("", "//", "..", "xx", "--", "oo")  # of bars, in the order of STROKES
 CRITERIA = {
     "success": "Upside down for a second, height kept",
     "turned": "Upside down at some time",
@@ -35,11 +36,11 @@ def flips(pattern: str) -> tuple[Any, dict[str, Any]]:
         success, turned = (
             dict(zip(backflips.LENGTHS, part, strict=True)) for part in results[one[:2]]
         )
-        rows.setdefault(one.label, {})[one.most] = {
+        rows.setdefault(one.label, {})[str(one.most)] = {
             "asked": one.asked,
             "decisions_until_the_last": np.nanmax(one.decision, axis=1),
-            "success": {length: _spread(shares) for length, shares in success.items()},
-            "turned": {length: _spread(shares) for length, shares in turned.items()},
+            "success": {str(length): _spread(shares) for length, shares in success.items()},
+            "turned": {str(length): _spread(shares) for length, shares in turned.items()},
             "safety": _safety(one),
         }
     numbers = {
@@ -49,7 +50,7 @@ def flips(pattern: str) -> tuple[Any, dict[str, Any]]:
         "rows": rows,
         "comparisons": _compared({key: result[0][-1] for key, result in results.items()}),
     }
-    return _bars(rows), numbers
+    return bars(numbers), numbers
 
 
 def _spread(values: np.ndarray) -> dict[str, Any]:
@@ -81,19 +82,24 @@ def _compared(results: dict[tuple[str, int], np.ndarray]) -> dict[str, Any]:
     return pairs
 
 
-def _bars(rows: dict[str, Any]) -> Any:
-    """A panel for each criterion and training length."""
+def bars(numbers: dict[str, Any]) -> Any:
+    """Figure 6-9: a panel for each criterion and training length."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(13, 7.6), layout="constrained")
+    figure, rows = Figure(figsize=(9, 7.6), layout="constrained"), numbers["rows"]
     panels = figure.subplots(len(CRITERIA), len(backflips.LENGTHS), sharey=True, sharex=True)
-    counts = sorted({most for row in rows.values() for most in row})
+    counts = sorted({most for row in rows.values() for most in row}, key=int)
+    styles = line_styles(rows)
     width = 0.84 / len(rows)
     for line, (criterion, title) in zip(panels, CRITERIA.items(), strict=True):
         for axes, length in zip(line, backflips.LENGTHS, strict=True):
             for i, (label, row) in enumerate(rows.items()):
-                _row(axes, row, criterion, length, counts, (i + 0.5) * width - 0.42, width, i)
-                axes.containers[-1].set_label(label)
+                at, shares = (
+                    (i + 0.5) * width - 0.42,
+                    {most: one[criterion][str(length)] for most, one in row.items()},
+                )
+                _row(axes, shares, counts, at, width, styles[label])
+                axes.containers[-1].set_label(words(label))
             axes.set_title(f"{title}, after {length:,} steps", fontsize=9)
             axes.set(xticks=range(len(counts)), xticklabels=counts, ylim=(0, 102))
     for axes in panels[-1]:
@@ -101,31 +107,38 @@ def _bars(rows: dict[str, Any]) -> Any:
     for axes in panels[:, 0]:
         axes.set_ylabel(f"Flights [%], of {backflips.STARTS} a seed")
     handles, names = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower left", ncols=4, frameon=False, fontsize=8)
+    figure.legend(handles, names, loc="outside lower left", ncols=2, frameon=False, fontsize=8)
     return figure
 
 
 def _row(
-    axes: Any, row: Any, criterion: str, length: int, counts: list, at: float, width: float, i: int
+    axes: Any, row: dict[str, Any], counts: list, at: float, width: float, style: dict[str, Any]
 ) -> None:
     """The bars of one row, with bands and a dot for each seed."""
-    for most, one in row.items():
-        x, shares = counts.index(most) + at, one[criterion][length]
-        middle = shares["iqm"]
+    for most, shares in row.items():
+        x, middle = counts.index(most) + at, shares["iqm"]
         apart = [[max(0.0, middle - shares["low"])], [max(0.0, shares["high"] - middle)]]
         axes.errorbar(
             x, 100 * middle, 100 * np.array(apart), color="k", lw=0.8, capsize=2, zorder=3
         )
         spread = np.linspace(-0.25, 0.25, len(shares["each"])) * width
-        axes.plot(x + spread, 100 * shares["each"], ".", color="k", ms=2.5, alpha=0.5, zorder=3)
-    heights = [100 * row[most][criterion][length]["iqm"] for most in row]
+        axes.plot(
+            x + spread,
+            100 * np.asarray(shares["each"]),
+            ".",
+            color="k",
+            ms=2.5,
+            alpha=0.5,
+            zorder=3,
+        )
+    heights = [100 * shares["iqm"] for shares in row.values()]
     axes.bar(
         [counts.index(most) + at for most in row],
         heights,
         0.92 * width,
-        color=COLOURS[i % len(COLOURS)],
+        color=style["color"],
         alpha=0.5,
-        hatch=("", "//", "..")[i // len(COLOURS)],
+        hatch=HATCHES[STROKES.index(style["linestyle"])],
         edgecolor="white",
         linewidth=0,
     )
@@ -133,38 +146,44 @@ def _row(
 
 def queries(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Figure 6-10: information of the queries, under the clone that asked and the reference."""
-    from matplotlib.figure import Figure
-
     each = explored(pattern, "information")
     most = max(one.most for one in each)
-    figure = Figure(figsize=(11, 5.2), layout="constrained")
-    left, right = figure.subplots(1, 2)
-    numbers: dict[str, Any] = {}
-    for i, one in enumerate(one for one in each if one.most == most):
-        parts = {"own": (left, one.own), "reference": (right, by_reference(one))}
-        numbers[one.label] = {}
-        for name, (axes, information) in parts.items():
+    rows: dict[str, Any] = {}
+    for one in [one for one in each if one.most == most]:
+        rows[one.label] = {}
+        for name, information in (("own", one.own), ("reference", by_reference(one))):
             known = np.isfinite(information).all(0)  # queries that all seeds asked
             if known.any():
-                numbers[one.label][name] = _curve(axes, i, one, information[:, known])
-    left.set_title("tr I under the clone that asks")
-    right.set_title("tr I under one reference clone")
-    for axes in (left, right):
-        axes.set(xlabel="Query", yscale="log", xticks=[1, *range(5, most + 1, 5)])
+                middle, (low, high) = iqm(information[:, known]), band(information[:, known])
+                rows[one.label][name] = {"iqm": middle, "low": low, "high": high}
+    numbers = {"queries": most, "rows": rows}
+    return curves(numbers), numbers
+
+
+def curves(numbers: dict[str, Any]) -> Any:
+    """Figure 6-10: a line with its band for each row, in a panel for each clone."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 4.6), layout="constrained")
+    panels: Any = figure.subplots(1, 2)
+    titles = {"own": "by the clone that asks", "reference": "by one reference clone"}
+    styles, ticks = line_styles(numbers["rows"]), range(5, int(numbers["queries"]) + 1, 5)
+    for axes, (name, title) in zip(panels, titles.items(), strict=True):
+        for label, row in numbers["rows"].items():
+            if name in row:
+                one, style = row[name], styles[label] | {"marker": None}
+                count = 1 + np.arange(len(one["iqm"]))
+                axes.plot(count, one["iqm"], label=words(label), **style)
+                axes.fill_between(
+                    count, one["low"], one["high"], color=style["color"], alpha=0.1, lw=0
+                )
+        axes.set(title=f"Information (trace) of the queries, {title}", xlabel="Query")
+        axes.set(yscale="log", xticks=[1, *ticks])
+        axes.title.set_fontsize(9)
         plain_log(axes.yaxis)
-    handles, names = right.get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower left", ncols=3, frameon=False, fontsize=8)
-    return figure, {"queries": most, "rows": numbers}
-
-
-def _curve(axes: Any, i: int, one: Explored, information: np.ndarray) -> dict[str, Any]:
-    """The line of one row, and its numbers, for information [S, Q]."""
-    middle, (low, high) = iqm(information), band(information)
-    count = 1 + np.arange(len(middle))
-    colour, stroke = COLOURS[i % len(COLOURS)], STROKES[i // len(COLOURS)]
-    axes.plot(count, middle, color=colour, linestyle=stroke, label=one.label)
-    axes.fill_between(count, low, high, color=colour, alpha=0.1, lw=0)
-    return {"iqm": middle, "low": low, "high": high}
+    handles, names = panels[-1].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower left", ncols=2, frameon=False, fontsize=8)
+    return figure
 
 
 def lines(numbers: dict[str, Any]) -> list[str]:
@@ -172,8 +191,8 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     result = [f"teacher: {numbers['teacher']:.0%}"]
     for label, row in numbers["rows"].items():
         for most, one in row.items():
-            short, long = (_shown(one["success"][length]) for length in backflips.LENGTHS)
-            turned, safe = _shown(one["turned"][backflips.LENGTHS[-1]]), one["safety"]
+            short, long = (_shown(one["success"][str(length)]) for length in backflips.LENGTHS)
+            turned, safe = _shown(one["turned"][str(backflips.LENGTHS[-1])]), one["safety"]
             result.append(
                 f"{label}, {most} queries ({np.mean(one['asked']):.1f} asked): success {long}, "
                 f"after {backflips.LENGTHS[0]:,} steps {short}; turned {turned}; "

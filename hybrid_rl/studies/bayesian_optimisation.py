@@ -16,12 +16,13 @@ import numpy as np
 
 from hybrid_rl.studies.curves import Curve, curves, plural, spread
 from hybrid_rl.studies.style import (
-    COLOURS,
     ENTRY,
     NOTE_WIDTH,
     STYLE,
+    colours,
     legend_below,
     plain_log,
+    words,
     wrapped,
     write_notes,
 )
@@ -48,22 +49,22 @@ def figure(
     best, lyapunov = by_metric[BEST], by_metric[V]
     numbers = {name: reported(curve, lyapunov.get(name)) for name, curve in best.items()}
     notes = wrapped([note for one in numbers.values() for note in one["notes"]], 2 * NOTE_WIDTH)
-    colours = {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(best)}
+    own = colours(best)
     heights = (3.2 + ENTRY * len(best), 1.9 * len(best) + ENTRY * len(notes))
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(11.5, sum(heights)), layout="constrained")
+        figure = Figure(figsize=(9, sum(heights)), layout="constrained")
         halves: Any = figure.subfigures(2, 1, height_ratios=heights)
         above, below = halves
         values, energies = above.subplots(1, 2)
         panels = below.subplots(len(best), 2, squeeze=False)
         for (name, curve), pair in zip(best.items(), panels, strict=True):
             count = np.arange(1, curve.each.shape[1] + 1)
-            _band(values, count, curve.each, name, colours[name])
+            _band(values, count, curve.each, name, own[name])
             _measurements(pair, by_metric[POSITION][name].each[0], by_metric[VALUE][name].each[0])
-            pair[0].set(title=f"{name}: measurements, late ones light")
-            pair[1].set(title=f"{name}: coordinate of each measurement")
+            pair[0].set(title=f"{words(name)}: measurements, late ones light")
+            pair[1].set(title=f"{words(name)}: coordinate of each")
         for name, curve in lyapunov.items():
-            _band(energies, _seconds(curve), curve.each, name, colours[name])
+            _band(energies, _seconds(curve), curve.each, name, own[name])
         values.set(xlabel="Measurements", title="Best value")
         energies.set(xlabel="Time [s]", title="Lyapunov function V", yscale="log")
         plain_log(energies.yaxis)
@@ -127,7 +128,7 @@ def _seconds(curve: Curve) -> np.ndarray:
 
 def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str, colour: str) -> None:
     """Median and range of each [S, G] over trials; few points are markers."""
-    label = f"{name} ({plural(len(each), 'trial')})"
+    label = f"{words(name)} ({plural(len(each), 'trial')})"
     marker = "o" if len(x) <= FEW else None
     axes.plot(x, np.nanmedian(each, 0), color=colour, marker=marker, ms=4, label=label)
     low, high = np.nanmin(each, 0), np.nanmax(each, 0)

@@ -11,7 +11,7 @@ from hybrid_rl.studies.belief_panel import Panel
 from hybrid_rl.studies.contact_maps_picture import marks_of
 from hybrid_rl.studies.style import legend_outside
 
-COLUMNS = 8
+COLUMNS = 6
 SIDE = 1.5  # [in] of a panel
 
 

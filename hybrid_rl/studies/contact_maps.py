@@ -8,8 +8,8 @@ view=map     figures 5-2, 5-5 a b, 5-6: maps of experiment=thesis/fig_5_2 or fig
              the first trial, and over time how many objects were touched, how much of their
              outlines, and intersection over union; map_out=FILE keeps the map of trial `trial`
 view=pose    figures 5-3, 5-4, 5-5 c d, 5-7: position and angle errors of experiment=thesis/fig_5_4
-             or fig_5_7 over time, and the share of trials within 3 cm and 0.1 rad to the end; by
-             sign tests the others are compared with the first run, of the same seeds
+             or fig_5_7 at `times`, and from when on each trial is within 3 cm and 0.1 rad; by sign
+             tests the others are compared with the first run, of the same seeds
 view=frames  figures 5-4, 5-6, 5-7: path and belief of trial `trial` of one run at `times`: maps by
              outline and probability, poses by particles and the density of the target
 view=absence claim on the lack of contact: entropy of the pose after all measurements, after the
@@ -27,6 +27,7 @@ from hybrid_rl.studies import contact_frames, contact_maps_picture, contact_pose
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE
 
+DRAWN = {"pose": contact_poses.draw_poses, "absence": contact_poses.draw_absence}
 LINES = {
     "map": contact_maps_picture.lines,
     "pose": contact_poses.lines,
@@ -55,6 +56,18 @@ def figure(
     with matplotlib.rc_context(STYLE):
         figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
+
+
+def draw(numbers: dict[str, Any]) -> Any:
+    """The picture of numbers from a JSON of view=pose or view=absence.
+
+    Raises:
+        KeyError: for other views, whose JSON has no maps.
+    """
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        return DRAWN[numbers["view"]](numbers)
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:

@@ -19,7 +19,7 @@ from hybrid_rl.studies.contacts import (
     trials,
 )
 from hybrid_rl.studies.curves import band, iqm, plural
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
+from hybrid_rl.studies.style import legend_outside, line_styles, words
 
 NAMES = {
     "objects": "objects touched",
@@ -57,6 +57,7 @@ def maps(
     fine = sorted({*marks, *np.linspace(length / 12, length, 12).round().astype(int).tolist()})
     figure, panels, below = _panels(len(runs), len(marks))
     numbers: dict[str, Any] = {"times": [mark * dt for mark in fine], "methods": {}}
+    styles = line_styles([run.label for run in runs])
     for i, run in enumerate(runs):
         f = decisions(run, fine)
         measured = quality(run, f, fine)
@@ -71,7 +72,7 @@ def maps(
             if (i, mark) == (0, marks[0]):
                 panel.name(HALF)
         panels[i][0].set_title(f"{run.label}\n{marks[0] * dt:g} s", fontsize=7, loc="left")
-        line = {"color": COLOURS[i % 7], "linestyle": STROKES[i // 7 % 4], "label": run.label}
+        line = styles[run.label] | {"marker": None, "label": words(run.label)}
         for axes, (name, title) in zip(below, NAMES.items(), strict=True):
             middle, (low, high) = iqm(measured[name]), band(measured[name])
             axes.plot(np.array(fine) * dt, middle, **line)

@@ -10,9 +10,9 @@ from scipy.special import digamma
 
 from hybrid_rl.core import poses as moves
 from hybrid_rl.core import resampling
+from hybrid_rl.studies import rows
 from hybrid_rl.studies.contact_maps_picture import marks_of
 from hybrid_rl.studies.contacts import (
-    GOOD,
     Trials,
     errors,
     first,
@@ -24,37 +24,35 @@ from hybrid_rl.studies.contacts import (
 )
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.falls import wilson
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_outside
+from hybrid_rl.studies.style import GREY, legend_below, legend_outside, line_styles, plain_log
 
 KINDS = {  # which measurements y [S, T] count
     "all": lambda y: y >= 0,
     "contacts": lambda y: y > 0.5,
     "absences": lambda y: y < 0.5,
 }
+COUNTING = {
+    "all": "all measurements count",
+    "contacts": "contacts alone",
+    "absences": "absence of contact alone",
+}
 AXES = ("x", "y", "angle")
 SOME, NEAREST, RHO = 400, 16, 0.3  # particles of an entropy, neighbours; [m]
 CLOSEST = 0.003  # [m]
 EVERY = 10  # decisions between two entropies
-BANDS = 5  # runs at most of which the quartiles are drawn
 
 
 def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
-    """Errors of the mean pose over time, and the share of trials in which it is found."""
-    from matplotlib.figure import Figure
-
+    """Errors of the mean pose over time, and the times until it is found."""
     runs = trials(pattern, "pose", names)
     dt, length = runs[0].world.spec.dt, min(run.y.shape[1] for run in runs)
     marks = marks_of(times, length, dt)
-    figure = Figure(figsize=(9, 3.4), layout="constrained")
-    panels = figure.subplots(1, 3)
     numbers: dict[str, Any] = {"times": [mark * dt for mark in marks], "methods": {}}
     rival: dict[str, np.ndarray] = {}
     for i, run in enumerate(runs):
         position, angle = (each[:, :length] for each in errors(run))
         is_good = good(position, angle)
         waits = {"first": dt * first(is_good), "found": dt * found(is_good)}
-        style = {"color": COLOURS[i % 7], "linestyle": STROKES[i // 7 % 4], "label": run.label}
-        _draw(panels, dt, (position, angle, waits["found"]), style, len(runs) <= BANDS)
         one = _reported(run, position, angle, is_good, marks)
         one["lasting"] = [int((waits["found"] <= (mark + 0.5) * dt).sum()) for mark in marks]
         rival = rival or waits
@@ -63,27 +61,36 @@ def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
             if i and run.recorded.run.seeds == runs[0].recorded.run.seeds:
                 one[name]["against_first_run"] = sign_test(each, rival[name])
         numbers["methods"][run.label] = one
-    shown = "median and quartiles" if len(runs) <= BANDS else "median"
-    words = (f"position error, {shown}", f"angle error, {shown}")
-    for axes, title, unit in zip(panels, words, ("[m]", "[rad]"), strict=False):
-        axes.set(title=title, xlabel="Time [s]", ylabel=unit, yscale="log")
-    title = f"share within {GOOD[0]} m, {GOOD[1]} rad"
-    panels[2].set(title=title, xlabel="Time [s]", ylim=(0, 1))
-    legend_outside(panels[0])
-    return figure, numbers
+    return draw_poses(numbers), numbers
 
 
-def _draw(
-    panels: Any, dt: float, values: tuple[np.ndarray, ...], style: dict[str, Any], bands: bool
-) -> None:
-    """Errors [S, T] of position and angle, and the share of trials found [S] by each time."""
-    t = dt * np.arange(1, values[0].shape[1] + 1)
-    for axes, each in zip(panels, values[:2], strict=False):
-        axes.plot(t, np.median(each, 0), **style)
-        if bands:
-            quartiles = np.percentile(each, [25, 75], axis=0)
-            axes.fill_between(t, *quartiles, alpha=0.15, color=style["color"])
-    panels[2].plot(t, np.mean(values[2][:, None] <= t + dt / 2, 0), **style)
+def draw_poses(numbers: dict[str, Any]) -> Any:
+    """A row for each method: its errors at all times, and each trial's time until found."""
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
+
+    times, methods = numbers["times"], numbers["methods"]
+    height = max(2.6, 1.1 + 1.2 * rows.HEIGHT * len(methods))
+    figure = Figure(figsize=(9, height), layout="constrained")
+    errors, angles, waits = figure.subplots(1, 3, sharey=True, width_ratios=(1, 1, 1.2))
+    marks = [f"{time:g} s" for time in times]
+    for axes, name, title in (
+        (errors, "position", "Position error [m]"),
+        (angles, "angle", "Angle error [rad]"),
+    ):
+        each = {
+            label: np.array([one[name]["median"], *one[name]["band"]]).T
+            for label, one in methods.items()
+        }
+        axes.set(title=title, xscale="log")
+        rows.points(axes, each, marks if axes is errors else ())
+        plain_log(axes.xaxis, narrow=True)
+    each = {label: np.array(one["found"]["each"], float) for label, one in methods.items()}
+    rows.trials(waits, each, times[-1])
+    legend_outside(errors)
+    waits.xaxis.set_major_locator(MaxNLocator(5))
+    waits.set(title="Found after [s], grey: never", xlim=(0, None))
+    return figure
 
 
 def _reported(
@@ -169,33 +176,42 @@ def _against(one: dict[str, Any]) -> str:
 
 def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     """Entropy of the pose over time, and the error of its mean, by which measurements count."""
-    from matplotlib.figure import Figure
-
     run = trials(pattern, "absence")[0]
     errors(run)  # refuses a run without poses
     dt, length = run.world.spec.dt, run.y.shape[1]
     at = np.array(marks_of(times, length, dt)) - 1
-    figure = Figure(figsize=(5, 3.4), layout="constrained")
-    axes = figure.subplots()
     at = np.unique([*range(EVERY - 1, length, EVERY), *at])
     kinds = {}
     filtered = _filter(run)
-    for i, (kind, counts) in enumerate(KINDS.items()):
-        rows, theta = filtered(counts(run.y))
+    for kind, counts in KINDS.items():
+        means, theta = filtered(counts(run.y))
         entropy = np.array([[entropy_of(each[j]) for j in at] for each in theta])
         low, high = band(entropy)
-        axes.plot(dt * (at + 1), iqm(entropy), color=COLOURS[i], label=kind)
-        axes.fill_between(dt * (at + 1), low, high, alpha=0.2, color=COLOURS[i])
-        position, angle = (each[:, at] for each in errors(run._replace(rows=rows)))
+        position, angle = (each[:, at] for each in errors(run._replace(rows=means)))
         each = {"each": entropy, "position": position, "angle": angle}
         kinds[kind] = {"iqm": iqm(entropy), "low": low, "high": high, **each}
     less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
     least = _entropy_of_balls(np.full(SOME, CLOSEST))
-    axes.axhline(least, color="#444444", linestyle="--", linewidth=0.8)
-    axes.set(title="entropy of the pose", xlabel="Time [s]", ylabel="[nat]")
-    axes.legend()
     head = {"times": dt * (at + 1), "trials": len(run.y), "least_entropy": least}
-    return figure, {**head, "kinds": kinds, "absences_leave_no_more": less}
+    numbers = {**head, "kinds": kinds, "absences_leave_no_more": less}
+    return draw_absence(numbers), numbers
+
+
+def draw_absence(numbers: dict[str, Any]) -> Any:
+    """Entropy over time by the measurements that count; grey: the least that can be measured."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.4, 3.4), layout="constrained")
+    axes, styles = figure.subplots(), line_styles(numbers["kinds"])
+    for kind, one in numbers["kinds"].items():
+        style = styles[kind] | {"marker": None, "label": COUNTING[kind]}
+        axes.plot(numbers["times"], one["iqm"], **style)
+        ends = one["low"], one["high"]
+        axes.fill_between(numbers["times"], *ends, alpha=0.2, color=style["color"], lw=0)
+    axes.axhline(numbers["least_entropy"], color=GREY, linestyle="--", linewidth=0.8)
+    axes.set(title="Entropy of the pose [nat]", xlabel="Time [s]")
+    legend_below(axes)
+    return figure
 
 
 def entropy_of(theta: np.ndarray) -> float:

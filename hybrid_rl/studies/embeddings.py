@@ -15,9 +15,10 @@ import numpy as np
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.results import RunFolder
+from hybrid_rl.studies import rows
 from hybrid_rl.studies.curves import plural
 from hybrid_rl.studies.recorded import matching, read
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below, plain_log
+from hybrid_rl.studies.style import legend_below, line_styles, plain_log, words
 
 CART, ARM = "cart_pendulum", "two_link"
 SUCCESS = "eval/policy_success"
@@ -37,7 +38,7 @@ def embedding(pattern: str) -> tuple[Any, dict[str, Any]]:
             raise UsageError(f"runs={folder}: needs a run of {CART} or {ARM}")
         label = _label(folder, folders)
         numbers[task][label] = (cart if task == CART else arm)(run)
-    return _picture({task: each for task, each in numbers.items() if each}), numbers
+    return draw(numbers), numbers
 
 
 def _label(folder: Path, folders: list[Path]) -> str:
@@ -133,14 +134,15 @@ def _or_never(value: float) -> str:
     return f"{value:g}" if np.isfinite(value) else "never"
 
 
-def _picture(numbers: dict[str, Any]) -> Any:
-    """A strip of iterations per method of the cart, curves of distance of the arm."""
+def draw(numbers: dict[str, Any]) -> Any:
+    """A row of trials per method of the cart, curves of distance of the arm."""
     from matplotlib.figure import Figure
 
-    rows = max(len(each) for each in numbers.values())
-    figure = Figure(figsize=(5.5 * len(numbers), 3.2 + 0.25 * rows), layout="constrained")
-    panels = figure.subplots(1, len(numbers), squeeze=False)[0]
-    for axes, (task, methods) in zip(panels, numbers.items(), strict=True):
+    drawn = {task: numbers[task] for task in (CART, ARM) if numbers[task]}
+    most = max(map(len, drawn.values()))
+    figure = Figure(figsize=(4.5 * len(drawn), 2.6 + 0.25 * most), layout="constrained")
+    panels = figure.subplots(1, len(drawn), squeeze=False)[0]
+    for axes, (task, methods) in zip(panels, drawn.items(), strict=True):
         (_carts if task == CART else _arms)(axes, methods)
     return figure
 
@@ -148,28 +150,19 @@ def _picture(numbers: dict[str, Any]) -> Any:
 def _carts(axes: Any, methods: dict[str, Any]) -> None:
     """The first stable iteration of each trial; those that never were are at the right edge."""
     end = max(one["last_iteration"] for one in methods.values())
-    never = 1.25 * end
-    for i, one in enumerate(methods.values()):
-        each = np.minimum(one["iterations_of_trials"], never)
-        spread = i + np.linspace(-0.25, 0.25, len(each))
-        axes.plot(np.sort(each), spread, "o", ms=3, alpha=0.6, color=COLOURS[i % len(COLOURS)])
-        middle = min(one["iterations"][0], never)
-        axes.plot([middle, middle], [i - 0.35, i + 0.35], color="k", lw=1.5)
-    axes.axvspan(1.1 * end, 1.4 * end, color="#EEEEEE", lw=0)
-    axes.set(xscale="log", xlim=(0.8, 1.4 * end), xlabel="Iterations (grey: never)")
-    axes.set(title="Cart pendulum: until stabilised, trials and median")
-    axes.set_yticks(range(len(methods)), list(methods))
-    axes.invert_yaxis()
+    axes.set(xscale="log", xlim=(0.8, None), xlabel="Iterations (grey: never)")
+    rows.trials(axes, {label: one["iterations_of_trials"] for label, one in methods.items()}, end)
+    axes.set_title("Cart pendulum: until stabilised")
     plain_log(axes.xaxis)
 
 
 def _arms(axes: Any, methods: dict[str, Any]) -> None:
     """Median and quartiles of the distance at the end of each attempt."""
-    for i, (label, one) in enumerate(methods.items()):
-        middle, low, high = one["distance"]
-        colour, stroke = COLOURS[i % len(COLOURS)], STROKES[i // len(COLOURS) % len(STROKES)]
-        axes.plot(one["attempts"], middle, color=colour, linestyle=stroke, label=label)
-        axes.fill_between(one["attempts"], low, high, color=colour, alpha=0.1, lw=0)
+    styles = line_styles(methods)
+    for label, one in methods.items():
+        (middle, low, high), style = one["distance"], styles[label] | {"marker": None}
+        axes.plot(one["attempts"], middle, label=words(label), **style)
+        axes.fill_between(one["attempts"], low, high, color=style["color"], alpha=0.1, lw=0)
     axes.set(xlabel="Iterations", yscale="log", title="Arm: distance after 2 s [rad]")
     plain_log(axes.yaxis)
     legend_below(axes)

@@ -23,7 +23,7 @@ from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.studies.curves import plural, spread
 from hybrid_rl.studies.significant import rounded
-from hybrid_rl.studies.style import STYLE, legend_below, plain_log
+from hybrid_rl.studies.style import STYLE, legend_below, line_styles, plain_log
 from hybrid_rl.studies.time_averages import (
     GRID,
     VARIANCE,
@@ -109,6 +109,7 @@ def control(seeds: int, steps: int) -> tuple[Any, dict]:
         panel.remove()
     over_time = figure.add_subplot(panels[0, 0].get_gridspec()[:, 2])
     recorded = np.unique([*range(9, steps, 10), steps - 1])  # every tenth decision, and the last
+    styles = line_styles(NAMES)
     for i, (algo, name) in enumerate(NAMES.items()):
         began = perf_counter()
         run = build(load([*FIGURE, f"algo={algo}", f"episode.steps={steps + 1}"]))
@@ -118,8 +119,9 @@ def control(seeds: int, steps: int) -> tuple[Any, dict]:
         numbers[algo] = {"t": t[recorded], "divergence": each[:, recorded]}
         print(f"{name}: {plural(seeds, 'seed')}, {perf_counter() - began:.0f} s", flush=True)
         low, middle, high = np.quantile(each, [0.25, 0.5, 0.75], axis=0)
-        over_time.semilogy(t, middle, label=name)
-        over_time.fill_between(t, low, high, alpha=0.2, lw=0)
+        style = styles[algo] | {"marker": None}
+        over_time.semilogy(t, middle, label=name, **style)
+        over_time.fill_between(t, low, high, color=style["color"], alpha=0.2, lw=0)
         if i < 2:
             density = on_grid(np.exp(log_density(run, grid())))
             _show(panels[i][0], density, f"target, trajectory: {name}")
@@ -186,7 +188,6 @@ def marginals(task: str, seeds: int, steps: int) -> tuple[Any, dict]:
 
 def cost(repeats: int = 9) -> tuple[Any, dict]:
     """Time of one plan of the quadcopter over the dimension of the search space."""
-    figure, panels = _subplots(1, 1)
     numbers: dict[str, Any] = {"horizon": 5, "samples": 100, "modes": 5, "repeats": repeats}
     order = [12, 13, 14, 15, 16, 17, 0, 1, 2, 4, 5, 8]  # v, w, p, three of R
     for algo in ("kle3", "fourier_ergodic"):
@@ -200,12 +201,28 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
             print(f"{NAMES[algo]}, {v} dimensions: timed", flush=True)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}
-        milliseconds = 1e3 * np.array(list(times.values()))
-        panels[0][0].semilogy(list(times), milliseconds, "o-", label=NAMES[algo])
-    panels[0][0].set(xlabel="Dimension of the search space", ylabel="One plan [ms]")
-    plain_log(panels[0][0].yaxis)
-    legend_below(panels[0][0])
-    return figure, numbers
+    return draw_cost(numbers), numbers
+
+
+def draw_cost(numbers: dict[str, Any]) -> Any:
+    """Milliseconds of a plan over the dimension, a line for each controller."""
+    figure, ((axes,),) = _subplots(1, 1)
+    styles = line_styles(("kle3", "fourier_ergodic"))
+    for algo, style in styles.items():
+        one = numbers[algo]
+        axes.plot(one["dimension"], 1e3 * np.asarray(one["seconds"]), label=NAMES[algo], **style)
+    axes.set(xlabel="Dimension of the search space", ylabel="One plan [ms]", yscale="log")
+    plain_log(axes.yaxis)
+    legend_below(axes)
+    return figure
+
+
+def draw(numbers: dict[str, Any]) -> Any:
+    """The picture of numbers from a JSON of view=cost; the JSON of other views has no densities."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        return draw_cost(numbers)
 
 
 def _seconds(run: Run, repeats: int) -> float:
@@ -229,7 +246,7 @@ def _subplots(down: int, across: int) -> tuple[Any, Any]:
     """A figure, and its panels [down, across]."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(3.4 * across, 3.1 * down), layout="constrained")
+    figure = Figure(figsize=(min(3.4 * across, 9.0), 2.9 * down), layout="constrained")
     return figure, figure.subplots(down, across, squeeze=False)
 
 

@@ -22,9 +22,10 @@ from hybrid_rl.config import Run, build
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.studies import rows
 from hybrid_rl.studies.curves import band, iqm
 from hybrid_rl.studies.recorded import labels, matching
-from hybrid_rl.studies.style import COLOURS
+from hybrid_rl.studies.style import STYLE, words
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Spec
@@ -64,7 +65,7 @@ def figure(
         numbers["runs"][name] = {"step": step, "seeds": list(run.seeds)} | {
             kind: {"iqm": iqm(e), "band": band(e), "each": e} for kind, e in each.items()
         }
-    return draw(numbers["runs"]), numbers
+    return draw(numbers), numbers
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:
@@ -141,17 +142,22 @@ def errors(run: Run, params: Params, obs: Array, action: Array, after: Array) ->
     return np.asarray(jax.jit(lambda params: jax.lax.map(one, params))(params.model))
 
 
-def draw(runs: dict[str, Any]) -> Any:
-    """A panel for each kind of decisions, a point with its band for each run."""
+def draw(numbers: dict[str, Any]) -> Any:
+    """A panel for each kind of decisions, a point with its band for each run; grey: each seed."""
+    import matplotlib
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8, 1.2 + 0.3 * len(runs)), layout="constrained")
-    for axes, kind in zip(figure.subplots(1, 2, sharey=True), SETS, strict=True):
-        for row, one in enumerate(runs.values()):
-            middle, (low, high) = one[kind]["iqm"], one[kind]["band"]
-            axes.plot([low, high], [row, row], color=COLOURS[0])
-            axes.plot(one[kind]["each"], [row] * len(one[kind]["each"]), ".", color="#BBBBBB")
-            axes.plot(middle, row, "o", color=COLOURS[0])
-        axes.set(title=f"on {kind}", xlabel="held-out error")
-        axes.set_yticks(range(len(runs)), list(runs))
+    runs = numbers["runs"]
+    steps = [f"{int(one['step']):,}" for one in runs.values()]
+    names = [run.removesuffix(step).rstrip(" ,:") for run, step in zip(runs, steps, strict=True)]
+    entries = [f"{words(name)}, {step} decisions" for name, step in zip(names, steps, strict=True)]
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(8, 1.0 + rows.HEIGHT * len(runs)), layout="constrained")
+        for axes, kind in zip(figure.subplots(1, 2, sharey=True), SETS, strict=True):
+            for row, one in enumerate(runs.values()):
+                each = one[kind]["each"]
+                axes.plot(each, [row] * len(each), ".", color="#BBBBBB")
+            spreads = {run: [[one[kind]["iqm"], *one[kind]["band"]]] for run, one in runs.items()}
+            rows.points(axes, spreads, entries=entries)
+            axes.set(title=f"on {kind}", xlabel="held-out error")
     return figure

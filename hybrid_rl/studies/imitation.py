@@ -21,6 +21,11 @@ from hybrid_rl.studies import backflip_picture, queries_picture
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE
 
+DRAWN = {
+    "queries": queries_picture.picture,
+    "backflips": backflip_picture.bars,
+    "information": backflip_picture.curves,
+}
 LINES = {
     "queries": queries_picture.lines,
     "backflips": backflip_picture.lines,
@@ -45,6 +50,14 @@ def figure(
     with matplotlib.rc_context(STYLE):
         figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
+
+
+def draw(numbers: dict[str, Any]) -> Any:
+    """The picture of numbers from a JSON."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        return DRAWN[numbers["view"]](numbers)
 
 
 def _counts(at: str) -> list[int]:

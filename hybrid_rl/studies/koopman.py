@@ -8,7 +8,7 @@ view=control    figure 7-1: Van der Pol's oscillator under three regulators. Cos
                 LQR, over horizons and ranges of the data
 view=falls      figure 7-2: trials of experiment=thesis/fig_7_2, a run per method. Trials at rest
                 (|v|^2 + |w|^2 below 0.01 to the end) with Wilson's 95% interval, errors,
-                information, greatest twist, and the first trials of `strips` as pictures
+                information, greatest twist
 view=initial    figure 7-3: the same for runs that differ in the first K
 view=embedding  figure 7-4: iterations until stabilised, and the arm's distance to its target
 view=tracking   figures 7-6 and 7-7: RMSE, correlation and lag along a reference, after the
@@ -22,6 +22,12 @@ from hybrid_rl.studies import embeddings, falls, falls_picture, oscillator, trac
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE
 
+DRAWN = {
+    "falls": falls_picture.draw_information,
+    "initial": falls_picture.draw_initial,
+    "embedding": embeddings.draw,
+    "tracking": tracking.draw,
+}
 LINES = {
     "control": oscillator.lines,
     "falls": falls.lines,
@@ -34,7 +40,6 @@ LINES = {
 def figure(
     view: Annotated[str, ", ".join(LINES), one_of(*LINES)] = "control",
     runs: Annotated[str, "run folders, of every view but control; a pattern in quotes"] = "",
-    strips: Annotated[str, "of view=falls: methods drawn as strips, with commas between"] = "",
     samples: Annotated[int, "of view=control: decisions of a draw of the data", whole(10)] = 5000,
     draws: Annotated[int, "of view=control: draws of the data", whole()] = 10,
     starts: Annotated[int, "of view=control: paths of each regulator", whole()] = 50,
@@ -44,7 +49,7 @@ def figure(
 
     views = {
         "control": lambda: oscillator.control(samples, draws, starts),
-        "falls": lambda: falls_picture.information(runs, strips),
+        "falls": lambda: falls_picture.information(runs),
         "initial": lambda: falls_picture.initial(runs),
         "embedding": lambda: embeddings.embedding(runs),
         "tracking": lambda: tracking.tracking(runs),
@@ -52,6 +57,18 @@ def figure(
     with matplotlib.rc_context(STYLE):
         figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
+
+
+def draw(numbers: dict[str, Any]) -> Any:
+    """The picture of numbers from a JSON, without the paths of view=tracking.
+
+    Raises:
+        KeyError: for view=control, whose JSON has no paths at all.
+    """
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        return DRAWN[numbers["view"]](numbers)
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:

@@ -27,6 +27,7 @@ FALL = "experiment=thesis/fig_7_2"
 HORIZONS = (16, 32, 64, 128, 256)
 FORGETTING = (0.9, 0.95, 0.97, 0.98, 0.985, 0.99, 0.995, 1.0)
 PRIORS = (1e-4, 1e-3, 1e-2, 0.1, 1.0)
+MOST_ACROSS = 3  # panels
 BELOW = 0.01  # of |v|^2 + |w|^2
 
 
@@ -55,7 +56,7 @@ def figure(
         **{name: list(values) for name, values in axes.items()},
         **{name: [one[name] for one in results] for name in results[0]},
     }
-    return _plot(numbers), numbers
+    return draw(numbers), numbers
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:
@@ -124,26 +125,30 @@ def _median(times: np.ndarray) -> np.ndarray:
     return np.array(each).reshape(times.shape[:-1])
 
 
-def _plot(numbers: dict[str, Any]) -> Any:
+def draw(numbers: dict[str, Any]) -> Any:
     """Share of successes by forgetting and prior, a panel for each horizon."""
     import matplotlib
     from matplotlib.figure import Figure
 
     horizons, forgetting, priors = (numbers[name] for name in ("horizons", "forgetting", "priors"))
     with matplotlib.rc_context({**STYLE, "axes.grid": False}):
-        size = (1.0 + 2.1 * len(horizons), 1.3 + 0.33 * len(forgetting))
+        across = min(len(horizons), MOST_ACROSS)
+        down = -(-len(horizons) // across)
+        size = (1.0 + 2.6 * across, down * (0.8 + 0.26 * len(forgetting)))
         figure = Figure(figsize=size, layout="constrained")
-        axes: Any = figure.subplots(1, len(horizons), squeeze=False, sharey=True)
-        for panel, horizon, share in zip(axes[0], horizons, numbers["share"], strict=True):
+        axes: Any = figure.subplots(down, across, squeeze=False, sharey=True)
+        for panel in axes.flat[len(horizons) :]:
+            panel.remove()
+        panels = axes.flat[: len(horizons)]
+        for panel, horizon, share in zip(panels, horizons, numbers["share"], strict=True):
             image = panel.imshow(share, vmin=0, vmax=1, cmap="viridis", aspect="auto")
-            panel.set(title=f"horizon {horizon:g}", xlabel="prior")
-            panel.set_xticks(
-                range(len(priors)), [f"{value:.0e}".replace("e-0", "e-") for value in priors]
-            )
+            panel.set(title=f"horizon of {horizon:g} decisions", xlabel="weight of the prior")
+            panel.set_xticks(range(len(priors)), [f"{value:g}" for value in priors])
             panel.set_yticks(range(len(forgetting)), [f"{value:g}" for value in forgetting])
             for (i, j), value in np.ndenumerate(np.asarray(share)):
                 colour = "black" if value > 0.6 else "white"
                 panel.text(j, i, f"{value:.0%}", ha="center", va="center", color=colour, size=7)
-        axes[0][0].set(ylabel="forgetting per decision")
-        figure.colorbar(image, ax=axes[0], label="share of falls that stop")
+        for panel in axes[:, 0]:
+            panel.set(ylabel="forgetting per decision")
+        figure.colorbar(image, ax=list(panels), label="share of falls that stop")
     return figure

@@ -16,8 +16,6 @@ missing values and failed seeds are in the picture and in the JSON.
 
 import itertools
 import json
-import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -35,44 +33,12 @@ from hybrid_rl.studies.curves import (
     spread,
     steps_to,
 )
+from hybrid_rl.studies.curves_picture import plot
 from hybrid_rl.studies.long_table import long_table
-from hybrid_rl.studies.style import (
-    COLOURS,
-    ENTRY,
-    NOTE_WIDTH,
-    STROKES,
-    STYLE,
-    legend_below,
-    thousands,
-    wrapped,
-    write_notes,
-)
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LABELS = {
-    "train/return": "Training return",
-    "train/length": "Training episode length [steps]",
-    "eval/return": "Evaluation return",
-    "eval/policy_return": "Evaluation return, policy alone",
-    "eval/planner_return": "Evaluation return, planner alone",
-    "eval/success": "Share of successes",
-    "eval/policy_success": "Share of successes, policy alone",
-    "eval/planner_success": "Share of successes, planner alone",
-    "planner/mode_insertion_gradient": "Mode insertion gradient",
-    "planner/policy_share": "Share of the policy in the action",
-    "planner/insertion_per_variance": "Insertion gradient / policy variance",
-    "planner/lyapunov": "Lyapunov function V",
-    "planner/lyapunov_rate": "Change of V under the policy [per decision]",
-    "planner/lyapunov_bound": "Most that the plan adds to V [per decision]",
-    "planner/handed_over": "Share of decisions handed over",
-}
-PANEL = (4.4, 3.1)  # [in] of a panel, without its legend
-MOST_ACROSS = 4
-MARGIN = 1.02  # of the last step, so that the marker there is whole
-TIMES = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))  # [s]
 ARRAYS = ("x", "each", "iqm", "low", "high")  # of a curve
 WIDTH = number(0, " of steps (or seconds), 0 or more")
 VALUE = number(what=" in the metric's unit")
@@ -102,7 +68,7 @@ def figure(
         }
     if threshold is not None:
         numbers["threshold"] = threshold
-    return plot(from_numbers(numbers), numbers["x"]), numbers
+    return draw(numbers), numbers
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:
@@ -180,77 +146,6 @@ def _read(file: str | Path) -> dict[str, Any]:
         raise UsageError(f"runs={file}: has no curves written by figures") from error
 
 
-def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
-    """One panel per task and metric; several metrics are rows if they fill the columns.
-
-    The legend of a panel and the curves' notes are below it and cover nothing. A line is thin
-    where not all seeds have a value.
-    """
-    import matplotlib
-    from matplotlib.figure import Figure
-
-    pairs = [(curve.metric, curve.task) for curve in drawn]
-    metrics, tasks = (list(dict.fromkeys(names)) for names in zip(*pairs, strict=True))
-    wanted = [pair for pair in itertools.product(metrics, sorted(tasks)) if pair in pairs]
-    labels = sorted({curve.label for curve in drawn})
-    across = _across(len(wanted), len(tasks) if len(metrics) > 1 else 0)
-    down = math.ceil(len(wanted) / across)
-    notes = wrapped([note for curve in drawn for note in curve.notes], NOTE_WIDTH * across)
-    entries = max(pairs.count(pair) for pair in wanted)
-    height = PANEL[1] * down + ENTRY * (down * entries + len(notes))
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(PANEL[0] * across, height), layout="constrained")
-        panels = list(figure.subplots(down, across, squeeze=False).flat)
-        for axes, pair in zip(panels, wanted, strict=False):
-            _panel(axes, [c for c, own in zip(drawn, pairs, strict=True) if own == pair], labels, x)
-            axes.set(title=pair[1], ylabel=LABELS.get(pair[0], pair[0]))
-        for axes in panels[len(wanted) :]:
-            axes.remove()
-        write_notes(figure, notes)
-    return figure
-
-
-def _across(panels: int, columns: int) -> int:
-    """Panels in a row: `columns` if that fills all rows, else a number that leaves no gap."""
-    if 1 < columns <= MOST_ACROSS and panels % columns == 0:
-        return columns
-    full = [number for number in (3, 4, 2) if panels % number == 0]
-    return panels if panels <= 3 else (full or [3])[0]
-
-
-def _panel(axes: "Axes", drawn: list[Curve], labels: list[str], x: str) -> None:
-    """The lines of one task and metric."""
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
-
-    end = max(curve.x[-1] for curve in drawn)
-    unit, name = next(pair for pair in TIMES if end >= pair[0] or pair[0] == 1.0)
-    scale = unit if x == "wall_s" else 1.0
-    for curve in drawn:
-        index = labels.index(curve.label)
-        style: Any = {
-            "color": COLOURS[index % len(COLOURS)],
-            "linestyle": STROKES[index // len(COLOURS) % len(STROKES)],
-            "marker": "o" if len(curve.x) <= 10 else None,
-        }
-        _line(axes, curve, curve.x / scale, style)
-    labels_of = {"wall_s": f"Wall time [{name}]", "step": "Environment steps per learner"}
-    axes.set_xlabel(labels_of.get(x, x))
-    if x in labels_of:
-        axes.set_xlim(0, MARGIN * end / scale or 1.0)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(MaxNLocator(5))
-        axis.set_major_formatter(FuncFormatter(thousands))
-    legend_below(axes)
-
-
-def _line(axes: "Axes", curve: Curve, at: np.ndarray, style: Any) -> None:
-    """One curve and its band; thin where not all seeds have a value."""
-    shared, label = curve.shared, f"{curve.label} ({plural(len(curve.seeds), 'seed')})"
-    axes.plot(at, np.where(shared, curve.iqm, np.nan), lw=1.6, ms=4, label=label, **style)
-    if not shared.all():
-        next_to = ~shared | np.append(~shared[1:], False) | np.append(False, ~shared[:-1])
-        thin = style | {"marker": "." if style["marker"] else None}
-        axes.plot(at, np.where(next_to, curve.iqm, np.nan), lw=0.7, ms=3, **thin)
-    if len(curve.seeds) > 1:
-        ends = curve.low, curve.high
-        axes.fill_between(at, *ends, where=shared, color=style["color"], alpha=0.2, lw=0)
+def draw(numbers: dict[str, Any]) -> "Figure":
+    """The picture of numbers from a JSON."""
+    return plot(from_numbers(numbers), numbers["x"])

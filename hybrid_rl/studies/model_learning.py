@@ -32,7 +32,7 @@ from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.errors import UsageError
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.flights import Flight, cost, equal_size, read_all
-from hybrid_rl.studies.style import COLOURS, ENTRY, STROKES, STYLE, legend_below, plain_log
+from hybrid_rl.studies.style import STYLE, legend_outside, line_styles, plain_log
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 
@@ -61,7 +61,7 @@ def figure(
         tracked = measure(flights, updates, steps)
         results = {label: results.get(label, {}) | tracked[label] for label in [*results, EXACT]}
     numbers = {label: reported(each, dt) for label, each in results.items()}
-    return plot_tracking(results, dt) if updates else plot_flights(flights, dt), numbers
+    return draw(numbers) if updates else plot_flights(flights, dt), numbers
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:
@@ -181,13 +181,10 @@ def _rounded(value: Any) -> float:
     return float(f"{value:.4g}")
 
 
-def named(label: str, trials: int = 0) -> str:
-    """A label for a legend: "ou_noise 0.1" is "ou_noise, level 0.1", with the number of trials."""
+def named(label: str) -> str:
+    """A label in words: "ou_noise 0.1" is "ou_noise, level 0.1"."""
     algo, *rest = label.split()
-    words = algo if label != EXACT else label
-    if label != EXACT:
-        words += f", {'level' if algo.endswith('noise') else 'gain'} {' '.join(rest)}"
-    return f"{words} ({plural(trials, 'trial')})" if trials else words
+    return f"{algo}, {'level' if algo.endswith('noise') else 'gain'} {' '.join(rest)}"
 
 
 def plot_flights(flights: list[Flight], dt: float) -> Any:
@@ -196,70 +193,64 @@ def plot_flights(flights: list[Flight], dt: float) -> Any:
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(2.2 * max(3, len(flights)), 4), layout="constrained")
-        panels: Any = figure.subplots(3, len(flights), squeeze=False, sharex=True, sharey="row")
-        for column, flight in zip(panels.T, flights, strict=True):
+        figure = Figure(figsize=(9, 0.5 + 1.3 * len(flights)), layout="constrained")
+        panels: Any = figure.subplots(len(flights), 3, squeeze=False, sharex=True, sharey="col")
+        for row, flight in zip(panels, flights, strict=True):
             t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
-            column[0].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
-            column[1].plot(t, x[:, V], lw=0.8)
-            column[2].plot(t, x[:, W], lw=0.8)
-            column[0].set_title(named(flight.label).replace(", ", "\n"), fontsize=8)
-            column[2].set_xlabel("Time [s]")
-        for axes, name in zip(panels[:, 0], ("|u|", "v [m/s]", "w [rad/s]"), strict=True):
-            axes.set_ylabel(name)
+            row[0].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
+            row[1].plot(t, x[:, V], lw=0.8)
+            row[2].plot(t, x[:, W], lw=0.8)
+            row[0].set_ylabel(named(flight.label).replace(", ", "\n"), fontsize=8)
+        for axes, name in zip(panels[0], ("|u|", "v [m/s]", "w [rad/s]"), strict=True):
+            axes.set_title(name)
+        for axes in panels[-1]:
+            axes.set_xlabel("Time [s]")
     return figure
 
 
-def plot_tracking(results: Results, dt: float) -> Any:
-    """Tracking over time; the models' error and tracking over the power loss of their flights."""
+def draw(numbers: dict[str, Any]) -> Any:
+    """Distance to the target of each method's best setting; error and distance over power loss."""
     import matplotlib
     from matplotlib.figure import Figure
 
-    methods = sorted({label.split()[0] for label in results if label != EXACT})
+    methods: dict[str, list[dict[str, Any]]] = {}
+    for label, one in numbers.items():
+        methods.setdefault(EXACT if label == EXACT else label.split()[0], []).append(one)
+    styles = line_styles(methods)
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(13, 4.2 + ENTRY * len(results)), layout="constrained")
+        figure = Figure(figsize=(9, 3.6), layout="constrained")
         over_time, errors, tracking = figure.subplots(1, 3)
-        _over_time(over_time, EXACT, results[EXACT]["distance"], ("k", "-"), dt)
-        for name, colour in zip(methods, COLOURS, strict=False):
-            labels = [la for la in results if la.split()[0] == name and la != EXACT]
-            for i, label in enumerate(labels):
-                style = colour, STROKES[i % len(STROKES)]
-                _over_time(over_time, label, results[label]["distance"], style, dt)
-            each = [results[label] for label in labels]
-            _over_power(errors, name, [(one, one["error"]) for one in each], colour)
-            _over_power(tracking, name, [(one, one["distance"].mean(1)) for one in each], colour)
-        exact = iqm(results[EXACT]["distance"].mean(1))
-        tracking.axhline(exact, color="k", lw=0.8, label=EXACT)
-        over_time.set(
-            xlim=(0, None), xlabel="Time [s]", title="Distance to the target [m]", yscale="log"
-        )
-        errors.set(title="Error of one decision")
-        tracking.set(title="Mean distance to the target [m]")
+        for name, each in methods.items():
+            _over_time(over_time, min(each, key=lambda one: one["tracking"][0]), styles[name], name)
+            if name != EXACT:
+                _over_power(errors, each, "error", styles[name])
+                _over_power(tracking, each, "tracking", styles[name])
+        tracking.axhline(numbers[EXACT]["tracking"][0], **styles[EXACT] | {"marker": None}, lw=0.8)
+        over_time.set(xlabel="Time [s]", yscale="log")
+        over_time.set_title("Distance to the target [m],\nbest level")
+        errors.set_title("Error of one decision")
+        tracking.set_title("Mean distance\nto the target [m]")
         for axes in (errors, tracking):
             axes.set(xlabel="Power loss of the flight [N]", xscale="log", yscale="log")
             axes.margins(0.12)
-            plain_log(axes.xaxis)
+            plain_log(axes.xaxis, narrow=True)
         for axes in (over_time, errors, tracking):
             plain_log(axes.yaxis)
-            legend_below(axes)
+        legend_outside(over_time)
     return figure
 
 
-def _over_time(axes: Any, label: str, distance: np.ndarray, style: Any, dt: float) -> None:
-    """IQM and band of the distances to the target [S, B+1] of one method."""
-    each, (colour, stroke) = distance[:, ::10], style
-    t, (low, high) = 10 * dt * np.arange(each.shape[1]), band(each, 500)
-    marker = "o" if len(t) == 1 else None
-    shown = named(label, len(each))
-    axes.plot(t, iqm(each), color=colour, linestyle=stroke, marker=marker, label=shown)
-    axes.fill_between(t, low, high, color=colour, alpha=0.12, lw=0)
+def _over_time(axes: Any, one: dict[str, Any], style: dict[str, Any], label: str) -> None:
+    """IQM and band of the distance to the target after MARKS of one method."""
+    times = [mark for mark in MARKS if f"distance_after_{mark:g}_s" in one]
+    if times:
+        each = np.array([one[f"distance_after_{mark:g}_s"] for mark in times])
+        axes.fill_between(times, each[:, 1], each[:, 2], color=style["color"], alpha=0.12, lw=0)
+    axes.plot(times, [one[f"distance_after_{t:g}_s"][0] for t in times], label=label, ms=4, **style)
 
 
-def _over_power(axes: Any, name: str, pairs: list[tuple[dict, np.ndarray]], colour: str) -> None:
-    """IQM and band of values [S] per setting of a method, over the power loss of its flights."""
-    points = [(one["power_loss"].mean(), values) for one, values in pairs]
-    points.sort(key=lambda point: point[0])
-    middle = np.array([iqm(values) for _, values in points])
-    ends = np.abs(np.array([band(values) for _, values in points]).T - middle[None])
-    power = [at for at, _ in points]
-    axes.errorbar(power, middle, ends, color=colour, marker="o", ms=4, label=name)
+def _over_power(axes: Any, each: list[dict[str, Any]], name: str, style: dict[str, Any]) -> None:
+    """IQM and band of a quantity per setting of a method, over the power loss of its flights."""
+    points = sorted((one["power_loss"][0], *one[name]) for one in each)
+    power, middle, low, high = np.array(points).T
+    axes.errorbar(power, middle, (middle - low, high - middle), ms=4, **style)

@@ -20,10 +20,11 @@ from hybrid_rl.core import riccati
 from hybrid_rl.core.analytic import at_equilibrium, linearise
 from hybrid_rl.envs.analytic.van_der_pol import FORCE
 from hybrid_rl.studies.optimal_path import cost, optimal
-from hybrid_rl.studies.style import COLOURS, legend_below, plain_log
+from hybrid_rl.studies.style import BLACK, BLUE, GREY, VERMILION, legend_below, plain_log
 from hybrid_rl.types import Batch, Params
 
 REGULATORS = ("Koopman", "known", "regression")
+OWN = (VERMILION, BLACK, BLUE)  # their colours
 HORIZONS = (50, 100, 200, 400)  # T_L [decisions]
 SHOWN = 100  # T_L of the paths in the picture
 # Largest |x_i| of the samples and of the starts; our choice.
@@ -238,10 +239,10 @@ def _picture(numbers: dict[str, Any], paths: Any, dt: float) -> Any:
     for k, name in enumerate(REGULATORS):
         error = np.linalg.norm(paths[k], axis=-1)  # [starts, T+1]
         low, middle, high = np.quantile(error, [0.25, 0.5, 0.75], axis=0)
-        over_time.semilogy(t, middle, strokes[k], color=COLOURS[k], label=name)
-        over_time.fill_between(t, low, high, color=COLOURS[k], alpha=0.15, lw=0)
+        over_time.semilogy(t, middle, strokes[k], color=OWN[k], label=name)
+        over_time.fill_between(t, low, high, color=OWN[k], alpha=0.15, lw=0)
         for i in range(min(PATHS, len(error))):
-            plane.plot(*paths[k, i].T, strokes[k], color=COLOURS[k], lw=1, label=name * (not i))
+            plane.plot(*paths[k, i].T, strokes[k], color=OWN[k], lw=1, label=name * (not i))
     over_time.set(xlabel="Time [s]", title=f"|x|, median and quartiles of starts, T = {SHOWN}")
     over_time.set(xlim=(0, 6), ylim=(3e-3, None))
     plane.set(xlabel="x1", ylabel="x2", title=f"Paths from {PATHS} starts, T = {SHOWN}")
@@ -266,8 +267,8 @@ def _ratios(axes: Any, columns: dict[str, Any]) -> None:
             for i, one in enumerate(columns.values())
             for ratio in one[name]["cost"]
         ]
-        axes.plot(*np.array(points).T, "o", ms=4, color=COLOURS[k], label=name)
+        axes.plot(*np.array(points).T, "o", ms=4, color=OWN[k], label=name)
     optima = [one["optimum"] for one in columns.values()]
-    axes.plot(range(len(optima)), optima, "_", ms=18, mew=1.5, color="black", label="optimum")
-    axes.axhline(1, color=COLOURS[1], lw=1, label="known")
+    axes.plot(range(len(optima)), optima, "_", ms=18, mew=1.5, color=GREY, label="optimum")
+    axes.axhline(1, color=BLACK, lw=1, label="known")
     axes.set_xticks(range(len(columns)), list(columns))

@@ -9,7 +9,7 @@ import numpy as np
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.studies import queries
-from hybrid_rl.studies.style import COLOURS, STROKES, legend_below
+from hybrid_rl.studies.style import legend_outside, line_styles, words
 
 SAME = ("task", "score", "decisions_of_a_demonstration")
 
@@ -63,24 +63,27 @@ def picture(made: dict[str, Any]) -> Any:
     methods = made["methods"]
     refits = [one for one in methods.values() if "refit" in one]
     schedules = ["printed", *(["refit"] if refits else [])]
-    figure = Figure(figsize=(4.6 * len(schedules), 4.2), layout="constrained")
+    figure = Figure(figsize=(4.4 * len(schedules), 4.2), layout="constrained")
+    styles = line_styles(methods)
     panels = figure.subplots(1, len(schedules), sharey=True, squeeze=False)[0]
     alpha = min(0.15, 0.6 / len(methods))
     for axes, schedule in zip(panels, schedules, strict=True):
-        for i, (label, one) in enumerate(methods.items()):
+        for label, one in methods.items():
             line = one if schedule == "printed" else one.get("refit")
             if line is None:
                 continue
-            colour, stroke = COLOURS[i % len(COLOURS)], STROKES[i // len(COLOURS)]
-            axes.plot(line["N"], line["iqm"], stroke, color=colour, label=label, marker=".")
-            axes.fill_between(line["N"], line["low"], line["high"], color=colour, alpha=alpha)
+            style = styles[label]
+            axes.plot(line["N"], line["iqm"], label=words(label), ms=4, **style)
+            axes.fill_between(
+                line["N"], line["low"], line["high"], color=style["color"], alpha=alpha
+            )
         axes.axhline(1, color="#444444", linewidth=0.8)
         axes.set_xlabel(f"demonstrations of {made['decisions_of_a_demonstration']} decisions")
         steps = f"{made['refit_steps']:,} steps on the same labels"
         axes.set_title("one Adam step a decision" if schedule == "printed" else steps)
-    words = {"success": "share of successes", "return": "return"}[made["score"]]
-    panels[0].set_ylabel(f"{words} / the teacher's")
-    legend_below(panels[0])
+    score = {"success": "share of successes", "return": "return"}[made["score"]]
+    panels[0].set_ylabel(f"{score} / the teacher's")
+    legend_outside(panels[0])
     return figure
 
 

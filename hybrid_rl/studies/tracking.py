@@ -11,7 +11,7 @@ of the noise of an observed position is subtracted from the mean square of its d
 without a lag within 0.5 s has none.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import jax
@@ -21,9 +21,10 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.errors import UsageError
+from hybrid_rl.studies import rows
 from hybrid_rl.studies.curves import band, iqm, plural
 from hybrid_rl.studies.recorded import Recorded, labels, matching, one_episode, read
-from hybrid_rl.studies.style import COLOURS, legend_below, plain_log
+from hybrid_rl.studies.style import legend_below, line_styles, plain_log, words
 
 LEFT_OUT = 1.0  # [s] of the path
 FURTHEST = 0.5  # [s] largest lag
@@ -73,7 +74,8 @@ def tracking(pattern: str) -> tuple[Any, dict[str, Any]]:
         raise UsageError(f"runs={pattern}: has runs of {' and '.join(sorted(tasks))}; give one")
     tracks = [of(run, label) for run, label in zip(runs, labels(folders), strict=True)]
     numbers = {track.label: reported(track) for track in tracks}
-    return _picture(tracks, numbers), {"task": tasks.pop(), "methods": numbers}
+    made = {"task": tasks.pop(), "methods": numbers}
+    return draw(made, tracks), made
 
 
 def of(recorded: Recorded, label: str) -> Track:
@@ -167,11 +169,11 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     result = []
     for label, one in numbers["methods"].items():
         parts = []
-        for name, (words, unit) in MEASURES.items():
+        for name, (title, unit) in MEASURES.items():
             if one[name] is None:
                 continue
             middle, low, high = one[name]
-            parts.append(f"{words} {middle:.3g} [{low:.3g}, {high:.3g}] {unit}".strip())
+            parts.append(f"{title} {middle:.3g} [{low:.3g}, {high:.3g}] {unit}".strip())
         moving = [f"{each[0]:.4f}" for each in one["correlation"] if each is not None]
         parts.append(f"correlation {', '.join(moving)}")
         trials = f"{plural(one['trials'], 'trial')}, {one['lost']} lost"
@@ -179,36 +181,38 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     return result
 
 
-def _picture(tracks: list[Track], numbers: dict[str, Any]) -> Any:
-    """Paths of the first trial over the reference, and RMSE and lag of all."""
+def draw(numbers: dict[str, Any], tracks: Sequence[Track] = ()) -> Any:
+    """RMSE and lag of each method, and below them the paths of the first trial, if there are."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(12, 3.2 + 0.3 * len(tracks)), layout="constrained")
-    plane, errors, lags = figure.subplots(1, 3)
-    spread = tracks[0].reference[0].std(0)
+    methods = numbers["methods"]
+    heights = [0.9 + rows.HEIGHT * len(methods), *([4.0] if tracks else [])]
+    figure = Figure(figsize=(9, sum(heights)), layout="constrained")
+    parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
+    errors, lags = parts[0].subplots(1, 2, sharey=True)
+    entries = [f"{words(x)} ({plural(int(one['trials']), 'trial')})" for x, one in methods.items()]
+    for axes, name in ((errors, "rmse_mm"), (lags, "lag_ms")):
+        none = [np.nan] * 3
+        each = {x: [none if one[name] is None else one[name]] for x, one in methods.items()}
+        rows.points(axes, each, entries=entries)
+    errors.set(title="RMSE [mm], IQM and 95% band", xscale="log")
+    plain_log(errors.xaxis, narrow=True)
+    lags.set_title("Lag [ms], + is late")
+    lags.axvline(0, color="k", lw=0.6)
+    if tracks:
+        _paths(parts[1].subplots(), tracks)
+    return figure
+
+
+def _paths(plane: Any, tracks: Sequence[Track]) -> None:
+    """The first trial of each method over the reference, in the plane in which it moves."""
+    spread, styles = tracks[0].reference[0].std(0), line_styles([track.label for track in tracks])
     i, j = sorted(np.argsort(-spread)[:2])
     names = "xyz"
     plane.plot(*tracks[0].reference[0][:, [i, j]].T, color="k", lw=2.5, alpha=0.3, label="path")
-    rows = np.arange(len(tracks))
-    for k, track in enumerate(tracks):
-        colour = COLOURS[k % len(COLOURS)]
-        plane.plot(*track.position[0][:, [i, j]].T, color=colour, lw=0.9, label=track.label)
-        for axes, name in ((errors, "rmse_mm"), (lags, "lag_ms")):
-            if numbers[track.label][name] is None:
-                continue
-            middle, low, high = numbers[track.label][name]
-            axes.plot([low, high], [k, k], color=colour, lw=2)
-            axes.plot(middle, k, "o", color=colour)
+    for track in tracks:
+        style = styles[track.label] | {"marker": None, "label": words(track.label)}
+        plane.plot(*track.position[0][:, [i, j]].T, lw=0.9, **style)
     plane.set(xlabel=f"{names[i]} [m]", ylabel=f"{names[j]} [m]", title="First trial")
     plane.set_aspect("equal", adjustable="datalim")
     legend_below(plane)
-    errors.set(title="RMSE [mm], IQM and 95% band", xscale="log")
-    plain_log(errors.xaxis)
-    lags.set(title="Lag [ms], + is late")
-    lags.axvline(0, color="k", lw=0.6)
-    shown = [f"{track.label}\n({plural(len(track.position), 'trial')})" for track in tracks]
-    errors.set_yticks(rows, shown)
-    lags.set_yticks(rows, [])
-    for axes in (errors, lags):
-        axes.set_ylim(len(tracks) - 0.5, -0.5)
-    return figure

@@ -120,20 +120,17 @@ def test_logged_twist_holds_between_two_rows(tmp_path) -> None:
 
 
 def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
-    """One run under two names; a strip of one of them."""
+    """One run under two names."""
     direct, babble = (tmp_path / "runs" / f"koopman_{name}" for name in ("direct", "babble"))
     train.train(config.load([*SHORT, "algo=koopman_direct", f"run_dir={direct}"]))
     shutil.copytree(direct, babble)
     settings = (babble / "config.yaml").read_text()
     (babble / "config.yaml").write_text(settings.replace("koopman_direct", "koopman_babble"))
-    drawn = []
-    monkeypatch.setattr(falls_picture, "_strip", lambda part, fall: drawn.append(fall.label))
     out = tmp_path / "f.png"
     runs = f"runs={tmp_path}/runs/*"
     both = falls.falls(f"{tmp_path}/runs/*", "falls")
     monkeypatch.setattr(falls_picture, "falls", lambda pattern, view: both)
-    assert draw("view=falls", runs, "strips=koopman_b", f"out={out}") == 0
-    assert drawn == ["koopman_babble"]
+    assert draw("view=falls", runs, f"out={out}") == 0
     numbers = json.loads(out.with_suffix(".json").read_text())["methods"]
     assert set(numbers) == {"koopman_direct", "koopman_babble"}
     assert both[0].seconds > 0
@@ -144,8 +141,6 @@ def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
     assert numbers["koopman_direct"]["rms_u"] == pytest.approx(np.sqrt((u**2).mean()), rel=1e-3)
     assert "koopman_babble, 2 trials: at rest by 1 s 0.0%" in capsys.readouterr().out
     assert draw("view=initial", runs, f"out={out}") == 0
-    assert draw("view=falls", runs, "strips=x", f"out={out}") == 2
-    assert "not among these runs; they are koopman_babble, koopman_d" in capsys.readouterr().err
     monkeypatch.undo()
     assert draw("view=falls", f"out={out}") == 2
     assert "runs: not given; view=falls needs" in capsys.readouterr().err

@@ -16,7 +16,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.figures import save
 from hybrid_rl.studies.curves import Curve, iqm
 from hybrid_rl.studies.learning_curves import figure, from_numbers, plot, summary, to_numbers
-from hybrid_rl.studies.style import COLOURS
+from hybrid_rl.studies.style import BLUE, COLOURS, GREEN
 
 
 def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50, metric="train/return"):
@@ -37,7 +37,7 @@ def test_a_panel_per_task_and_a_line_per_label_of_one_colour():
     assert [panel.get_title() for panel in axes] == ["ant", "hopper"]
     labels = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in axes]
     assert labels == [["sac (1 seed)"], ["nn_mppi (5 seeds)", "sac (3 seeds)"]]
-    assert [line.get_color() for line in axes[1].lines] == list(COLOURS[:2])
+    assert [line.get_color() for line in axes[1].lines] == [GREEN, BLUE]
     assert axes[0].lines[0].get_color() == axes[1].lines[1].get_color()
     assert [len(panel.collections) for panel in axes] == [0, 2]  # one seed has no band
     np.testing.assert_array_equal(axes[1].lines[1].get_ydata(), drawn[2].iqm)
@@ -48,7 +48,7 @@ def test_labels_carry_units_and_thousands():
     figure.canvas.draw()
     (panel,) = figure.axes
     assert (panel.get_xlabel(), panel.get_ylabel()) == (
-        "Environment steps per learner",
+        "Decisions",
         "Training return",
     )
     assert "200,000" in [text.get_text() for text in panel.get_xticklabels()]
@@ -77,7 +77,7 @@ def test_legends_and_notes_cover_no_axes(tasks, labels):
     names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
     drawn = [
         replace(
-            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}: {i} " + 30 * "word ",)
+            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}, {i}: " + 30 * "word ",)
         )
         for task, i in names
     ]
@@ -86,7 +86,9 @@ def test_legends_and_notes_cover_no_axes(tasks, labels):
     canvas.draw()
     renderer = canvas.get_renderer()
     panels = [panel.get_window_extent() for panel in figure.axes]
-    legends = [panel.get_legend().get_window_extent(renderer) for panel in figure.axes]
+    own = [panel.get_legend() for panel in figure.axes]
+    legends = [one.get_window_extent(renderer) for one in [*own, *figure.legends] if one]
+    assert len(legends) == tasks
     note = figure._supxlabel.get_window_extent(renderer)
     for box in [*legends, note]:
         assert not any(box.overlaps(panel.padded(-0.5)) for panel in panels)
@@ -97,11 +99,24 @@ def test_legends_and_notes_cover_no_axes(tasks, labels):
     assert not any(box.overlaps(other) for box in labels_of_x for other in legends)
 
 
+def test_panels_of_the_same_lines_share_a_legend():
+    """Below all of them, where it covers none."""
+    figure = plot([curve(task, label) for task in ("ant", "hopper") for label in ("bc", "sac")])
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["bc (3 seeds)", "sac (3 seeds)"]
+    box = legend.get_window_extent(canvas.get_renderer())
+    assert not any(box.overlaps(panel.get_tightbbox()) for panel in figure.axes)
+    assert figure.bbox.y0 <= box.y0
+
+
 def test_notes_are_on_the_picture():
-    """Beyond eight, their number is there."""
-    (text,) = [plot([replace(curve(), notes=("seed 3 diverged",))])._supxlabel.get_text()]
-    assert text == "seed 3 diverged"
-    many = replace(curve(), notes=tuple(f"note {i}" for i in range(20)))
+    """Those that name their line; what ran where is in the JSON. Beyond eight, their number."""
+    notes = ("hopper, sac: seed 3 diverged", "one core of a server")
+    (text,) = [plot([replace(curve(), notes=notes)])._supxlabel.get_text()]
+    assert text == "hopper, sac: seed 3 diverged"
+    many = replace(curve(), notes=tuple(f"hopper, sac: note {i}" for i in range(20)))
     lines = plot([many])._supxlabel.get_text().splitlines()
     assert lines[-1] == "and 12 more notes, in the JSON next to this picture"
 
@@ -127,7 +142,34 @@ def test_a_line_is_thin_where_seeds_are_missing():
 def test_more_lines_than_colours_stay_apart():
     drawn = [curve(label=f"algo{i:02}") for i in range(2 * len(COLOURS) + 1)]
     lines = plot(drawn).axes[0].lines
-    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == len(drawn)
+    styles = {(line.get_color(), str(line._dash_pattern)) for line in lines}
+    assert len(styles) == len(drawn)
+
+
+def test_many_lines_of_few_points_are_rows_with_their_bands():
+    """Nine curves of two evaluations: a point and a band for each, named on the left."""
+    drawn = [curve(label=f"algo{i}", points=2) for i in range(9)]
+    (axes,) = plot(drawn).axes
+    axes.figure.canvas.draw()
+    assert [text.get_text() for text in axes.get_yticklabels()] == [one.label for one in drawn]
+    assert axes.get_title() == "hopper, 3 seeds"
+    ends = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
+    wanted = [(one.low[k], one.high[k]) for one in drawn for k in range(2)]
+    np.testing.assert_array_equal(ends, wanted)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+        "1,000 decisions",
+        "200,000 decisions",
+    ]
+
+
+@pytest.mark.parametrize("panels", [1, 2, 3, 4, 6])
+def test_no_picture_is_wider_than_a_page_can_show(tmp_path, panels):
+    """At 700 pixels its smallest text, of 8 points, is 7 pixels high or more."""
+    drawn = [curve(f"task{i}", points=5) for i in range(panels)]
+    save(plot(drawn), numbers_of(drawn), tmp_path / "a.png")
+    width = iio.imread(tmp_path / "a.png").shape[1]
+    assert width <= 1600
+    assert 8 / 72 * 700 / plot(drawn).get_figwidth() >= 7
 
 
 def test_a_single_point_is_visible():
@@ -164,8 +206,8 @@ def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
         for old, new in zip(drawn, again, strict=True):
             np.testing.assert_allclose(getattr(new, name), getattr(old, name), rtol=1e-6)
     first, second = (
-        call(lambda: command.guarded(figures.main), f"runs={source}", f"out={tmp_path / name}.svg")
-        for name in ("a", "b")
+        call(lambda: command.guarded(figures.main), f"{key}={source}", f"out={tmp_path / name}.svg")
+        for key, name in (("runs", "a"), ("from", "b"))
     )
     assert (first, second) == (0, 0)
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()

@@ -170,12 +170,8 @@ def test_flights_of_one_label_have_labels_of_their_own(tmp_path, monkeypatch) ->
 
 
 def test_legends_name_the_quantity_of_a_label() -> None:
-    assert (
-        model_learning.named("kle3_model_learning 11", 20)
-        == "kle3_model_learning, gain 11 (20 trials)"
-    )
-    assert model_learning.named("ou_noise 0.1", 1) == "ou_noise, level 0.1 (1 trial)"
-    assert model_learning.named("exact model", 2) == "exact model (2 trials)"
+    assert model_learning.named("kle3_model_learning 11") == "kle3_model_learning, gain 11"
+    assert model_learning.named("ou_noise 0.1") == "ou_noise, level 0.1"
 
 
 def test_the_picture_has_plain_ticks_and_whole_points() -> None:
@@ -183,14 +179,16 @@ def test_the_picture_has_plain_ticks_and_whole_points() -> None:
     rng = np.random.default_rng(0)
     cost = {"power_loss": np.array([0.5, 0.6]), "error": np.array([0.2, 0.3])}
     results = {
-        label: cost | {"distance": rng.uniform(0.5, 2, (2, 100))}
+        label: cost | {"distance": rng.uniform(0.5, 2, (2, 500)), "turned_over": np.zeros(2)}
         for label in ("ou_noise 0.1", "kle3 11", "exact model")
     }
-    figure = model_learning.plot_tracking(results, 0.005)
+    figure = model_learning.draw(
+        {label: model_learning.reported(one, 0.005) for label, one in results.items()}
+    )
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     for axes in figure.axes:
-        box = axes.get_legend().get_window_extent(canvas.get_renderer())
+        box = figure.legends[0].get_window_extent(canvas.get_renderer())
         assert not box.overlaps(axes.bbox.padded(-0.5))
         for axis in (axes.xaxis, axes.yaxis):
             low, high = axis.get_view_interval()
