@@ -9,6 +9,7 @@ view=control    figure 7-1: Van der Pol's oscillator under three regulators. Cos
 view=falls      figure 7-2: trials of experiment=thesis/fig_7_2, a run per method. Trials at rest
                 (|v|^2 + |w|^2 below 0.01 to the end) with Wilson's 95% interval, errors,
                 information, greatest twist
+view=frames     figure 7-2 c: the attitude along the first trial of each run, and its height
 view=initial    figure 7-3: the same for runs that differ in the first K
 view=embedding  figure 7-4: iterations until stabilised, and the arm's distance to its target
 view=tracking   figures 7-6 and 7-7: RMSE, correlation and lag along a reference, after the
@@ -18,7 +19,7 @@ view=tracking   figures 7-6 and 7-7: RMSE, correlation and lag along a reference
 from typing import Annotated, Any
 
 from hybrid_rl.cli.arguments import one_of, whole
-from hybrid_rl.studies import embeddings, falls, falls_picture, oscillator, tracking
+from hybrid_rl.studies import embeddings, fall_frames, falls, falls_picture, oscillator, tracking
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE
 
@@ -31,6 +32,7 @@ DRAWN = {
 LINES = {
     "control": oscillator.lines,
     "falls": falls.lines,
+    "frames": fall_frames.lines,
     "initial": falls.lines,
     "embedding": embeddings.lines,
     "tracking": tracking.lines,
@@ -50,6 +52,7 @@ def figure(
     views = {
         "control": lambda: oscillator.control(samples, draws, starts),
         "falls": lambda: falls_picture.information(runs),
+        "frames": lambda: fall_frames.frames(runs),
         "initial": lambda: falls_picture.initial(runs),
         "embedding": lambda: embeddings.embedding(runs),
         "tracking": lambda: tracking.tracking(runs),
@@ -63,7 +66,7 @@ def draw(numbers: dict[str, Any]) -> Any:
     """The picture of numbers from a JSON, without the paths of view=tracking.
 
     Raises:
-        KeyError: for view=control, whose JSON has no paths at all.
+        KeyError: for view=control and view=frames, whose JSON does not hold what they draw.
     """
     import matplotlib
 

@@ -10,10 +10,13 @@ from tiny import call
 
 from hybrid_rl import config, figures, train
 from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.quadcopter_se3 import DT
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run import drawing
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.studies import (
     embeddings,
+    fall_frames,
     falls,
     falls_picture,
     koopman,
@@ -262,3 +265,27 @@ def test_distances_of_arms_by_hand(tmp_path, monkeypatch) -> None:
     assert koopman.summary(numbers) == [
         "two_link gain_32, 1 trial: last distance 0 [0, 0] rad, within 0.05 rad 100% at the end"
     ]
+
+
+def test_a_fall_is_a_strip_of_attitudes_with_heights(tmp_path, monkeypatch) -> None:
+    """Two trials; the first one's heights at the times of the pictures, which differ."""
+    obs = np.zeros((2, 800, 18))
+    obs[:, :, 3:12] = np.eye(3).ravel()
+    obs[0, :, 2] = -np.arange(800) * DT
+    obs[0, 400:, 3:12] = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]).ravel()  # on its side
+    fall = SimpleNamespace(label="mine", obs=obs)
+    monkeypatch.setattr(fall_frames, "falls", lambda pattern, view: [fall])
+    drawn = []
+
+    def frames(scene, poses, width, height) -> np.ndarray:
+        drawn.append(poses)
+        return np.zeros((len(poses), height, width, 3), np.uint8)
+
+    monkeypatch.setattr(drawing, "frames", frames)
+    out = tmp_path / "f.png"
+    assert draw("view=frames", "runs=any", f"out={out}") == 0
+    numbers = json.loads(out.with_suffix(".json").read_text())
+    np.testing.assert_allclose(numbers["height"]["mine"], [-t for t in numbers["time"]], atol=0.01)
+    (poses,) = drawn
+    np.testing.assert_array_equal(poses[:, :3], np.broadcast_to(poses[0, :3], poses[:, :3].shape))
+    assert not np.allclose(poses[0], poses[-1])
