@@ -64,12 +64,12 @@ def test_without_a_backend_rendering_raises_one_line(monkeypatch):
     """MuJoCo's own renderer would end the process."""
     monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
     monkeypatch.setattr(sys, "platform", "linux")
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     env = GymnasiumEnv(Hopper("native"))
     env.reset(seed=0)
     with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
         env.render()
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     env.close()
 
 

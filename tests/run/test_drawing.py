@@ -137,7 +137,7 @@ def test_positions_of_another_scene_are_refused(can_draw):
 @pytest.fixture
 def choosing(monkeypatch):
     """Decrees which backends work."""
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
 
@@ -146,13 +146,13 @@ def choosing(monkeypatch):
         monkeypatch.setattr(offscreen, "TRIAL", code)
 
     yield works
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
 
 
 def test_egl_comes_before_osmesa_unless_the_user_says_otherwise(choosing, monkeypatch):
     choosing("egl", "osmesa")
     assert offscreen.backend() == "egl"
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "OSMesa")
     assert offscreen.backend() == "osmesa"
 
