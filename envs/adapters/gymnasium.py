@@ -15,8 +15,8 @@ of its SAC took 4 s with one thread and 70 s with two.
 Source: Gymnasium's documentation, "Env", "VectorEnv".
 """
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
+from functools import cache, partial
 from importlib import import_module
 from typing import Any, ClassVar
 
@@ -83,6 +83,15 @@ def _checked(action: Any, shape: tuple[int, ...]) -> np.ndarray:
     return action
 
 
+@cache
+def _programs(env: Env) -> tuple[EnvState, Callable, Callable, Callable]:
+    """Shapes of a state; reset and step on packed states, and `unpack`, for all equal `env`."""
+    like = jax.eval_shape(env.reset, jax.random.key(0))
+    reset = jax.jit(lambda seed: pack(env.reset(jax.random.key(seed)), like))
+    step = jax.jit(lambda packed, action: pack(env.step(unpack(packed, like), action), like))
+    return like, reset, step, jax.jit(partial(unpack, like=like))
+
+
 class GymnasiumEnv(gymnasium.Env):
     """One environment; reset and step are one compiled call each.
 
@@ -101,10 +110,7 @@ class GymnasiumEnv(gymnasium.Env):
         self.steps = time_limit(env) if steps is None else steps
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
-        self._like = like = jax.eval_shape(env.reset, jax.random.key(0))
-        self._reset = jax.jit(lambda seed: pack(env.reset(jax.random.key(seed)), like))
-        self._step = jax.jit(lambda packed, u: pack(env.step(unpack(packed, like), u), like))
-        self._unpacked = jax.jit(partial(unpack, like=like))
+        self._like, self._reset, self._step, self._unpacked = _programs(env)
         self._packed: Packed | None = None  # until the first reset
         self._canvas: Canvas | None = None
 
@@ -190,8 +196,7 @@ class GymnasiumVectorEnv(VectorEnv):
         self.single_observation_space, self.single_action_space = _spaces(env)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._reset = jax.jit(jax.vmap(env.reset))
-        self._step = jax.jit(partial(_autoreset_step, env, self.steps))
+        self._reset, self._step = _vector_programs(env, self.steps)
         self._carry: tuple[EnvState, Array, Array] | None = None  # states, keys, steps so far
 
     def reset(
@@ -233,6 +238,12 @@ class GymnasiumVectorEnv(VectorEnv):
             infos |= {"final_obs": np.array(last.obs), "_final_obs": done}
             infos |= {"final_info": _infos(last, done), "_final_info": done}
         return np.array(state.obs), np.array(last.reward), terminated, truncated, infos
+
+
+@cache
+def _vector_programs(env: Env, steps: int) -> tuple[Callable, Callable]:
+    """Reset and step for all equal `env`."""
+    return jax.jit(jax.vmap(env.reset)), jax.jit(partial(_autoreset_step, env, steps))
 
 
 def _after_reset(state: Any, what: str) -> Any:
