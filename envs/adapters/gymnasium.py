@@ -126,12 +126,12 @@ class GymnasiumEnv(gymnasium.Env):
     def _read(self, packed: Packed) -> tuple[np.ndarray, float, bool, Info]:
         """Observation [o], reward, terminated, metrics by name."""
         o = self.observation_space.shape[0]
-        told = np.asarray(packed["float32"])[: o + 2 + len(self._like.metrics)]
-        reward, terminated, *metrics = told[o:].tolist()
+        outcome = np.asarray(packed["float32"])[: o + 2 + len(self._like.metrics)]
+        reward, terminated, *metrics = outcome[o:].tolist()
         info = dict(zip(self._like.metrics, metrics, strict=True))
         if FLAG in info:
             info[FLAG] = bool(info[FLAG])
-        return told[:o].copy(), reward, bool(terminated), info
+        return outcome[:o].copy(), reward, bool(terminated), info
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

@@ -162,6 +162,14 @@ def test_osmesa_is_taken_where_egl_fails(choosing):
     assert offscreen.backend() == "osmesa"
 
 
+@pytest.mark.parametrize(
+    ("renderer", "expected"), [("llvmpipe (LLVM 15.0.6, 256 bits)", True), ("NVIDIA H100", False)]
+)
+def test_the_driver_says_whether_the_processor_draws(choosing, monkeypatch, renderer, expected):
+    monkeypatch.setattr(offscreen, "TRIAL", f"print(16384); print('{renderer}')")
+    assert offscreen.by_processor() == expected
+
+
 def test_a_machine_that_cannot_draw_names_the_packages_to_install(choosing):
     choosing()
     with pytest.raises(offscreen.NoGraphicsError, match="egl and osmesa failed; install libegl1"):
