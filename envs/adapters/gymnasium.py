@@ -106,7 +106,7 @@ class GymnasiumEnv(gymnasium.Env):
         modes = self.metadata["render_modes"]
         if render_mode not in (None, *modes):
             raise ValueError(f"render_mode={render_mode!r}: choose one of None, {modes[0]!r}")
-        self.env, self.render_mode = env, render_mode
+        self.env, self.render_mode, self._spec = env, render_mode, env.spec
         self.steps = time_limit(env) if steps is None else steps
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
@@ -125,7 +125,7 @@ class GymnasiumEnv(gymnasium.Env):
 
     def _read(self, packed: Packed) -> tuple[np.ndarray, float, bool, Info]:
         """Observation [o], reward, terminated, metrics by name."""
-        o = self.observation_space.shape[0]
+        o = self._spec.obs
         outcome = np.asarray(packed["float32"])[: o + 2 + len(self._like.metrics)]
         reward, terminated, *metrics = outcome[o:].tolist()
         info = dict(zip(self._like.metrics, metrics, strict=True))
@@ -138,9 +138,9 @@ class GymnasiumEnv(gymnasium.Env):
     ) -> tuple[np.ndarray, Info]:
         """Initial observation [o] of an episode, and its metrics."""
         super().reset(seed=seed)
-        self._packed = self._reset(int(self.np_random.integers(2**31)))
+        self._packed = packed = self._reset(int(self.np_random.integers(2**31)))
         self._count = self._beyond = 0  # steps of the episode, and from its end on
-        obs, _, _, info = self._read(self._packed)
+        obs, _, _, info = self._read(packed)
         return obs, info
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
@@ -151,8 +151,8 @@ class GymnasiumEnv(gymnasium.Env):
             ValueError: for an action of another shape, or with numbers that are not finite.
         """
         packed = _after_reset(self._packed, "step")
-        self._packed = self._step(packed, _checked(action, self.action_space.shape))
-        obs, reward, terminated, info = self._read(self._packed)
+        self._packed = packed = self._step(packed, _checked(action, (self._spec.act,)))
+        obs, reward, terminated, info = self._read(packed)
         self._count += 1
         truncated = 0 < self.steps <= self._count and not terminated
         if self._beyond == 1:
@@ -229,8 +229,8 @@ class GymnasiumVectorEnv(VectorEnv):
             ValueError: for actions of another shape, or with numbers that are not finite.
         """
         carry, shape = _after_reset(self._carry, "step"), (self.num_envs, self.env.spec.act)
-        self._carry, last, truncated = self._step(carry, _checked(actions, shape))
-        state = self._carry[0]
+        carry, last, truncated = self._step(carry, _checked(actions, shape))
+        self._carry, state = carry, carry[0]
         terminated, truncated = np.array(last.terminated), np.array(truncated)
         done = terminated | truncated
         infos = _infos(state, np.ones(self.num_envs, bool))

@@ -102,7 +102,7 @@ class Physics:
         sizes = (model.na, model.nv, model.nu, model.nsensordata)
         zeros = [_or_none(jnp.zeros(size, jnp.float32)) for size in sizes]
         moved = (jnp.asarray(q, jnp.float32) for q in (qpos, qvel))
-        state = PhysicsState(*moved, *zeros, self.asset)
+        state = PhysicsState(*moved, *zeros, asset=self.asset)
         return state if mjcf.of_acceleration(self.asset).all() else self._advance(state, 0)
 
     def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:

@@ -49,7 +49,8 @@ def pose_of(env: Any) -> Callable[[EnvState], Array]:
 
 def check_drawable(env: Any) -> None:
     """Raise ValueError for an environment that cannot be drawn."""
-    scene_of(env), pose_of(env)
+    scene_of(env)
+    pose_of(env)
 
 
 def _first(env: Any) -> PhysicsState:
@@ -86,7 +87,7 @@ def dressed(scene: str) -> mujoco.MjModel:
     head = spec.visual.headlight
     head.ambient = np.maximum(head.ambient, 0.35)
     model = spec.compile()
-    plain = (model.geom_matid < 0) & (model.geom_rgba == np.float32(GREY)).all(1)
+    plain = (model.geom_matid < 0) & (model.geom_rgba == np.array(GREY, np.float32)).all(1)
     model.geom_rgba[plain] = np.where(_moves(model)[plain, None], ROBOT, GROUND)
     return model
 
