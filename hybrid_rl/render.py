@@ -10,7 +10,8 @@ with at=0,20,40 for those after so many decisions, side by side.
 
 The episode is one of the run's own evaluation, the first unless episode=N: same key, no
 exploration. policy=NAME is a trained policy of policies/, or a file. With task=T the task's expert
-acts, which is scripted.
+acts, which is scripted. Without a graphics card a video shows the first 200 pictures, which
+take half a minute; episode_steps=N shows N decisions.
 
 mode=training is the first episode of training of a method that learns a belief over two
 coordinates, such as a map of contacts. A panel, as wide as the picture is high, shows what the
@@ -42,13 +43,14 @@ ARGUMENTS = (
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
     Argument("episode", 0, "number of the evaluation's episode, from 0", whole(least=0)),
     Argument("at", [], "decisions after which a .png shows the episode", numbers(whole(least=0))),
-    Argument("episode_steps", 0, "decisions at most; 0: the task's limit", whole()),
+    Argument("episode_steps", 0, "decisions at most; 0: the task's limit, see above", whole()),
     Argument("width", 640, "of the picture, in pixels", whole(even=True)),
     Argument("height", 480, "of the picture, in pixels", whole(even=True)),
 )
 GROUPS = {name: f"with task=T: a key of its {name}" for name in ("env", "episode", "expert")}
 FAR = 0.01  # of an observation in a replayed scene; more is reported
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
+FIRST = 200  # pictures of a video that the processor draws, unless episode_steps is given
 
 
 class Film(NamedTuple):
@@ -86,11 +88,12 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
     """One episode of `world` under `controller` with `params`."""
     import jax
 
+    from hybrid_rl.envs.mujoco.scenery import pose_of
     from hybrid_rl.training.rollout import rollout
 
     def go(params: Any, key: Any) -> tuple:
         states = rollout(world, controller, params, key, world.steps)
-        poses = jax.vmap(world.env.pose)(states)
+        poses = jax.vmap(pose_of(world.env))(states)
         return poses, states.done, states.info["return"], states.metrics.get("success")
 
     poses, done, returns, success = jax.jit(go)(params, key)
@@ -101,34 +104,47 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
 
 def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int = 480) -> None:
     """Write an episode of `world` to a file of one of drawing.SUFFIXES, in real time."""
+    from hybrid_rl.envs.mujoco.scenery import scene_of
     from hybrid_rl.run.drawing import draw
 
-    rate = 1 / world.spec.dt
-    stride = int(np.ceil(rate / FASTEST))
-    draw(world.env.scene(), shown.poses[::stride], out, rate / stride, width, height)
+    stride = _stride(world)
+    rate = 1 / (world.spec.dt * stride)
+    draw(scene_of(world.env), shown.poses[::stride], out, rate, width, height)
 
 
-def _shown(given: dict[str, Any], changes: dict[str, str]) -> tuple[Any, str, Film]:
+def _stride(world: Any) -> int:
+    """Decisions from one picture to the next."""
+    return int(np.ceil(1 / world.spec.dt / FASTEST))
+
+
+def _steps(world: Any, asked: int, out: Path) -> int:
+    """Decisions of `world` at most; asked: by the user, 0 for the default."""
+    from hybrid_rl.envs.mujoco import offscreen
+
+    if asked or out.suffix == ".png" or not offscreen.by_processor():
+        return asked or world.steps
+    return min(world.steps, FIRST * _stride(world))
+
+
+def _shown(given: dict[str, Any], changes: dict[str, str], out: Path) -> tuple[Any, str, Film]:
     """(world with its clock, whose actions, episode) that the arguments name."""
-    from hybrid_rl.envs.mujoco.offscreen import check_drawable
+    from hybrid_rl.envs.mujoco.scenery import check_drawable
 
-    seed, steps, number = (given[name] for name in ("seed", "episode_steps", "episode"))
+    seed, asked, number = (given[name] for name in ("seed", "episode_steps", "episode"))
     if given["task"]:
         from hybrid_rl.demonstrate import scripted
         from hybrid_rl.training.rollout import evaluation_keys
 
-        whole, controller, params = scripted(given["task"], changes)
-        _check(check_drawable, whole.env)
-        world = replace(whole, steps=steps or whole.steps)
-        return (
-            world,
-            "scripted expert",
-            film(world, controller, params, evaluation_keys(seed or 0, number + 1)[-1]),
-        )
+        world, controller, params = scripted(given["task"], changes)
+        _check(check_drawable, world.env)
+        begun = replace(world, steps=_steps(world, asked, out))
+        key = evaluation_keys(seed or 0, number + 1)[-1]
+        return world, "scripted expert", film(begun, controller, params, key)
     from hybrid_rl.pretrained import chosen
 
     trained = chosen(given)
     _check(check_drawable, trained.episode.env)
+    steps = _steps(trained.episode, asked, out)
     shown = episode(trained, given["mode"] or "full", seed, steps, number)
     return trained.episode, f"step {trained.step:,}", shown
 
@@ -145,13 +161,13 @@ def _training(
     folder: Path, seed: int | None, steps: int, out: Path, width: int, height: int
 ) -> None:
     """Draw the first episode of training, with the belief at the right."""
-    from hybrid_rl.envs.mujoco.offscreen import check_drawable
+    from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
     from hybrid_rl.run.drawing import draw
     from hybrid_rl.studies.belief_video import MOST, film
 
     shown = film(folder, seed, steps, height, MOST[out.suffix])
     _check(check_drawable, shown.world)
-    draw(shown.world.scene(), shown.poses, out, shown.fps, width, height, shown.panel)
+    draw(scene_of(shown.world), shown.poses, out, shown.fps, width, height, shown.panel)
     speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
     print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
     if shown.apart > FAR:
@@ -172,6 +188,7 @@ def main() -> None:
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
     from hybrid_rl.envs.mujoco import offscreen
+    from hybrid_rl.envs.mujoco.scenery import scene_of
     from hybrid_rl.run.drawing import SUFFIXES, draw_beside
 
     default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
@@ -185,14 +202,17 @@ def main() -> None:
     if given["mode"] == "training" and given["run"]:
         _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
         return
-    world, by, shown = _shown(given, changes)
+    world, by, shown = _shown(given, changes, out)
     if given["at"]:
         poses = shown.poses[np.minimum(given["at"], len(shown.poses) - 1)]
-        draw_beside(world.env.scene(), poses, out, width, height)
+        draw_beside(scene_of(world.env), poses, out, width, height)
     else:
         draw_film(world, shown, out, width, height)
     ended = {True: ", success", False: ", no success", None: ""}[shown.success]
-    print(f"{out}: {len(shown.poses) - 1} decisions, return {shown.total:,.1f}{ended}, {by}")
+    decisions = len(shown.poses) - 1
+    print(f"{out}: {decisions} decisions, return {shown.total:,.1f}{ended}, {by}")
+    if not given["episode_steps"] and decisions == _steps(world, 0, out) < world.steps:
+        print(f"the beginning, as there is no graphics card; all: episode_steps={world.steps}")
 
 
 if __name__ == "__main__":

@@ -142,11 +142,11 @@ def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:
 def _drawn(folder: Path) -> dict[str, bytes]:
     """The beginning of the first evaluation episode of a run, with its caption."""
     from hybrid_rl import evaluate, render
-    from hybrid_rl.envs.mujoco import offscreen
+    from hybrid_rl.envs.mujoco import offscreen, scenery
 
     offscreen.backend()
     trained = evaluate.load(folder)
-    offscreen.check_drawable(trained.episode.env)
+    scenery.check_drawable(trained.episode.env)
     film = render.episode(trained, steps=min(SHOWN, trained.episode.steps))
     with TemporaryDirectory() as parent:
         out = Path(parent, "video.mp4")

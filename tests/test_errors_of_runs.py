@@ -142,7 +142,7 @@ def test_a_run_is_never_written_over(nothing_lost, folders, capfd):
 def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
     monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
     monkeypatch.setattr(sys, "platform", "linux")
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     code = call(lambda: command.guarded(render.main), f"run={folders['trained']}")
     assert code == 1
     assert "install libegl1 or libosmesa6" in only_line(capfd)

@@ -6,7 +6,6 @@ import re
 import sys
 from pathlib import Path
 
-import mujoco
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
@@ -15,7 +14,6 @@ from tiny import TINY, call, call_train, only_line
 from hybrid_rl import config, evaluate, render
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
-from hybrid_rl.run.drawing import draw
 
 PAGE = (Path(__file__).resolve().parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
 IMPORTS = (
@@ -155,11 +153,9 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
     assert capfd.readouterr().err == ""
     trained = evaluate.load(tmp_path / "run")
     assert (evaluate.evaluate(trained, episodes=1)["return"] < 0).all()
-    env = trained.episode.env
-    offscreen.check_drawable(env)
     film = render.episode(trained, steps=3)
-    assert film.poses.shape == (4, mujoco.MjModel.from_xml_string(env.scene()).nq)
+    assert film.poses.shape == (4, 2)
     if can_draw:
         picture = tmp_path / "crane.gif"
-        draw(env.scene(), film.poses, picture, 20, 64, 48)
+        render.draw_film(trained.episode, film, picture, 64, 48)
         assert picture.stat().st_size > 0

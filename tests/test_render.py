@@ -13,6 +13,7 @@ from scenes import FIXED
 from hybrid_rl import render
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.run import drawing
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Spec
 
@@ -189,6 +190,42 @@ def test_bad_usage_is_one_line_and_code_2(trained, monkeypatch, capsys, argument
     printed = capsys.readouterr().err
     assert printed.count("\n") == 1
     assert line in printed
+
+
+@pytest.mark.parametrize(
+    ("by_processor", "more", "pictures"),
+    [
+        (True, [], 4),
+        (True, ["episode_steps=20"], 6),
+        (True, ["episode_steps=2"], 3),
+        (False, [], 6),
+    ],
+    ids=["beginning", "all", "fewer", "card"],
+)
+def test_a_processor_draws_the_beginning_unless_asked_for_more(
+    trained, tmp_path, monkeypatch, capsys, can_draw, by_processor, more, pictures
+):
+    """The box falls off after 5 decisions; three pictures after the first are the default."""
+    if not can_draw:
+        return
+    monkeypatch.setattr(offscreen, "by_processor", lambda: by_processor)
+    monkeypatch.setattr(render, "FIRST", 3)
+    small = ["width=64", "height=48", f"out={tmp_path / 'a.mp4'}"]
+    assert call(monkeypatch, "run=x", *small, *more) == 0
+    assert len(iio.imread(tmp_path / "a.mp4", plugin="pyav")) == pictures
+    line = "the beginning, as there is no graphics card; all: episode_steps=20"
+    assert (line in capsys.readouterr().out.splitlines()) == (by_processor and not more)
+
+
+def test_a_still_is_of_the_whole_episode(trained, tmp_path, monkeypatch, can_draw):
+    if not can_draw:
+        return
+    monkeypatch.setattr(render, "FIRST", 1)
+    small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
+    assert call(monkeypatch, "run=x", *small) == 0
+    poses = render.episode(trained).poses
+    middle = next(drawing.frames(FIXED, poses[len(poses) // 2][None], 64, 48))
+    np.testing.assert_array_equal(iio.imread(tmp_path / "a.png"), middle)
 
 
 def test_a_fast_world_skips_pictures(trained, tmp_path, monkeypatch, can_draw):

@@ -3,9 +3,11 @@
     GymnasiumEnv(env)             gymnasium.Env, for Stable-Baselines3 for example
     GymnasiumVectorEnv(env, 64)   gymnasium.vector.VectorEnv, all 64 in one compiled step
 
-`steps` is the time limit in decisions, at which an episode is truncated; 0 for none. The vector
-environment resets in the step that ends an episode (AutoresetMode.SAME_STEP): the true last
-observation is `infos["final_obs"]` where `infos["_final_obs"]`.
+`hybrid_rl.envs.gym` registers them for `gymnasium.make`. `steps` is the time limit in decisions, at
+which an episode is truncated: by default that of the package's task, 0 for none. `info` has the
+environment's metrics, `success` as a bool. The vector environment resets in the step that ends an
+episode (AutoresetMode.SAME_STEP): the true last observation and metrics are `infos["final_obs"]`
+and `infos["final_info"]` where `infos["_final_obs"]`.
 
 With Stable-Baselines3 on a CPU call `torch.set_num_threads(1)` first: on two busy cores 300 steps
 of its SAC took 4 s with one thread and 70 s with two.
@@ -13,22 +15,50 @@ of its SAC took 4 s with one thread and 70 s with two.
 Source: Gymnasium's documentation, "Env", "VectorEnv".
 """
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from importlib import import_module
 from typing import Any, ClassVar
 
 import gymnasium
 import jax
 import jax.numpy as jnp
 import numpy as np
+from gymnasium.error import ResetNeeded
 from gymnasium.spaces import Box
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from jax import Array
 
-from hybrid_rl.envs.mujoco.offscreen import Canvas, check_drawable
+from hybrid_rl.envs.adapters.packed import Packed, pack, unpack
+from hybrid_rl.envs.gym import time_limit
+from hybrid_rl.envs.mujoco.offscreen import Canvas
+from hybrid_rl.envs.mujoco.scenery import pose_of, scene_of
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState
+
+Info = dict[str, Any]
+FLAG = "success"  # the metric that is yes or no
+
+
+def make(world: str, render_mode: str | None = None, **fields: Any) -> "GymnasiumEnv":
+    """The environment of the class `world`, MODULE.CLASS; `gymnasium.make` adds the time limit.
+
+    fields: of the environment.
+    """
+    return GymnasiumEnv(_world(world, fields), 0, render_mode)
+
+
+def make_vec(
+    world: str, num_envs: int = 1, max_episode_steps: int = 0, **fields: Any
+) -> "GymnasiumVectorEnv":
+    """`num_envs` environments of the class `world`, MODULE.CLASS. fields: of each environment."""
+    return GymnasiumVectorEnv(_world(world, fields), num_envs, max_episode_steps)
+
+
+def _world(name: str, fields: dict[str, Any]) -> Env:
+    module, _, kind = name.rpartition(".")
+    return getattr(import_module(module), kind)(**fields)
 
 
 def _spaces(env: Env) -> tuple[Box, Box]:
@@ -39,46 +69,110 @@ def _spaces(env: Env) -> tuple[Box, Box]:
     )
 
 
+def _checked(action: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """`action` as float32.
+
+    Raises:
+        ValueError: for another shape, or numbers that are not finite.
+    """
+    action = np.asarray(action, np.float32)
+    if action.shape != shape:
+        raise ValueError(f"action has the shape {action.shape}; {shape} is needed")
+    if not np.isfinite(action).all():
+        raise ValueError(f"action={action.tolist()}: all numbers must be finite, from -1 to 1")
+    return action
+
+
+@cache
+def _programs(env: Env) -> tuple[EnvState, Callable, Callable, Callable]:
+    """Shapes of a state; reset and step on packed states, and `unpack`, for all equal `env`."""
+    like = jax.eval_shape(env.reset, jax.random.key(0))
+    reset = jax.jit(lambda seed: pack(env.reset(jax.random.key(seed)), like))
+    step = jax.jit(lambda packed, action: pack(env.step(unpack(packed, like), action), like))
+    return like, reset, step, jax.jit(partial(unpack, like=like))
+
+
 class GymnasiumEnv(gymnasium.Env):
-    """One environment; reset and step are one compiled call each."""
+    """One environment; reset and step are one compiled call each.
+
+    Raises:
+        ValueError: for an unknown `render_mode`, or if `steps` is left out and `env` is no task of
+            this package.
+    """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"]}
 
-    def __init__(self, env: Env, steps: int = 0, render_mode: str | None = None) -> None:
-        self.env, self.steps, self.render_mode = env, steps, render_mode
+    def __init__(self, env: Env, steps: int | None = None, render_mode: str | None = None) -> None:
+        modes = self.metadata["render_modes"]
+        if render_mode not in (None, *modes):
+            raise ValueError(f"render_mode={render_mode!r}: choose one of None, {modes[0]!r}")
+        self.env, self.render_mode, self._spec = env, render_mode, env.spec
+        self.steps = time_limit(env) if steps is None else steps
         self.metadata = {**self.metadata, "render_fps": round(1 / env.spec.dt)}
         self.observation_space, self.action_space = _spaces(env)
-        self._reset, self._step = jax.jit(env.reset), jax.jit(partial(_packed_step, env))
+        self._like, self._reset, self._step, self._unpacked = _programs(env)
+        self._packed: Packed | None = None  # until the first reset
         self._canvas: Canvas | None = None
+
+    @property
+    def state(self) -> EnvState:
+        """The state, as `env.step` takes it.
+
+        Raises:
+            ResetNeeded: before the first `reset`.
+        """
+        return self._unpacked(_after_reset(self._packed, "state"))
+
+    def _read(self, packed: Packed) -> tuple[np.ndarray, float, bool, Info]:
+        """Observation [o], reward, terminated, metrics by name."""
+        o = self._spec.obs
+        outcome = np.asarray(packed["float32"])[: o + 2 + len(self._like.metrics)]
+        reward, terminated, *metrics = outcome[o:].tolist()
+        info = dict(zip(self._like.metrics, metrics, strict=True))
+        if FLAG in info:
+            info[FLAG] = bool(info[FLAG])
+        return outcome[:o].copy(), reward, bool(terminated), info
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Initial observation [o] of an episode."""
+    ) -> tuple[np.ndarray, Info]:
+        """Initial observation [o] of an episode, and its metrics."""
         super().reset(seed=seed)
-        key = jax.random.key(int(self.np_random.integers(2**31)))
-        self._state, self._count = self._reset(key), 0
-        return np.array(self._state.obs), {}
+        self._packed = packed = self._reset(int(self.np_random.integers(2**31)))
+        self._count = self._beyond = 0  # steps of the episode, and from its end on
+        obs, _, _, info = self._read(packed)
+        return obs, info
 
-    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """Observation [o], reward, terminated, truncated, info after action [m]."""
-        self._state, out = self._step(self._state, np.asarray(action, np.float32))
-        out = np.array(out)
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
+        """Observation [o], reward, terminated, truncated, metrics after action [m].
+
+        Raises:
+            ResetNeeded: before the first `reset`.
+            ValueError: for an action of another shape, or with numbers that are not finite.
+        """
+        packed = _after_reset(self._packed, "step")
+        self._packed = packed = self._step(packed, _checked(action, (self._spec.act,)))
+        obs, reward, terminated, info = self._read(packed)
         self._count += 1
-        truncated = 0 < self.steps <= self._count
-        return out[:-2], float(out[-2]), bool(out[-1]), truncated, {}
+        truncated = 0 < self.steps <= self._count and not terminated
+        if self._beyond == 1:
+            gymnasium.logger.warn("step: the episode is over; call reset() to begin another one")
+        if self._beyond or terminated or truncated:
+            self._beyond += 1
+        return obs, reward, terminated, truncated, info
 
     def render(self) -> np.ndarray:
         """Image [480, 640, 3] (uint8) of the current state; needs no display.
 
         Raises:
             NoGraphicsError: if neither EGL nor OSMesa works.
-            ValueError: for an environment without `scene` and `pose`.
+            ResetNeeded: before the first `reset`.
+            ValueError: for an environment that cannot be drawn: `scenery.scene_of` says why.
         """
+        _after_reset(self._packed, "render")
         if self._canvas is None:
-            check_drawable(self.env)
-            self._canvas = Canvas(self.env.scene())
-        return self._canvas.draw(np.asarray(self.env.pose(self._state)))
+            self._canvas = Canvas(scene_of(self.env), smooth=False)
+        return self._canvas.draw(np.asarray(pose_of(self.env)(self.state)))
 
     def close(self) -> None:
         """Free the resources of `render`."""
@@ -87,32 +181,31 @@ class GymnasiumEnv(gymnasium.Env):
             self._canvas = None
 
 
-def _packed_step(env: Env, state: EnvState, action: Array) -> tuple[EnvState, Array]:
-    """The next state, and [obs, reward, terminated] [o + 2] packed for one copy to the host."""
-    state = env.step(state, action)
-    return state, jnp.concatenate((state.obs, jnp.stack((state.reward, state.terminated))))
-
-
 class GymnasiumVectorEnv(VectorEnv):
-    """`num_envs` environments, stepped together."""
+    """`num_envs` environments, stepped together.
+
+    Raises:
+        ValueError: if `steps` is left out and `env` is no task of this package.
+    """
 
     metadata: ClassVar[dict[str, Any]] = {"autoreset_mode": AutoresetMode.SAME_STEP}
 
-    def __init__(self, env: Env, num_envs: int, steps: int = 0) -> None:
-        self.env, self.num_envs, self.steps = env, num_envs, steps
+    def __init__(self, env: Env, num_envs: int, steps: int | None = None) -> None:
+        self.env, self.num_envs = env, num_envs
+        self.steps = time_limit(env) if steps is None else steps
         self.single_observation_space, self.single_action_space = _spaces(env)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._reset = jax.jit(jax.vmap(env.reset))
-        self._step = jax.jit(partial(_autoreset_step, env, steps))
+        self._reset, self._step = _vector_programs(env, self.steps)
+        self._carry: tuple[EnvState, Array, Array] | None = None  # states, keys, steps so far
 
     def reset(
         self,
         *,
         seed: int | Sequence[int] | None = None,
         options: dict[str, Any] | None = None,
-    ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Initial observations [E, o]. With one seed, environment i gets seed + i."""
+    ) -> tuple[np.ndarray, Info]:
+        """Initial observations [E, o], and metrics. With one seed, environment i gets seed + i."""
         first = seed if seed is None or isinstance(seed, int) else int(seed[0])
         super().reset(seed=first)
         if seed is None:
@@ -122,25 +215,49 @@ class GymnasiumVectorEnv(VectorEnv):
         else:
             seeds = np.asarray(seed)
         keys = jax.vmap(lambda s: jax.random.split(jax.random.key(s)))(seeds)
-        self._state, self._keys = self._reset(keys[:, 0]), keys[:, 1]
-        self._count = jnp.zeros(self.num_envs, jnp.int32)
-        return np.array(self._state.obs), {}
+        state = self._reset(keys[:, 0])
+        self._carry = state, keys[:, 1], jnp.zeros(self.num_envs, jnp.int32)
+        return np.array(state.obs), _infos(state, np.ones(self.num_envs, bool))
 
     def step(
         self, actions: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Observations [E, o], rewards, terminations, truncations [E], infos, after [E, m]."""
-        carry = (self._state, self._keys, self._count)
-        carry, last, truncated = self._step(carry, np.asarray(actions, np.float32))
-        self._state, self._keys, self._count = carry
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
+        """Observations [E, o], rewards, terminations, truncations [E], infos, after [E, m].
+
+        Raises:
+            ResetNeeded: before the first `reset`.
+            ValueError: for actions of another shape, or with numbers that are not finite.
+        """
+        carry, shape = _after_reset(self._carry, "step"), (self.num_envs, self.env.spec.act)
+        carry, last, truncated = self._step(carry, _checked(actions, shape))
+        self._carry, state = carry, carry[0]
         terminated, truncated = np.array(last.terminated), np.array(truncated)
-        done, everywhere = terminated | truncated, np.ones(self.num_envs, bool)
-        infos = {k: np.array(v) for k, v in last.metrics.items()}
-        infos |= {f"_{k}": everywhere for k in last.metrics}
+        done = terminated | truncated
+        infos = _infos(state, np.ones(self.num_envs, bool))
         if done.any():
             infos |= {"final_obs": np.array(last.obs), "_final_obs": done}
-        obs, reward = np.array(self._state.obs), np.array(last.reward)
-        return obs, reward, terminated, truncated, infos
+            infos |= {"final_info": _infos(last, done), "_final_info": done}
+        return np.array(state.obs), np.array(last.reward), terminated, truncated, infos
+
+
+@cache
+def _vector_programs(env: Env, steps: int) -> tuple[Callable, Callable]:
+    """Reset and step for all equal `env`."""
+    return jax.jit(jax.vmap(env.reset)), jax.jit(partial(_autoreset_step, env, steps))
+
+
+def _after_reset(state: Any, what: str) -> Any:
+    """`state`, or ResetNeeded if it is None."""
+    if state is None:
+        raise ResetNeeded(f"{what}: call reset() first")
+    return state
+
+
+def _infos(state: EnvState, known: np.ndarray) -> Info:
+    """The metrics [E] of the environments `known` [E] as Gymnasium has them, with masks."""
+    infos = {name: np.where(known, x, 0) for name, x in state.metrics.items()}
+    infos |= {FLAG: infos[FLAG].astype(bool)} if FLAG in infos else {}
+    return infos | {f"_{name}": known for name in infos}
 
 
 def _autoreset_step(
@@ -150,7 +267,9 @@ def _autoreset_step(
     state, keys, count = carry
     last = jax.vmap(env.step)(state, actions)
     count = count + 1
-    truncated = (count >= steps) & ~last.terminated if steps else jnp.zeros_like(last.terminated)
+    truncated = (
+        (count >= steps) & ~last.terminated if steps > 0 else jnp.zeros_like(last.terminated)
+    )
     done = last.terminated | truncated
 
     def auto_reset() -> EnvState:

@@ -55,6 +55,18 @@ def changed(asset: str, values: Mapping[str, float]) -> str:
     return "?".join([asset, *(f"{key}={float(value)!r}" for key, value in values.items())])
 
 
+def spec(asset: str) -> mujoco.MjSpec:
+    """A new description of `asset`, which may be modified."""
+    if asset.lstrip().startswith("<"):
+        return mujoco.MjSpec.from_string(asset)
+    file, *values = asset.split("?")
+    result = mujoco.MjSpec.from_file(str(path(file)))
+    for change in values:
+        key, _, value = change.partition("=")
+        _set(result, key, float(value))
+    return result
+
+
 @cache
 def load(asset: str) -> mujoco.MjModel:
     """The compiled model of `asset`, which is shared: do not modify it.
@@ -62,15 +74,7 @@ def load(asset: str) -> mujoco.MjModel:
     Raises:
         ValueError: for a model with automatic resets.
     """
-    if asset.startswith("<"):
-        model = mujoco.MjModel.from_xml_string(asset)
-    else:
-        file, *values = asset.split("?")
-        spec = mujoco.MjSpec.from_file(str(path(file)))
-        for change in values:
-            key, _, value = change.partition("=")
-            _set(spec, key, float(value))
-        model = spec.compile()
+    model = spec(asset).compile()
     if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
         raise ValueError(
             f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '

@@ -20,11 +20,17 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from hybrid_rl.envs.mujoco import scenery
+
 BACKENDS = ("egl", "osmesa")
-CAMERA = "track"  # used if the scene has a camera of this name
 SHADOWS = 1024  # [pixels] of the shadow map; 4096 takes three times as long in software
+RASTERISERS = (
+    "llvmpipe",
+    "softpipe",
+    "swrast",
+    "software",
+)  # names of Mesa's drivers without a card
 GUARANTEED = 1024  # [pixels] per side in any OpenGL; larger sizes are tested first
-METHODS = ("scene", "pose")  # of an environment that can be rendered
 TRIAL = """
 import mujoco
 from mujoco.{backend} import GLContext
@@ -32,7 +38,8 @@ window = GLContext(8, 8)
 window.make_current()
 try:
     from OpenGL import GL
-    print(int(GL.glGetIntegerv(GL.GL_MAX_RENDERBUFFER_SIZE)), flush=True)
+    print(int(GL.glGetIntegerv(GL.GL_MAX_RENDERBUFFER_SIZE)))
+    print(GL.glGetString(GL.GL_RENDERER).decode(), flush=True)
 except ImportError:
     pass
 model = mujoco.MjModel.from_xml_string("<mujoco/>")
@@ -47,20 +54,35 @@ class NoGraphicsError(OSError):
     """No backend can render without a display; the message names what to install."""
 
 
-@cache
 def backend() -> str:
     """The first of BACKENDS that works on this machine, or the one that MUJOCO_GL names.
 
     Raises:
         NoGraphicsError: if none works.
     """
+    return chosen()[0]
+
+
+def by_processor() -> bool:
+    """Whether the processor draws, a few pictures a second, and no graphics card.
+
+    Raises:
+        NoGraphicsError: if nothing does.
+    """
+    return any(name in chosen()[1].lower() for name in RASTERISERS)
+
+
+@cache
+def chosen() -> tuple[str, str]:
+    """The backend, and what it draws with, by the first trial that succeeds."""
     if sys.platform == "darwin":
-        return "cgl"
+        return "cgl", ""
     requested = os.environ.get("MUJOCO_GL", "").strip().lower()
     tried = (requested,) if requested in BACKENDS else BACKENDS
     for name in tried:
-        if _trial(name, 8, 8).returncode == 0:
-            return name
+        done = _trial(name, 8, 8)
+        if done.returncode == 0:
+            return name, done.stdout
     raise NoGraphicsError(
         f"cannot draw without a display: {' and '.join(tried)} failed; "
         "install libegl1 or libosmesa6 (Debian: apt-get install libegl1 libosmesa6)"
@@ -92,32 +114,29 @@ def _trial(name: str, width: int, height: int) -> Any:
     return subprocess.run(run, env={**clean, "MUJOCO_GL": name}, capture_output=True, text=True)
 
 
-def check_drawable(env: Any) -> None:
-    """Raise ValueError for an environment without `scene` and `pose`, which rendering needs."""
-    missing = [f"`{name}`" for name in METHODS if not hasattr(env, name)]
-    if missing:
-        raise ValueError(
-            f"{type(env).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
-        )
-
-
 class Canvas:
     """Renders images of one scene; `close()`, or the end of the process, frees its resources.
 
-    scene: MJCF text. width, height: [pixels].
+    scene: MJCF text, or a file for `mjcf.spec`; `scenery.dressed` adds the light that it lacks.
+    width, height: [pixels]. smooth: whether edges are, if the processor has to draw, which then
+    takes twice as long.
 
     Raises:
         NoGraphicsError: if no backend works on this machine.
     """
 
-    def __init__(self, scene: str, width: int = 640, height: int = 480) -> None:
+    def __init__(
+        self, scene: str, width: int = 640, height: int = 480, smooth: bool = True
+    ) -> None:
         name = backend()
         if name in BACKENDS:
             os.environ["PYOPENGL_PLATFORM"] = name
-        self.model = mujoco.MjModel.from_xml_string(scene)
+        self.model = scenery.dressed(scene)
         self.model.vis.global_.offwidth, self.model.vis.global_.offheight = width, height
         self.model.vis.quality.shadowsize = SHADOWS
-        self._data, self._camera = mujoco.MjData(self.model), _camera(self.model)
+        if not smooth and by_processor():
+            self.model.vis.quality.offsamples = 0
+        self._data, self._camera = mujoco.MjData(self.model), scenery.camera(self.model)
         self._view = mujoco.MjrRect(0, 0, width, height)
         self._scenery = mujoco.MjvScene(self.model, maxgeom=10_000)
         self._scenery.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
@@ -152,18 +171,3 @@ class Canvas:
         picture = np.empty((self._view.height, self._view.width, 3), np.uint8)
         mujoco.mjr_readPixels(picture, None, self._view, self._context)
         return picture[::-1].copy()  # OpenGL counts rows from below
-
-
-def _camera(model: mujoco.MjModel) -> mujoco.MjvCamera:
-    """The scene's camera that follows the robot, else a free one that follows the first body."""
-    camera = mujoco.MjvCamera()
-    number = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_CAMERA, CAMERA)
-    if number >= 0:
-        camera.type, camera.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, number
-    else:
-        mujoco.mjv_defaultFreeCamera(model, camera)
-        camera.type, camera.trackbodyid = (
-            mujoco.mjtCamera.mjCAMERA_TRACKING,
-            min(1, model.nbody - 1),
-        )
-    return camera

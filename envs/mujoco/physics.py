@@ -49,6 +49,7 @@ class PhysicsState:
     warmstart: Array  # [nv] accelerations from which the solver starts [m/s^2, rad/s^2]
     ctrl: Array | None  # [nu] controls of the last step
     sensors: Array | None  # [nsensordata] of this state; of accelerations: of the last step
+    asset: str = struct.field(pytree_node=False)  # the model whose state it is
 
 
 def check(implementation: str) -> None:
@@ -100,7 +101,8 @@ class Physics:
         model = self.model
         sizes = (model.na, model.nv, model.nu, model.nsensordata)
         zeros = [_or_none(jnp.zeros(size, jnp.float32)) for size in sizes]
-        state = PhysicsState(*(jnp.asarray(q, jnp.float32) for q in (qpos, qvel)), *zeros)
+        moved = (jnp.asarray(q, jnp.float32) for q in (qpos, qvel))
+        state = PhysicsState(*moved, *zeros, asset=self.asset)
         return state if mjcf.of_acceleration(self.asset).all() else self._advance(state, 0)
 
     def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:
@@ -127,7 +129,13 @@ class Physics:
         ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
         qpos, qvel, act, rest = jnp.split(out, ends)
         warmstart, sensors = jnp.split(rest, (model.nv,))
-        return PhysicsState(qpos, qvel, _or_none(act), warmstart, state.ctrl, _or_none(sensors))
+        return state.replace(
+            qpos=qpos,
+            qvel=qvel,
+            act=_or_none(act),
+            warmstart=warmstart,
+            sensors=_or_none(sensors),
+        )
 
     def _accelerated(self, state: PhysicsState, n: int, impl: str) -> PhysicsState:
         from hybrid_rl.envs.mujoco import mjx_warp
@@ -141,8 +149,8 @@ class Physics:
         }
         fields = {name: x for name, x in fields.items() if x is not None}
         out = mjx_warp.step(self.asset, impl, n, fields)
-        *moved, sensors = (_or_none(out[name]) for name in mjx_warp.OUTPUTS)
-        return PhysicsState(*moved, ctrl=state.ctrl, sensors=sensors)
+        qpos, qvel, act, warmstart, sensors = (_or_none(out[name]) for name in mjx_warp.OUTPUTS)
+        return state.replace(qpos=qpos, qvel=qvel, act=act, warmstart=warmstart, sensors=sensors)
 
 
 def _or_none(x: Array) -> Any:

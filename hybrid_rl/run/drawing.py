@@ -38,7 +38,7 @@ def draw(
         shown = range(len(qpos) // 2, len(qpos) // 2 + 1)
     out.parent.mkdir(parents=True, exist_ok=True)
     part = out.with_stem(f".{out.stem}.part")
-    plain = frames(scene, qpos[list(shown)], width, height)
+    plain = frames(scene, qpos[list(shown)], width, height, out.suffix == ".png")
     if panel is not None:
         plain = (np.hstack([one, panel(i)]) for i, one in zip(shown, plain, strict=True))
     pictures = _counted(plain, len(shown))
@@ -59,10 +59,10 @@ def draw_beside(
 
 
 def frames(
-    scene: str, qpos: np.ndarray, width: int = 640, height: int = 480
+    scene: str, qpos: np.ndarray, width: int = 640, height: int = 480, smooth: bool = True
 ) -> Iterator[np.ndarray]:
     """One picture [height, width, 3] (uint8) for each row of qpos [frames, nq]."""
-    with contextlib.closing(Canvas(scene, width, height)) as canvas:
+    with contextlib.closing(Canvas(scene, width, height, smooth)) as canvas:
         yield from map(canvas.draw, qpos)
 
 

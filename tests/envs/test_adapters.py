@@ -1,24 +1,31 @@
 """Environments with the interfaces of Gymnasium and Brax."""
 
 import re
+import subprocess
 import sys
 import textwrap
+import warnings
 from functools import partial
-from types import SimpleNamespace
 
 import gymnasium
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
+from hybrid_rl import config
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
+from hybrid_rl.envs.adapters.packed import pack, unpack
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.mujoco import offscreen
+
+ID = "hybrid_rl/"
 
 
 def can_draw():
@@ -30,11 +37,119 @@ def can_draw():
     return True
 
 
-@pytest.mark.filterwarnings("ignore:.*Not able to test alternative render modes:UserWarning")
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
-def test_gymnasium_accepts_an_environment():
-    env = GymnasiumEnv(Hopper("native"), steps=20, render_mode="rgb_array")
-    check_env(env, skip_render_check=not can_draw())
+@pytest.mark.parametrize("name", ["HalfCheetah", "Hopper", "TwoLink"])
+def test_gymnasium_accepts_an_environment(name):
+    """By its id, whose environment has a `spec`."""
+    env = gymnasium.make(f"hybrid_rl/{name}", render_mode="rgb_array")
+    check_env(env.unwrapped, skip_render_check=not can_draw())
+    env.close()
+
+
+def test_every_task_has_an_id_and_its_time_limit():
+    """A decision of the cartpole's task is two of its environment's."""
+    files = sorted(config.CONF.glob("task/*.yaml"))
+    targets = [spec.kwargs["world"] for name, spec in gymnasium.registry.items() if ID in name]
+    assert len(targets) == len(set(targets)) == len(files)
+    assert gymnasium.spec("hybrid_rl/Walker2d").max_episode_steps == 1000
+    assert gymnasium.spec("hybrid_rl/Cartpole").max_episode_steps == 2 * 500
+    assert GymnasiumEnv(TwoLink()).steps == GymnasiumVectorEnv(TwoLink(), 2).steps == 200
+
+
+def test_the_ids_are_registered_without_jax():
+    code = "import sys, hybrid_rl.envs.gym; sys.exit('jax' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_an_id_takes_the_fields_of_its_environment():
+    long = {"success_distance": 1.0, "max_episode_steps": 4}
+    env = gymnasium.make("hybrid_rl.envs.gym:hybrid_rl/TwoLink", **long)
+    env.reset(seed=0)
+    ends = [env.step(np.zeros(2, np.float32))[3] for _ in range(4)]
+    assert (env.unwrapped.env.success_distance, ends) == (1.0, [False, False, False, True])
+    envs = gymnasium.make_vec("hybrid_rl/TwoLink", num_envs=2, **long)
+    ended = [truncated.all() for _, _, _, truncated, _ in _play(envs, 0, 4)]
+    assert (envs.env.success_distance, ended) == (1.0, [False, False, False, True])
+
+
+def test_an_environment_of_another_package_needs_a_time_limit():
+    class Mine(TwoLink):
+        pass
+
+    with pytest.raises(ValueError, match="steps: Mine has no time limit of its own; give steps=N"):
+        GymnasiumEnv(Mine())
+    assert GymnasiumEnv(Mine(), steps=7).steps == 7
+
+
+def test_wrong_use_is_refused():
+    one, many = GymnasiumEnv(TwoLink()), GymnasiumVectorEnv(TwoLink(), 3)
+    for call in (one.render, lambda: one.step(np.zeros(2)), lambda: many.step(np.zeros((3, 2)))):
+        with pytest.raises(ResetNeeded, match=r"call reset\(\) first"):
+            call()
+    with pytest.raises(ValueError, match="render_mode='human': choose one of None, 'rgb_array'"):
+        GymnasiumEnv(TwoLink(), render_mode="human")
+    one.reset(seed=0), many.reset(seed=0)
+    with pytest.raises(ValueError, match=r"action has the shape \(3,\); \(2,\) is needed"):
+        one.step(np.zeros(3))
+    with pytest.raises(ValueError, match=r"action has the shape \(2,\); \(3, 2\) is needed"):
+        many.step(np.zeros(2))
+    with pytest.raises(ValueError, match=r"action=\[nan, 0\.0\]: all numbers must be finite"):
+        one.step([np.nan, 0.0])
+
+
+def test_a_step_after_the_end_warns_once():
+    env, action = GymnasiumEnv(TwoLink(), steps=2), np.zeros(2, np.float32)
+    env.reset(seed=0)
+    env.step(action), env.step(action)
+    with pytest.warns(UserWarning, match=r"the episode is over; call reset\(\)") as warned:
+        env.step(action), env.step(action)
+    assert len(warned) == 1
+    env.reset()
+    env.step(action)
+
+
+def test_info_has_the_metrics():
+    """Distance of the arm from its target, in [rad], and whether that is success."""
+    env, seen = GymnasiumEnv(TwoLink(success_distance=2.0)), set()
+    for seed in range(8):
+        obs, first = env.reset(seed=seed)
+        after, *_, last = env.step(np.ones(2, np.float32))
+        for x, info in ((obs, first), (after, last)):
+            distance = float(np.linalg.norm(x[[0, 2]] - x[4:]))
+            assert info == {"distance": pytest.approx(distance), "success": distance < 2.0}
+            assert type(info["success"]) is bool
+            seen.add(info["success"])
+    assert seen == {False, True}
+
+
+def test_infos_are_those_of_single_environments():
+    """Gymnasium's own vector environment, which steps one after the other, has the same keys."""
+    world = TwoLink(success_distance=1.0)
+    make = partial(GymnasiumEnv, world, 4)
+    own = gymnasium.vector.SyncVectorEnv([make] * 2, autoreset_mode=AutoresetMode.SAME_STEP)
+    ours = GymnasiumVectorEnv(world, 2, steps=4)
+    for (*_, a), (*_, b) in zip(_play(own, 0, 5), _play(ours, 0, 5), strict=True):
+        assert set(a) == set(b)
+        assert a["success"].dtype == b["success"].dtype == bool
+        np.testing.assert_array_equal(a["_distance"], b["_distance"])
+        if "final_info" in b:
+            assert set(a["final_info"]) == set(b["final_info"])
+            distance = np.linalg.norm(b["final_obs"][:, [0, 2]] - b["final_obs"][:, 4:], axis=1)
+            np.testing.assert_allclose(b["final_info"]["distance"], distance, rtol=1e-5)
+
+
+def test_a_state_is_packed_without_loss():
+    """Keys, counters and flags among numbers."""
+    state = jax.jit(TwoLink().reset)(jax.random.key(0))
+    new = jax.random.key(5)
+    more = {"new": new, "key": jnp.array([1, 2**32 - 1], jnp.uint32), "count": jnp.int32(-3)}
+    state = state.replace(info={**state.info, **more})
+    like = jax.eval_shape(lambda: state)
+    again = jax.jit(lambda x: unpack(pack(x, like), like))(state)
+    assert (jax.random.key_data(again.info.pop("new")) == jax.random.key_data(new)).all()
+    state.info.pop("new")
+    jax.tree.map(np.testing.assert_array_equal, again, state)
+    assert jax.tree.map(lambda x: x.dtype, again) == jax.tree.map(lambda x: x.dtype, state)
 
 
 def test_rendering_needs_no_display():
@@ -64,33 +179,43 @@ def test_without_a_backend_rendering_raises_one_line(monkeypatch):
     """MuJoCo's own renderer would end the process."""
     monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
     monkeypatch.setattr(sys, "platform", "linux")
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     env = GymnasiumEnv(Hopper("native"))
     env.reset(seed=0)
     with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
         env.render()
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     env.close()
 
 
 def test_an_environment_without_a_scene_cannot_be_rendered():
-    bare = SimpleNamespace(spec=Hopper("native").spec, reset=Hopper("native").reset, step=None)
+    class Bare:
+        spec, reset = TwoLink().spec, TwoLink().reset
+        step = None
+
+    env = GymnasiumEnv(Bare(), steps=0)
+    env.reset()
     with pytest.raises(ValueError, match="has no `scene` and no `pose`"):
-        GymnasiumEnv(bare).render()
+        env.render()
 
 
-def test_the_adapter_steps_the_environment():
-    env = HalfCheetah("native")
-    adapter = GymnasiumEnv(env, steps=5)
+@pytest.mark.parametrize("env", [HalfCheetah("native"), Hopper("native")])
+def test_the_adapter_steps_the_environment(env):
+    """200 decisions of random actions, without resets."""
+    adapter = GymnasiumEnv(env, steps=200)
     adapter.reset(seed=0)
-    state, step = adapter._state, jax.jit(env.step)
-    for t in range(5):
+    adapter.action_space.seed(0)
+    state, step = adapter.state, jax.jit(env.step)
+    for t in range(200):
         action = adapter.action_space.sample()
-        obs, reward, terminated, truncated, _ = adapter.step(action)
+        with warnings.catch_warnings(action="ignore"):  # the hopper fell
+            obs, reward, terminated, truncated, info = adapter.step(action)
         state = step(state, action)
         np.testing.assert_allclose(obs, state.obs, rtol=1e-6)
         assert reward == pytest.approx(float(state.reward), rel=1e-5)
-        assert (terminated, truncated) == (False, t == 4)
+        assert info == {"speed": pytest.approx(float(state.metrics["speed"]), rel=1e-5)}
+        assert terminated == bool(state.terminated)
+        assert truncated == (t == 199 and not terminated)
 
 
 def test_a_seed_repeats_the_initial_state():

@@ -137,7 +137,7 @@ def test_positions_of_another_scene_are_refused(can_draw):
 @pytest.fixture
 def choosing(monkeypatch):
     """Decrees which backends work."""
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     monkeypatch.delenv("MUJOCO_GL", raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
 
@@ -146,13 +146,13 @@ def choosing(monkeypatch):
         monkeypatch.setattr(offscreen, "TRIAL", code)
 
     yield works
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
 
 
 def test_egl_comes_before_osmesa_unless_the_user_says_otherwise(choosing, monkeypatch):
     choosing("egl", "osmesa")
     assert offscreen.backend() == "egl"
-    offscreen.backend.cache_clear()
+    offscreen.chosen.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "OSMesa")
     assert offscreen.backend() == "osmesa"
 
@@ -160,6 +160,14 @@ def test_egl_comes_before_osmesa_unless_the_user_says_otherwise(choosing, monkey
 def test_osmesa_is_taken_where_egl_fails(choosing):
     choosing("osmesa")
     assert offscreen.backend() == "osmesa"
+
+
+@pytest.mark.parametrize(
+    ("renderer", "expected"), [("llvmpipe (LLVM 15.0.6, 256 bits)", True), ("NVIDIA H100", False)]
+)
+def test_the_driver_says_whether_the_processor_draws(choosing, monkeypatch, renderer, expected):
+    monkeypatch.setattr(offscreen, "TRIAL", f"print(16384); print('{renderer}')")
+    assert offscreen.by_processor() == expected
 
 
 def test_a_machine_that_cannot_draw_names_the_packages_to_install(choosing):
