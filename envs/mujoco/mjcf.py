@@ -25,6 +25,8 @@ def path(asset: str) -> Path:
     """
     file = FOLDER / asset
     if not file.is_file():
+        if Path(asset).is_absolute():
+            raise ValueError(f"{asset}: no such file")
         known = ", ".join(sorted(p.name for p in FOLDER.glob("*.xml")))
         raise ValueError(f"no model {str(file)!r}; assets are {known}")
     return file
@@ -66,7 +68,11 @@ def load(asset: str) -> mujoco.MjModel:
         model = mujoco.MjModel.from_xml_string(asset)
     else:
         file, *values = asset.split("?")
-        spec = mujoco.MjSpec.from_file(str(path(file)))
+        try:
+            spec = mujoco.MjSpec.from_file(str(path(file)))
+        except ValueError as error:
+            line = str(error)
+            raise ValueError(line if file in line else f"{file}: {line}") from error
         for change in values:
             key, _, value = change.partition("=")
             _set(spec, key, float(value))
