@@ -14,7 +14,6 @@ import inspect
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -22,7 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import UsageError, in_user_code, said, shown
+from hybrid_rl.errors import UsageError, gist, in_user_code, shown
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
@@ -108,9 +107,9 @@ class _World:
             line = in_user_code(error, self.file)
             kind = type(self.env).__name__
             if line is None:
-                raise UsageError(f"{self.at(method)}: {said(error)}") from error
-            place, _, what = line.partition(": ")
-            raise UsageError(f"{place}: {kind}.{method}: {what}") from error
+                raise UsageError(f"{self.at(method)}: {gist(error)}") from error
+            where, _, what = line.partition(": ")
+            raise UsageError(f"{where}: {kind}.{method}: {what}") from error
 
 
 def _check_members(world: _World) -> None:
@@ -199,7 +198,7 @@ def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
         )
     name = next(name for name in (*one, *two) if one.get(name) != two.get(name))
     gives = [f"{name} {each[name]}" if name in each else f"no {name}" for each in (two, one)]
-    raise UsageError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be alike")
+    raise UsageError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be equal")
 
 
 def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:

@@ -46,13 +46,13 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
     for each in reversed(traceback.extract_tb(error.__traceback__)):
         folders = set(Path(each.filename).parents)
         if each.filename == own or (each.filename[:1] != "<" and not folders & FOREIGN):
-            return f"{shown(each.filename)}:{each.lineno}: {said(error)}"
+            return f"{shown(each.filename)}:{each.lineno}: {gist(error)}"
         if folders & owners and not folders & LIBRARIES:
             return None
     return None
 
 
-def said(error: BaseException) -> str:
+def gist(error: BaseException) -> str:
     """The kind of an error, the gist of its message and a hint, in one line."""
     kind, text = type(error), str(error).strip()
     if kind.__module__.startswith("jax"):  # the rest is about tracing in general
