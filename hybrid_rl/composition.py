@@ -10,7 +10,7 @@ from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from hybrid_rl import overrides
-from hybrid_rl.checks import COUNTS
+from hybrid_rl.checks import COUNTS, check_fields, part_class
 from hybrid_rl.errors import UsageError, shown
 
 HERE = Path(__file__).parent
@@ -46,7 +46,10 @@ def explain(error: Exception) -> str:
     if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
         return overrides.unknown(cause.parent_node, str(cause.full_key))
     if isinstance(error, OverrideParseException):
-        return f"{error.override}: {text.splitlines()[-2]}; write key=value, text in quotes"
+        first, problem = text.splitlines()[0], text.splitlines()[-2]
+        if set(problem) == {" ", "^"}:  # it points at a character
+            problem = f"{first[len(problem) - 1]} stands outside quotes"
+        return f"{error.override}: {problem}; write key=value, text in quotes"
     if absent := re.match(r"Could not override '([^']+)'", text):
         return f"{absent[1]}: the method has no such part; `python -m hybrid_rl.list` shows methods"
     if several := re.match(r"Ambiguous value for argument '([^']+)'", text):
@@ -70,19 +73,18 @@ def _no_yaml(error: yaml.YAMLError) -> str:
 def _sentences(text: str) -> str:
     """The lines of a message as sentences of one line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
+    lines = [line for line in lines if not re.match(r"(full_key|\w+_type)\b", line)]  # OmegaConf's
     return " ".join(line if line[-1] in ".:;,?!" else f"{line};" for line in lines).rstrip(";")
 
 
-def task_file(hydra: Any) -> Path | None:
-    """The user's YAML file of the task; None if it is one of the package.
+def chosen(hydra: Any, group: str) -> Path | None:
+    """The YAML file of the user's choice in a group; None if there is none.
 
     hydra: Hydra's own part of what was composed.
     """
-    name = f"task/{hydra.runtime.choices.get('task')}.yaml"
-    for source in hydra.runtime.config_sources:
-        if source.schema == "file" and (file := Path(source.path) / name).is_file():
-            return None if file == CONF / name else file
-    return None
+    name = f"{group}/{hydra.runtime.choices.get(group)}.yaml"
+    files = (Path(each.path) / name for each in hydra.runtime.config_sources if each.path)
+    return next((file for file in files if file.is_file()), None)
 
 
 def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | None:
@@ -91,10 +93,12 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
     config: what was composed, with interpolations; roots: the keys that a run reads.
 
     Raises:
-        UsageError: in one line that names the file: keys that it lacks, or sets in vain.
+        UsageError: in one line that names the file: keys that it lacks, or sets in vain; for an
+            experiment with fields of another task's world.
     """
-    file = task_file(hydra)
-    if file is None or config.get("resume") is not None:
+    _check_experiment(config, hydra)
+    file = chosen(hydra, "task")
+    if file is None or CONF in file.parents or config.get("resume") is not None:
         return None
     raw, name = overrides.plain(config), shown(file)
     if isinstance(raw.get("task"), dict):
@@ -108,6 +112,20 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
         close = overrides.meant(lost[0], [*read, *_root_keys(hydra, file)])
         raise UsageError(f"{name}: {lost[0]}: unknown key, which nothing reads{close}")
     return _changed(raw, own, hydra, name)
+
+
+def _check_experiment(config: DictConfig, hydra: Any) -> None:
+    """Raise UsageError if the experiment sets fields that the world of the run does not have."""
+    file, choices = chosen(hydra, "experiment"), hydra.runtime.choices
+    text = file.read_text(encoding="utf-8") if file else ""
+    meant = re.search(r"override /task: (\S+)", text)
+    if meant is None or meant[1] == choices.task:
+        return
+    try:
+        check_fields(config.env, part_class(config.env._target_), "env.")
+    except UsageError as error:
+        line = f"experiment={choices.experiment}: is for task={meant[1]}; {error}"
+        raise UsageError(line) from error
 
 
 def _root_keys(hydra: Any, without: Path) -> set[str]:

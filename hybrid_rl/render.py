@@ -187,8 +187,12 @@ def main() -> None:
         return
     world, by, shown = _shown(given, changes)
     if given["at"]:
-        poses = shown.poses[np.minimum(given["at"], len(shown.poses) - 1)]
-        draw_beside(world.env.scene(), poses, out, width, height)
+        last = len(shown.poses) - 1
+        draw_beside(
+            world.env.scene(), shown.poses[np.minimum(given["at"], last)], out, width, height
+        )
+        if late := [str(at) for at in given["at"] if at > last]:
+            print(f"at={','.join(late)}: the episode ends after {last} decisions, shown instead")
     else:
         draw_film(world, shown, out, width, height)
     ended = {True: ", success", False: ", no success", None: ""}[shown.success]

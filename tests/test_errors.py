@@ -17,6 +17,19 @@ USAGE = [  # overrides of train, words of the line
     ("algo=sacc", "algo=sacc: unknown; choose one of analytic, bayesopt, bc, "),
     ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
     ("env=null", "env=null: must be a group of keys"),
+    (
+        "task=pendulum,cartpole",
+        "task=pendulum,cartpole: several values are a sweep, which needs -m",
+    ),
+    (
+        "task=pendulum algo=sac experiment=thesis/fig_3_2_hopper",
+        "experiment=thesis/fig_3_2_hopper: is for task=hopper; env.reward: Pendulum has no fields",
+    ),
+    ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
+    ("eval_modes=[]", "eval_modes=[]: must be a list of full, policy, planner"),
+    ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
+    ("seed=${seeds}", "seed: refers to seeds, which nothing sets"),
+    ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text in quotes"),
     ("episode=3", "episode=3: must be a group of keys"),
     (
         "objective=foo",
