@@ -5,6 +5,8 @@ import sys
 from importlib import import_module
 
 import pytest
+from tiny import call_train
+from worlds import TASKS, make
 
 from hybrid_rl import config
 from hybrid_rl.envs import check
@@ -387,6 +389,56 @@ def test_a_world_in_mujoco_is_refused_in_a_line_with_its_file(folder, old, new, 
 def test_files_that_make_no_run_are_refused_in_a_line(folder, file, old, new, line):
     texts = {"py": WORLD, "yaml": TASK}
     texts[file] = changed(texts[file], old, new)
-    (folder / "w.py").write_text(texts["py"])
-    (folder / "my_conf" / "task" / "broken.yaml").write_text(texts["yaml"])
+    write(folder, texts["py"], texts["yaml"])
     refused(line, lambda: config.build(config.load(["task=broken", "algo=sac"], "my_conf")))
+
+
+def write(folder, code=WORLD, task=TASK):
+    """A world and its task file."""
+    (folder / "w.py").write_text(code)
+    (folder / "my_conf" / "task" / "broken.yaml").write_text(task)
+
+
+def test_what_is_seldom_meant_is_a_note_of_the_run(folder):
+    ends = changed(WORLD, "EnvState(x, x, reward, no,", "EnvState(x, x, reward, ~no,")
+    write(folder, ends, changed(TASK, "episode: {steps: 20, action_repeat: 1}\n", ""))
+    run = config.build(config.load(["task=broken", "algo=sac"], "my_conf"))
+    assert run.notes == (
+        "w.py:19: W.step: every episode ended after one decision, of 10 tried",
+        "episode.steps is not set: 1,000 decisions an episode",
+    )
+
+
+def test_settings_do_not_change_a_task_silently(folder, capfd):
+    """What is typed is not listed; nothing is, if nothing changes."""
+    write(folder)
+    line = (
+        "settings=light changes what my_conf/task/broken.yaml says: random_steps 10 -> 5000, "
+        "eval_every 50 -> 3000, eval_episodes 1 -> 5, checkpoint_every 50 -> 10000; to keep that, "
+        "add random_steps=10 eval_every=50 eval_episodes=1 checkpoint_every=50"
+    )
+    given = ["task=broken", "settings=light", "total_steps=50"]
+    with pytest.warns(UserWarning, match=f"^{re.escape(line)}$"):
+        config.load(given, "my_conf")
+    assert call_train("--config-dir", "my_conf", *given, "seed=-1") == 2
+    assert capfd.readouterr().out == f"{line}\n"
+    config.load(["task=broken"], "my_conf")
+    config.load(["task=pendulum", "settings=light"], "my_conf")
+
+
+def test_a_task_file_may_set_keys_of_any_method_and_its_own_where_they_are_read(folder):
+    own = (
+        changed(TASK, "gain: 2.0", 'gain: "${strength}"') + "strength: 3.0\nplanner: {samples: 9}\n"
+    )
+    write(folder, task=own)
+    assert config.load(["task=broken", "algo=sac"], "my_conf").env.gain == 3.0
+
+
+def test_a_state_needs_no_metrics_and_no_info(folder):
+    assert check(world(folder, changed(WORLD, STATE, "EnvState(x, x, reward, no, no)"))) == ()
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_worlds_of_the_library_pass(task):
+    """Their numbers are tested in test_worlds.py."""
+    assert check(make(task, "native"), decisions=0) == ()
