@@ -1,5 +1,6 @@
 """Errors of a run: each message is one line, and each class has its exit code."""
 
+import re
 import sysconfig
 import traceback
 from pathlib import Path
@@ -42,11 +43,13 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
     """
     if isinstance(error, SyntaxError) and error.filename:
         return f"{shown(error.filename)}:{error.lineno}: {error.msg}"
+    frames = [(each.filename, each.lineno) for each in traceback.extract_tb(error.__traceback__)]
+    frames += re.findall(r'File "(.+)", line (\d+)', str(error))  # of a callback, in JAX's message
     owners = OURS if ours else set()
-    for each in reversed(traceback.extract_tb(error.__traceback__)):
-        folders = set(Path(each.filename).parents)
-        if each.filename == own or (each.filename[:1] != "<" and not folders & FOREIGN):
-            return f"{shown(each.filename)}:{each.lineno}: {gist(error)}"
+    for file, line in reversed(frames):
+        folders = set(Path(file).parents)
+        if file == own or (file[:1] != "<" and not folders & FOREIGN):
+            return f"{shown(file)}:{line}: {gist(error)}"
         if folders & owners and not folders & LIBRARIES:
             return None
     return None
@@ -55,6 +58,8 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
 def gist(error: BaseException) -> str:
     """The kind of an error, the gist of its message and a hint, in one line."""
     kind, text = type(error), str(error).strip()
+    if "Traceback (most recent" in text:  # of a callback
+        return text.splitlines()[-1]
     if kind.__module__.startswith("jax"):  # the rest is about tracing in general
         text = text.partition("\n")[0]
     text = " ".join(text.split())
