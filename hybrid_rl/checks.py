@@ -55,7 +55,7 @@ def check(config: DictConfig) -> None:
             f"num_seeds={config.num_seeds}: JAX takes seeds of 32 bits"
         )
     modes = config.eval_modes
-    if not isinstance(modes, ListConfig) or not modes or not set(modes) <= set(MODES):
+    if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
         raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
     if len(set(modes)) < len(modes):
         raise UsageError(f"eval_modes={modes}: has one of them twice")
@@ -117,9 +117,10 @@ def check_fields(node: DictConfig, part: Any, where: str) -> None:
         if name in takes or name.startswith("_") or OmegaConf.is_missing(node, key):
             continue
         called = getattr(part, "__name__", part)
+        if not part.__module__.startswith("hybrid_rl."):
+            called = f"{called} in {shown(inspect.getsourcefile(part) or part.__module__)}"
         if isinstance(part, type) and not is_dataclass(part) and not takes:
-            file = shown(inspect.getsourcefile(part) or part.__module__)
-            called = f"{called} in {file} is no dataclass (@dataclass(frozen=True)), and"
+            called = f"{called} is no dataclass (@dataclass(frozen=True)), and"
         known = f"has {', '.join(takes)}" if takes else "has no fields"
         raise UsageError(f"{where}{name}: {called} {known}{meant(name, takes)}")
 

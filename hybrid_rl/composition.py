@@ -12,6 +12,7 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields, part_class
 from hybrid_rl.errors import UsageError, shown
+from hybrid_rl.training.episode import Episode
 
 HERE = Path(__file__).parent
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
@@ -105,6 +106,12 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
         raise UsageError(f"{name}: its first line must be {GLOBAL}")
     if lacking := [key for key in OF_A_TASK if raw.get(key) is None]:
         raise UsageError(f"{name}: lacks {', '.join(lacking)}; {INHERIT}")
+    if "_target_" not in raw["env"]:
+        raise UsageError(f"{name}: env lacks _target_; write _target_: MODULE.CLASS")
+    try:
+        check_fields(config.episode, Episode, "episode.")
+    except UsageError as error:
+        raise UsageError(f"{name}: {error}") from error
     own: Any = OmegaConf.to_container(OmegaConf.load(file), resolve=False)
     own.pop("defaults", None)
     read = overrides.reached(raw, roots)

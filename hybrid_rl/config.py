@@ -161,7 +161,10 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     if not type(env).__module__.startswith("hybrid_rl."):
         notes = check_world(env)
         if "steps" not in parts.episode:
-            notes = (*notes, f"episode.steps is not set: {Episode.steps:,} decisions an episode")
+            notes = (
+                *notes,
+                f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",
+            )
     check_fields(parts.episode, Episode, "episode.")
     return Episode(env, **_instantiate(parts.episode)), notes
 

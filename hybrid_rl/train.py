@@ -65,6 +65,8 @@ def _job(config: DictConfig) -> dict[str, Any]:
         raise DivergenceError(divergence.line(summary["diverged"], left, None))
     if config.resume is None and config.total_steps <= config.random_steps:
         print(f"nothing but random actions: random_steps={config.random_steps}", flush=True)
+    if config.resume is None and not config.eval_modes:
+        print("nothing was evaluated: eval_modes=[]", flush=True)
     return summary
 
 

@@ -28,7 +28,6 @@ USAGE = [  # overrides of train, words of the line
         "experiment=thesis/fig_3_2_hopper: is for task=hopper; env.reward: Pendulum has no fields",
     ),
     ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
-    ("eval_modes=[]", "eval_modes=[]: must be a list of full, policy, planner"),
     ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
     ("seed=${seeds}", "seed: refers to seeds, which nothing sets"),
     ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text in quotes"),

@@ -36,7 +36,7 @@ ALLOWED = {
     "training": {*SHARED, "envs", "data", "training"},
     "overrides": {"errors"},
     "checks": {"errors", "overrides", "envs"},
-    "composition": {"errors", "checks", "overrides"},
+    "composition": {"errors", "checks", "overrides", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share

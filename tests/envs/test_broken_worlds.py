@@ -267,10 +267,16 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "py",
         "@dataclass(frozen=True)\nclass W:\n    gain: float = 1.0",
         "class W:",
-        r"env\.gain: W in .*w\.py is no dataclass \(@dataclass\(frozen=True\)\), and has no fields",
+        r"env\.gain: W in w\.py is no dataclass \(@dataclass\(frozen=True\)\), and has no fields",
     ),
-    ("an unknown field", "yaml", "gain:", "gian:", r"env\.gian: W has gain; did you mean gain\?"),
-    ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: .*w\.py has no V"),
+    (
+        "an unknown field",
+        "yaml",
+        "gain:",
+        "gian:",
+        r"env\.gian: W in w\.py has gain; did you mean gain\?",
+    ),
+    ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: w\.py has no V"),
     (
         "no such module",
         "yaml",
@@ -328,8 +334,20 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "episode:\n\tsteps: 20",
         r"my_conf/task/broken\.yaml:\d: is no YAML: .*",
     ),
-    ("an unknown key of episode", "yaml", "{steps:", "{step:", r"episode\.step: .*mean steps\?"),
-    ("no class of env", "yaml", "_target_: w.W, ", "", r"env: lacks _target_; write _target_: .*"),
+    (
+        "an unknown key of episode",
+        "yaml",
+        "{steps:",
+        "{step:",
+        r"my_conf/task/broken\.yaml: episode\.step: .*mean steps\?",
+    ),
+    (
+        "no class of env",
+        "yaml",
+        "_target_: w.W, ",
+        "",
+        r"my_conf/task/broken\.yaml: env lacks _target_; write .*",
+    ),
     (
         "an environment of Gymnasium",
         "yaml",
@@ -405,7 +423,7 @@ def test_what_is_seldom_meant_is_a_note_of_the_run(folder):
     run = config.build(config.load(["task=broken", "algo=sac"], "my_conf"))
     assert run.notes == (
         "w.py:19: W.step: every episode ended after one decision, of 10 tried",
-        "episode.steps is not set: 1,000 decisions an episode",
+        "episode.steps is not set by the task: 1,000 decisions an episode",
     )
 
 
