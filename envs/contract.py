@@ -14,6 +14,7 @@ import inspect
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, is_dataclass, replace
+from numbers import Integral, Real
 from typing import Any
 
 import jax
@@ -130,9 +131,9 @@ def _check_members(world: _World) -> None:
         raise UsageError(f"{at} {has}; write spec = Spec(obs=..., act=..., dt=...)")
     for name in ("obs", "act"):
         size = getattr(spec, name)
-        if not isinstance(size, int) or size < 1:
+        if not isinstance(size, Integral) or size < 1:
             raise UsageError(f"{at}: spec.{name} is {size!r}; it must be a whole number, 1 or more")
-    if not np.isscalar(spec.dt) or not 0 < float(spec.dt) < np.inf:
+    if not isinstance(spec.dt, Real) or not 0 < spec.dt < np.inf:
         raise UsageError(f"{at}: spec.dt is {spec.dt!r}; it must be a number of seconds above 0")
     for method, takes in SIGNATURES.items():
         form = f"{method}(self, {', '.join(takes)})"
@@ -183,11 +184,13 @@ def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
 
     `info` may lack entries in `step`, as episodes keep them.
     """
-    info = {**first.info, **after.info}
-    one, two = _leaves(first), _leaves(after.replace(info=info))
-    if one == two:
+    after = after.replace(info={**first.info, **after.info})
+    one, two, structure = _leaves(first), _leaves(after), jax.tree.structure
+    if one == two and structure(first) == structure(after):
         return
     at, kind = world.at("step"), type(world.env).__name__
+    if one == two:  # a list for a tuple, or None for nothing
+        raise UsageError(f"{at}: returned a state of another structure than {kind}.reset")
     if isinstance(first.data, PhysicsState) and one.get("data.ctrl") != two.get("data.ctrl"):
         have, given = (
             0 if each is None else len(each) for each in (first.data.ctrl, after.data.ctrl)
@@ -221,7 +224,8 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
                 at = world.at("step")
                 raise UsageError(f"{at}: {name} is {_numbers(value)} at decision {i}, {seen}")
         ended += bool(after.terminated)
-        state = world.blamed("reset", resetting, keys[i]) if after.terminated else after
+        kept = after.replace(info={**state.info, **after.info})
+        state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
     if ended < decisions:
         return ()
     return (f"{world.at('step')}: every episode ended after one decision, of {decisions} tried",)
@@ -230,7 +234,7 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
 def _text(traced: Any) -> str:
     """The program that JAX traced, with its constants."""
     program = traced.jaxpr
-    constants = [np.asarray(each).tolist() for each in program.consts]
+    constants = "\n".join(map(str, program.consts))
     return re.sub(r" at 0x\w+", "", f"{program}\n{constants}")
 
 

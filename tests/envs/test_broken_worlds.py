@@ -130,6 +130,12 @@ CODE = [  # of the world: what is wrong, replaced, by what, the whole line
         r"w\.py:19: W\.step: returned data float32\[2\], and W\.reset data int32\[2\]; both .*",
     ),
     (
+        "a list in reset, a tuple in step",
+        "self._state(x, jnp.zeros(()))",
+        "self._state(x, jnp.zeros(())).replace(data=[x[0], x[1]])",
+        r"w\.py:19: W\.step: returned .*",
+    ),
+    (
         "metrics in step alone",
         "self._state(x, -(x**2).sum())",
         "self._state(x, -(x**2).sum()).replace(metrics={'speed': x[0]})",
@@ -450,6 +456,17 @@ def test_a_task_file_may_set_keys_of_any_method_and_its_own_where_they_are_read(
     )
     write(folder, task=own)
     assert config.load(["task=broken", "algo=sac"], "my_conf").env.gain == 3.0
+
+
+def test_a_world_may_keep_keys_flags_of_numpy_and_information_of_its_own(folder):
+    """`info` that step leaves out stays."""
+    odd = changed(WORLD, "no = jnp.zeros((), bool)", "no = np.zeros((), bool)")
+    odd = changed(
+        odd, "self._state(x, jnp.zeros(()))", "self._state(x, 0.0).replace(info={'goal': x})"
+    )
+    odd = changed(odd, LINE, "x = state.info['goal'] + jax.random.normal(KEY, (2,))")
+    odd = changed(odd, "@dataclass", "KEY = jax.random.key(3)\n\n\n@dataclass")
+    assert check(world(folder, odd)) == ()
 
 
 def test_a_state_needs_no_metrics_and_no_info(folder):
