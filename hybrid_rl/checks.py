@@ -121,7 +121,8 @@ def check_fields(node: DictConfig, part: Any, where: str) -> None:
             called = f"{called} in {shown(inspect.getsourcefile(part) or part.__module__)}"
         if isinstance(part, type) and not is_dataclass(part) and not takes:
             called = f"{called} is no dataclass (@dataclass(frozen=True)), and"
-        known = f"has {', '.join(takes)}" if takes else "has no fields"
+        names = [name for name in takes if (where, name) != ("episode.", "env")]
+        known = f"has {', '.join(names)}" if names else "has no fields"
         raise UsageError(f"{where}{name}: {called} {known}{meant(name, takes)}")
 
 
