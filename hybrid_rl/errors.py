@@ -50,7 +50,7 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
         folders = set(Path(file).parents)
         if file == own or (file[:1] != "<" and not folders & FOREIGN):
             return f"{shown(file)}:{line}: {gist(error)}"
-        if folders & owners and not folders & LIBRARIES:
+        if folders & owners:
             return None
     return None
 
