@@ -1,7 +1,9 @@
 """Checks of a configuration before its parts are built: counts, choices, kinds of values."""
 
+import inspect
 import logging
 import math
+import sys
 from dataclasses import fields, is_dataclass
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
@@ -10,8 +12,8 @@ from hydra.utils import get_object
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
-from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import SHOW
+from hybrid_rl.errors import UsageError, in_user_code, shown
+from hybrid_rl.overrides import SHOW, meant
 
 COUNTS = (
     "num_seeds",
@@ -41,6 +43,8 @@ def check(config: DictConfig) -> None:
     for key in SECTIONS:
         if not isinstance(config.get(key), DictConfig):
             raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
+    if "_target_" not in config.env:
+        raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
     for key in COUNTS:
         whole(config, key)
     if type(config.seed) is not int or config.seed < 0:
@@ -53,6 +57,8 @@ def check(config: DictConfig) -> None:
     modes = config.eval_modes
     if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
         raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
+    if len(set(modes)) < len(modes):
+        raise UsageError(f"eval_modes={modes}: has one of them twice")
     for key in ("checkpoint_replay", "distributed"):
         if type(config.get(key, False)) is not bool:
             raise UsageError(f"{key}={config[key]}: must be true or false")
@@ -86,6 +92,40 @@ def part_class(target: str) -> Any:
     return get_object(target)
 
 
+def unimportable(target: str, error: BaseException) -> str:
+    """Why the object that a `_target_` names cannot be imported."""
+    if not isinstance(error, ModuleNotFoundError) or not f"{target}.".startswith(f"{error.name}."):
+        return in_user_code(error) or f"cannot be imported ({error})"
+    module = sys.modules.get(str(error.name).rpartition(".")[0])
+    if module is None:
+        return f"there is no module {error.name}; put its folder on PYTHONPATH"
+    own = [name for name, value in vars(module).items() if isinstance(value, type)]
+    close = meant(target.rpartition(".")[2], own)
+    return f"{shown(module.__file__ or module.__name__)} has no {target.rpartition('.')[2]}{close}"
+
+
+def check_fields(node: DictConfig, part: Any, where: str) -> None:
+    """Raise UsageError for a key of `node` that is no argument of `part`, a class or function."""
+    try:
+        takes = inspect.signature(part).parameters
+    except (TypeError, ValueError):  # of a built-in
+        return
+    if any(each.kind is each.VAR_KEYWORD for each in takes.values()):
+        return
+    for key in node:
+        name = str(key)
+        if name in takes or name.startswith("_") or OmegaConf.is_missing(node, key):
+            continue
+        called = getattr(part, "__name__", part)
+        if not part.__module__.startswith("hybrid_rl."):
+            called = f"{called} in {shown(inspect.getsourcefile(part) or part.__module__)}"
+        if isinstance(part, type) and not is_dataclass(part) and not takes:
+            called = f"{called} is no dataclass (@dataclass(frozen=True)), and"
+        names = [name for name in takes if (where, name) != ("episode.", "env")]
+        known = f"has {', '.join(names)}" if names else "has no fields"
+        raise UsageError(f"{where}{name}: {called} {known}{meant(name, takes)}")
+
+
 def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     """Field -> the types that it accepts, for those fields of a part whose types are in KINDS."""
     if "_target_" not in node:
@@ -93,9 +133,9 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     try:
         part = part_class(node._target_)
     except (ImportError, ValueError) as error:
-        hint = "is its folder on PYTHONPATH?"
-        line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"
-        raise UsageError(f"{line}; {hint}") from error
+        why = unimportable(node._target_, error.__cause__ or error)
+        raise UsageError(f"{where}_target_={node._target_}: {why}") from error
+    check_fields(node, part, where)
     kinds = {}
     for field in fields(part) if is_dataclass(part) else ():
         several = get_origin(field.type) in (Union, UnionType)

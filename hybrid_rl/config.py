@@ -1,27 +1,30 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
+import yaml
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
-from hydra.errors import InstantiationException
+from hydra.errors import HydraException, InstantiationException
 from hydra.utils import instantiate
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
+from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl.checks import COUNTS, SECTIONS, check, check_kinds, part_class, whole
+from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, part_class, whole
+from hybrid_rl.composition import CONF, check_task, explain
+from hybrid_rl.envs.contract import check as check_world
 from hybrid_rl.envs.mujoco.physics import resolve
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, in_user_code
 from hybrid_rl.overrides import plain, reached, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 
-HERE = Path(__file__).parent
-CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
@@ -43,6 +46,7 @@ class Run:
     config: DictConfig
     agent: Agent
     controllers: dict[str, Controller]  # mode -> controller without exploration
+    notes: tuple[str, ...] = ()  # lines about what is allowed and seldom meant
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -55,18 +59,35 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
     config_dir: a folder with configuration groups of the user, as for `--config-dir`.
 
+    Warns of values of the user's own task that `settings` changed.
+
     Raises:
-        hydra.errors.HydraException: if an override fits nothing in conf/.
-        UsageError: if one names a key that does not exist or that the method does not use.
+        UsageError: if an override fits nothing in conf/, or names a key that does not exist or that
+            the method does not use; if the user's own task file is incomplete.
     """
-    if not GlobalHydra.instance().is_initialized():
-        with initialize_config_dir(str(CONF), version_base="1.3"):
-            return load(overrides, config_dir)
+    if isinstance(overrides, str):
+        raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')
     more = [] if config_dir is None else [search_path(config_dir)]
+    try:
+        if GlobalHydra.instance().is_initialized():
+            return _composed(overrides, more)
+        with initialize_config_dir(str(CONF), version_base="1.3"):
+            return _composed(overrides, more)
+    except (HydraException, OmegaConfBaseException, yaml.YAMLError) as error:
+        raise UsageError(explain(error)) from error
+
+
+def _composed(overrides: Sequence[str], more: list[str]) -> DictConfig:
+    """The resolved configuration; more: overrides of Hydra's own keys."""
     refuse_new_keys(overrides, more)
-    composed = compose("train", [*more, *overrides])
-    refuse_unused([composed], overrides, READ)
-    return resolved(composed)
+    config = compose("train", [*more, *overrides], return_hydra_config=True)
+    hydra = config.hydra
+    with open_dict(config):
+        del config["hydra"]
+    if note := check_task(config, hydra, READ):
+        warnings.warn(note, stacklevel=3)
+    refuse_unused([config], overrides, READ)
+    return resolved(config)
 
 
 def resolved(config: DictConfig) -> DictConfig:
@@ -102,11 +123,12 @@ def build(config: DictConfig) -> Run:
     whole(config.replay, "capacity", "replay.")
     with _usage(config):
         parts = _on_this_machine(config)
+        episode, notes = _episode(parts)
         controllers = {mode: _instantiate(node) for mode, node in parts.controllers.items()}
         replay = _instantiate(parts.replay)
         longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
         agent = Agent(
-            _episode(parts),
+            episode,
             controllers["full"],
             {name: _instantiate(node) for name, node in parts.learners.items() if node},
             replace(
@@ -117,7 +139,7 @@ def build(config: DictConfig) -> Run:
             config.pretrain,
         )
         agent.check(rounds * config.num_envs)
-    return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()})
+    return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
 
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
@@ -133,17 +155,27 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
         part = Episode if section == "episode" else part_class(changed.env._target_)
         known = [field.name for field in fields(part) if field.name != "env"]
         if name not in known:
-            raise UsageError(f"{key}={value}: {section} has {', '.join(known) or 'no keys'}")
+            whose = f"the {section} of task {config.task}"
+            raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
         with open_dict(changed):
             changed[section][name] = OmegaConf.from_dotlist([f"value={value}"]).value
     with _usage(changed):
         check_kinds(OmegaConf.create({"env": changed.env}))
-        return _episode(_on_this_machine(changed))
+        return _episode(_on_this_machine(changed))[0]
 
 
-def _episode(parts: DictConfig) -> Episode:
-    """The episodes of the sections `env` and `episode`."""
-    return Episode(_instantiate(parts.env), **_instantiate(parts.episode))
+def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
+    """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
+    env, notes = _instantiate(parts.env), ()
+    if not type(env).__module__.startswith("hybrid_rl."):
+        notes = check_world(env)
+        if "steps" not in parts.episode:
+            notes = (
+                *notes,
+                f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",
+            )
+    check_fields(parts.episode, Episode, "episode.")
+    return Episode(env, **_instantiate(parts.episode)), notes
 
 
 def expert(config: DictConfig) -> Controller:
@@ -200,9 +232,10 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         yield
     except (InstantiationException, ValueError) as error:
         cause = error.__cause__ if isinstance(error, InstantiationException) else error
-        if not isinstance(cause, (ValueError, TypeError)):
+        raised = in_user_code(cause) if cause and not isinstance(cause, ValueError) else None
+        if raised is None and not isinstance(cause, (ValueError, TypeError)):
             raise
-        line = str(cause)
+        line = raised or str(cause)
         for needs, method in NEEDS.items():
             if needs in line:
                 names = ", ".join(tasks_with(method))

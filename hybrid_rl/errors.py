@@ -1,5 +1,23 @@
 """Errors of a run: each message is one line, and each class has its exit code."""
 
+import re
+import sysconfig
+import traceback
+from pathlib import Path
+
+OURS = {Path(__file__).parent, Path(__file__).resolve().parents[1] / "envs"}
+LIBRARIES = {Path(sysconfig.get_path(name)) for name in ("stdlib", "purelib", "platlib")}
+FOREIGN = OURS | LIBRARIES  # folders of code that is not the user's
+MOST = 300  # characters of another library's message
+HINTS = {  # kind of error -> what to write instead
+    "TracerBoolConversionError": "write jnp.where or jax.lax.cond in place of `if`",
+    "TracerArrayConversionError": "write jnp in place of np",
+    "TracerIntegerConversionError": "an index or a size that an array gives is not known here",
+    "ConcretizationTypeError": "write jnp in place of float(), int() and math",
+    "NonConcreteBooleanIndexError": "write jnp.where in place of a mask as index",
+    "FrozenInstanceError": "what changes belongs in the EnvState that step returns, as in info",
+}
+
 
 class UsageError(ValueError):
     """The request is invalid; the message says what to change. Exit code 2."""
@@ -15,3 +33,42 @@ class CheckpointError(OSError):
 
 class MisfitError(CheckpointError):
     """A checkpoint is intact but belongs to another run."""
+
+
+def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str | None:
+    """FILE:LINE of the user's, what was raised there and a hint; None if no such file took part.
+
+    own: a file that counts as the user's wherever it is. ours: also None where the user's line
+    called this package, in which it was raised.
+    """
+    if isinstance(error, SyntaxError) and error.filename:
+        return f"{shown(error.filename)}:{error.lineno}: {error.msg}"
+    frames = [(each.filename, each.lineno) for each in traceback.extract_tb(error.__traceback__)]
+    frames += re.findall(r'File "(.+)", line (\d+)', str(error))  # of a callback, in JAX's message
+    owners = OURS if ours else set()
+    for file, line in reversed(frames):
+        folders = set(Path(file).parents)
+        if file == own or (file[:1] != "<" and not folders & FOREIGN):
+            return f"{shown(file)}:{line}: {gist(error)}"
+        if folders & owners:
+            return None
+    return None
+
+
+def gist(error: BaseException) -> str:
+    """The kind of an error, the gist of its message and a hint, in one line."""
+    kind, text = type(error), str(error).strip()
+    if "Traceback (most recent" in text:  # of a callback
+        return text.splitlines()[-1]
+    if kind.__module__.startswith("jax"):  # the rest is about tracing in general
+        text = text.partition("\n")[0]
+    text = " ".join(text.split())
+    text = f"{text[:MOST]} ..." if len(text) > MOST else text
+    hint = HINTS.get(kind.__name__)
+    return f"{kind.__name__}: {text}".rstrip(": ") + (f"; {hint}" if hint else "")
+
+
+def shown(file: str | Path) -> str:
+    """A path as messages show it: from the working folder if it lies below."""
+    path = Path(file)
+    return str(path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path)

@@ -204,8 +204,11 @@ def main() -> None:
         return
     world, by, shown = _shown(given, changes, out)
     if given["at"]:
-        poses = shown.poses[np.minimum(given["at"], len(shown.poses) - 1)]
+        last = len(shown.poses) - 1
+        poses = shown.poses[np.minimum(given["at"], last)]
         draw_beside(scene_of(world.env), poses, out, width, height)
+        if late := [str(at) for at in given["at"] if at > last]:
+            print(f"at={','.join(late)}: the episode ends after {last} decisions, shown instead")
     else:
         draw_film(world, shown, out, width, height)
     ended = {True: ", success", False: ", no success", None: ""}[shown.success]

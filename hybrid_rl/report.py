@@ -270,7 +270,13 @@ def main() -> None:
     runs = _folders(given["run"])
     default = f"{runs[0].path}/report.html" if len(runs) == 1 else "report.html"
     out = output("out", given["out"] or default, (".html",))
-    text = page(runs, given["video"] == "auto")
+    try:
+        text = page(runs, given["video"] == "auto")
+    except UsageError as error:
+        if len(runs) == 1:
+            raise
+        many = f"one of the {len(runs)} runs in run={given['run']}"
+        raise UsageError(f"{error}; it is {many}") from error
     out.parent.mkdir(parents=True, exist_ok=True)
     write_text(out, text)
     size = out.stat().st_size / 1e6

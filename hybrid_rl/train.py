@@ -52,7 +52,8 @@ def train(config: DictConfig, given: Mapping[str, str] = launch.NOTHING) -> dict
 def _job(config: DictConfig) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds."""
     given = overrides.given(overrides.of_job(HydraConfig.get()))
-    summary = train(configuration.resolved(config), given)
+    config = configuration.resolved(config)
+    summary = train(config, given)
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
     print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
@@ -62,6 +63,10 @@ def _job(config: DictConfig) -> dict[str, Any]:
     if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])
         raise DivergenceError(divergence.line(summary["diverged"], left, None))
+    if config.resume is None and config.total_steps <= config.random_steps:
+        print(f"nothing but random actions: random_steps={config.random_steps}", flush=True)
+    if config.resume is None and not config.eval_modes:
+        print("nothing was evaluated: eval_modes=[]", flush=True)
     return summary
 
 

@@ -16,6 +16,7 @@ critics see the observation.
 """
 
 from collections.abc import Callable
+from dataclasses import field
 from typing import Any, NamedTuple
 
 from flax import struct
@@ -47,8 +48,8 @@ class EnvState:
     reward: Array  # []
     terminated: Array  # [] bool: the task ended, no reward follows
     truncated: Array  # [] bool: only the time limit ended the episode
-    metrics: dict[str, Array]  # name -> [], for logs only
-    info: dict[str, Array]  # the task's own memory
+    metrics: dict[str, Array] = field(default_factory=dict)  # name -> [], for logs only
+    info: dict[str, Array] = field(default_factory=dict)  # the task's own memory
 
     @property
     def done(self) -> Array:

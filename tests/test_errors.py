@@ -1,5 +1,7 @@
 """Wrong usage of `train` is one line and exit code 2, and nothing is written."""
 
+from importlib import import_module
+
 import pytest
 from omegaconf import OmegaConf
 from tiny import call, call_train, contents, only_line
@@ -17,6 +19,18 @@ USAGE = [  # overrides of train, words of the line
     ("algo=sacc", "algo=sacc: unknown; choose one of analytic, bayesopt, bc, "),
     ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
     ("env=null", "env=null: must be a group of keys"),
+    (
+        "task=pendulum,cartpole",
+        "task=pendulum,cartpole: several values are a sweep, which needs -m",
+    ),
+    (
+        "task=pendulum algo=sac experiment=thesis/fig_3_2_hopper",
+        "experiment=thesis/fig_3_2_hopper: is for task=hopper; env.reward: Pendulum has no fields",
+    ),
+    ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
+    ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
+    ("seed=${seeds}", "seed: refers to seeds, which nothing sets"),
+    ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text in quotes"),
     ("episode=3", "episode=3: must be a group of keys"),
     (
         "objective=foo",
@@ -172,3 +186,34 @@ def test_memory_that_runs_out_is_one_line(capfd):
     printed = capfd.readouterr().err
     assert printed.count("\n") == 1
     assert "allocating 12 bytes.; fewer num_seeds or num_envs" in printed
+
+
+def test_an_error_in_the_code_of_a_user_is_one_line_that_names_it(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text("def broken():\n    return {}['goal']\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert call(lambda: command.guarded(import_module("mine").broken)) == 1
+    assert only_line(capfd) == "hybrid_rl: mine.py:2: KeyError: 'goal'\n"
+
+
+def test_a_fault_of_ours_is_a_traceback_without_frames_of_hydra(tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(config, "resolved", lambda _: None)
+    assert call_train("task=pendulum", "algo=sac") == 1
+    printed = capfd.readouterr().err
+    assert printed.startswith("Traceback (most recent call last):")
+    assert "run/launch.py" in printed
+    assert "/hydra/" not in printed
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (["task=pendulm"], "task=pendulm: unknown; choose one of ant, .*; did you mean pendulum?"),
+        ("task=pendulum", r'load\("task=pendulum"\): give a list, load\(\["task=pendulum"\]\)'),
+        (["sed=3"], "sed: unknown key; did you mean seed?"),
+    ],
+)
+def test_python_has_the_line_of_the_command(given, words):
+    with pytest.raises(UsageError, match=f"^{words}"):
+        config.load(given)

@@ -32,8 +32,16 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
     ("evaluate run={trained} mode=planner", 2, "mode=planner: the run has full, policy"),
     ("evaluate run={trained} episodes=0", 2, f"episodes=0: {COUNT}"),
-    ("evaluate run={trained} episode.late=1", 2, "episode.late=1: episode has steps, action_"),
-    ("evaluate run={trained} env.gravity=1", 2, "env.gravity=1: env has no keys"),
+    (
+        "evaluate run={trained} episode.late=1",
+        2,
+        "episode.late=1: the episode of task pendulum has steps, ",
+    ),
+    (
+        "evaluate run={trained} env.gravity=1",
+        2,
+        "env.gravity=1: the env of task pendulum has no keys",
+    ),
     ("evaluate policy=cartpole env.reward=up", 2, "env.reward='up': choose one of cos"),
     ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),

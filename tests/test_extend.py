@@ -4,8 +4,12 @@ import json
 import os
 import re
 import sys
+from importlib import import_module
 from pathlib import Path
 
+import gymnasium
+import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
@@ -13,22 +17,26 @@ from tiny import TINY, call, call_train, only_line
 
 from hybrid_rl import config, evaluate, render
 from hybrid_rl.cli import command
+from hybrid_rl.envs import check
 from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.errors import UsageError
 
-PAGE = (Path(__file__).resolve().parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+HOWTO = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
 IMPORTS = (
     "from dataclasses import dataclass\n\nimport jax.numpy as jnp\n\n\n"  # the page omits them
 )
 
 
-def section(title: str) -> str:
+def section(title: str, page: str = PAGE) -> str:
     """The text of a section of the page."""
-    return PAGE.split(f"## {title}\n")[1].split("\n## ")[0]
+    return page.split(f"## {title}\n")[1].split("\n## ")[0]
 
 
-def blocks(title: str) -> list[str]:
+def blocks(title: str, page: str = PAGE) -> list[str]:
     """The code blocks of a section, in order."""
-    return re.findall(r"```(?:python|xml|yaml)\n(.*?)```", section(title), re.S)
+    return re.findall(r"```(?:python|xml|yaml)\n(.*?)```", section(title, page), re.S)
 
 
 @pytest.fixture
@@ -40,7 +48,7 @@ def conf(tmp_path, monkeypatch):
     for group in ("algo", "target", "task"):
         (tmp_path / "my_conf" / group).mkdir(parents=True)
     yield tmp_path / "my_conf"
-    for name in ("ring", "reward_average", "kettle", "crane"):
+    for name in ("ring", "reward_average", "kettle", "crane", "swing"):
         if name not in modules:
             sys.modules.pop(name, None)
 
@@ -109,7 +117,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
         (["target=ring", "target._target_=ring.Any"], "target._target_=ring.Any: "),
         (
             ["target=ring", "target._target_=their.Any"],
-            "(No module named 'their'); is its folder on PYTH",
+            "target._target_=their.Any: there is no module their; put its folder on PYTHONPATH",
         ),
         (
             ["algo=nn_mppi", "proposal=noise"],
@@ -159,3 +167,27 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
         picture = tmp_path / "crane.gif"
         render.draw_film(trained.episode, film, picture, 64, 48)
         assert picture.stat().st_size > 0
+
+
+def test_a_gymnasium_environment_is_a_world_by_a_callback(conf, tmp_path):
+    """The recipe of the how-tos passes the check, and steps as Gymnasium does."""
+    (code,) = blocks("A Gymnasium environment", HOWTO)
+    (tmp_path / "swing.py").write_text(code)
+    world = import_module("swing").Swing()
+    assert check(world) == ()
+    state, theirs = world.reset(jax.random.key(1)), gymnasium.make("Pendulum-v1").unwrapped
+    theirs.reset(seed=0)
+    theirs.state = np.asarray(state.data, float)
+    for action in (0.5, -1.0, 0.25):
+        state = world.step(state, jnp.array([action]))
+        obs, reward, *_ = theirs.step(np.array([2 * action]))
+        np.testing.assert_allclose(state.obs, obs, rtol=0, atol=1e-5)
+        np.testing.assert_allclose(state.reward, reward, rtol=1e-5)
+
+
+def test_an_error_in_a_callback_is_a_line_of_its_file(conf, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (code,) = blocks("A Gymnasium environment", HOWTO)
+    (tmp_path / "swing.py").write_text(code.replace("np.asarray(x, float)", "{}['goal']"))
+    with pytest.raises(UsageError, match=r"^swing\.py:15: Swing\.step: KeyError: 'goal'$"):
+        check(import_module("swing").Swing())

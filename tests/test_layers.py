@@ -8,7 +8,7 @@ models objectives controllers ... data <- training <- config <- run <- studies <
                                                                  cli
 parts never import each other: YAML files combine them
 
-envs -> types, protocols; benchmark -> all but parts
+envs -> types, protocols, errors; benchmark -> all but parts
 """
 
 import ast
@@ -20,26 +20,30 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
-LAYER_FILES = {"types", "networks", "errors", "checks", "config", "overrides"}
+LAYER_FILES = {"types", "networks", "errors", "checks", "composition", "config", "overrides"}
 SHARED = {"types", "protocols", "core", "networks"}
-CONFIG = {"types", "protocols", "errors", "envs", "training", "checks", "config", "overrides"}
+CONFIG = {
+    *("types", "protocols", "errors", "envs", "training"),
+    *("checks", "composition", "config", "overrides"),
+}
 ALLOWED = {
     "types": set(),
     "errors": set(),
     "protocols": {"types", "protocols"},
     "core": {"types", "protocols", "core"},
     "networks": {"types", "core"},
-    "envs": {"types", "protocols", "envs"},
+    "envs": {"types", "protocols", "errors", "envs"},
     "training": {*SHARED, "envs", "data", "training"},
     "overrides": {"errors"},
     "checks": {"errors", "overrides", "envs"},
+    "composition": {"errors", "checks", "overrides", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "studies": {*SHARED, *CONFIG, "data", "maps", "run", "cli", "studies"},
     "benchmark": {*CONFIG, "run", "cli", "studies", "benchmark"},
 }
-HYDRA = {"command", "checks", "config", "overrides", "run", "cli", "studies"}
+HYDRA = {"command", "checks", "composition", "config", "overrides", "run", "cli", "studies"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
 over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))

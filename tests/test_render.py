@@ -131,12 +131,14 @@ def test_success_is_that_of_the_end(trained):
     assert [render.episode(trained, seed=seed).success for seed in (3, 4)] == [True, False]
 
 
-def test_pictures_side_by_side(trained, tmp_path, monkeypatch, can_draw):
-    """After the decisions that are asked for; the last one again after the end."""
+def test_pictures_side_by_side(trained, tmp_path, monkeypatch, capsys, can_draw):
+    """After the decisions that are asked for; the last one again after the end, with a line."""
     if not can_draw:
         return
     small = ["width=64", "height=48", f"out={tmp_path / 'a.png'}"]
     assert call(monkeypatch, "run=x", "at=0,5,20", *small) == 0
+    printed = capsys.readouterr().out
+    assert "at=20: the episode ends after 5 decisions, shown instead" in printed
     first, middle, last = np.split(iio.imread(tmp_path / "a.png"), 3, axis=1)
     np.testing.assert_array_equal(middle, last)
     assert (first != last).any()

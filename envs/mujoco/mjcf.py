@@ -25,6 +25,8 @@ def path(asset: str) -> Path:
     """
     file = FOLDER / asset
     if not file.is_file():
+        if Path(asset).is_absolute():
+            raise ValueError(f"{asset}: no such file")
         known = ", ".join(sorted(p.name for p in FOLDER.glob("*.xml")))
         raise ValueError(f"no model {str(file)!r}; assets are {known}")
     return file
@@ -56,11 +58,19 @@ def changed(asset: str, values: Mapping[str, float]) -> str:
 
 
 def spec(asset: str) -> mujoco.MjSpec:
-    """A new description of `asset`, which may be modified."""
+    """A new description of `asset`, which may be modified.
+
+    Raises:
+        ValueError: that names the file, for one that is no model.
+    """
     if asset.lstrip().startswith("<"):
         return mujoco.MjSpec.from_string(asset)
     file, *values = asset.split("?")
-    result = mujoco.MjSpec.from_file(str(path(file)))
+    try:
+        result = mujoco.MjSpec.from_file(str(path(file)))
+    except ValueError as error:
+        line = str(error)
+        raise ValueError(line if file in line else f"{file}: {line}") from error
     for change in values:
         key, _, value = change.partition("=")
         _set(result, key, float(value))

@@ -7,18 +7,20 @@ import inspect
 import os
 import re
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NoReturn
 
+import yaml
 from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.config import CONF
-from hybrid_rl.errors import UsageError
+from hybrid_rl.composition import CONF, check_task, explain, options
+from hybrid_rl.errors import UsageError, in_user_code
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
@@ -27,6 +29,7 @@ FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-cp", "--config-path", "-cn", "--config-name", "--experimental-rerun"), 1),
     **dict.fromkeys(("-i", "--info"), 1),
 }
+NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
 USAGE = """
 
 {doc}
@@ -47,12 +50,13 @@ def hydra_main(job: Callable[[DictConfig], Any]) -> None:
     """Run `job` on the configuration that the command line composes, once or in a sweep."""
     import hydra
     from hydra.core.hydra_config import HydraConfig
-    from hydra.errors import HydraException
     from hydra.types import RunMode
 
     def checked(config: DictConfig) -> None:
         typed = overrides.of_job(HydraConfig.get())
         with as_typed(typed):
+            if note := check_task(config, HydraConfig.get(), configuration.READ):
+                print(note, flush=True)
             overrides.refuse_new_keys(typed, HydraConfig.get().overrides.hydra)
             overrides.refuse_unused([config], typed, configuration.READ)
             job(config)
@@ -69,7 +73,7 @@ def hydra_main(job: Callable[[DictConfig], Any]) -> None:
     try:
         _check_form(sys.argv[1:])
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
-    except (HydraException, OmegaConfBaseException, UsageError) as error:
+    except Exception as error:
         report(error)
     except KeyboardInterrupt:
         _interrupted()
@@ -105,6 +109,8 @@ def _check_form(line: Sequence[str]) -> None:
             flags = [flag for flag in FLAGS if flag == name or flag.startswith(f"{name}")]
             if not flags:
                 raise UsageError(f"{text}: unknown option; write {arguments.as_pair(line, at)}")
+            if flags[0] in NO_FLAGS:
+                raise UsageError(f"{text}: a run has one configuration; choose by experiment=NAME")
             follow = 0 if equals else FLAGS[flags[0]]
         elif not equals and text.count("]") > text.count("["):
             raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
@@ -118,7 +124,8 @@ def report(error: BaseException) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""
     result = diagnosis(error)
     if result is None:
-        raise error
+        traceback.print_exception(error)  # begins where it was caught, without Hydra's frames
+        sys.exit(1)
     _fail(*result)
 
 
@@ -130,48 +137,21 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
 
     if isinstance(error, UsageError):
         return 2, str(error)
-    if isinstance(error, (HydraException, OmegaConfBaseException)):
+    if isinstance(error, (HydraException, OmegaConfBaseException, yaml.YAMLError)):
         return 2, explain(error)
     if isinstance(error, (OSError, DivergenceError, MemoryError)):
         return 1, str(error)
     if str(error).startswith("RESOURCE_EXHAUSTED"):  # of XLA
         what = str(error).splitlines()[0]
         return 1, f"{what}; fewer num_seeds or num_envs, or a smaller replay.capacity, may fit"
+    if line := in_user_code(error, ours=True):
+        return 1, line
     return None
 
 
 def _fail(code: int, line: str) -> NoReturn:
     print(f"hybrid_rl: {' '.join(line.split())}", file=sys.stderr, flush=True)
     sys.exit(code)
-
-
-def explain(error: Exception) -> str:
-    """One line that names the key, the value and what is allowed, from an error of Hydra."""
-    from hydra.errors import MissingConfigException, OverrideParseException
-
-    if isinstance(error, MissingConfigException) and error.missing_cfg_file is not None:
-        parts = error.missing_cfg_file.split("/")
-        deep = 2 if parts[0] == "hydra" else 1
-        group, value = "/".join(parts[:deep]), "/".join(parts[deep:])
-        known = sorted({*options(group), *(error.options or ())})  # theirs: of --config-dir too
-        close = overrides.meant(value, known)
-        return f"{group}={value}: unknown; choose one of {', '.join(known)}{close}"
-    cause = error.__cause__
-    if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
-        return overrides.unknown(cause.parent_node, str(cause.full_key))
-    if isinstance(error, OverrideParseException):
-        return f"{error.override}: {str(error).splitlines()[-2]}; write key=value, text in quotes"
-    if absent := re.match(r"Could not override '([^']+)'", str(error)):
-        return f"{absent[1]}: the method has no such part; `python -m hybrid_rl.list` shows methods"
-    return f"{error} {cause or ''}"
-
-
-def options(group: str) -> list[str]:
-    """Names that a configuration group offers, with their folders."""
-    return sorted(
-        str(path.relative_to(CONF / group).with_suffix(""))
-        for path in (CONF / group).rglob("*.yaml")
-    )
 
 
 def guarded(job: Callable[[], None]) -> None:

@@ -21,6 +21,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, require_slurm, watched
+from hybrid_rl.composition import check_task
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, refuse_new_keys, refuse_unused
 from hybrid_rl.run.folder import made
@@ -125,8 +126,11 @@ class Sweeper(BasicSweeper):
         loader = self.hydra_context.config_loader
         for overrides in jobs:
             config = loader.load_sweep_config(self.config, list(overrides))
+            hydra = config.hydra
             with open_dict(config):
                 del config["hydra"]
+            if note := check_task(config, hydra, configuration.READ):
+                print(note, flush=True)
             configs.append(config)
         refuse_unused(configs, typed, configuration.READ)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):

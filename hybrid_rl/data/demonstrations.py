@@ -13,6 +13,7 @@ truncated.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import mode
 from typing import Any
 
 import numpy as np
@@ -62,11 +63,12 @@ def load(file: Path | str) -> dict[str, np.ndarray]:
 
 def _check_sizes(prefix: str, arrays: dict[str, np.ndarray]) -> None:
     """Raise ValueError for inconsistent sizes, or episodes out of order."""
-    count, (o, m) = len(np.atleast_1d(arrays["reward"])), arrays["sizes"].tolist()
+    (o, m), names = arrays["sizes"].tolist(), (*COLUMNS, "episode")
+    count = mode(len(np.atleast_1d(arrays[name])) for name in names)  # the usual one
     if not count:
         raise ValueError(f"{prefix} holds no decision")
     shapes = {"obs": (count, o), "action": (count, m), "next_obs": (count, o)}
-    for name in (*COLUMNS, "episode"):
+    for name in names:
         shape = shapes.get(name, (count,))
         if arrays[name].shape != shape:
             raise ValueError(f"{prefix} {name} is {arrays[name].shape}, not {shape}")

@@ -84,6 +84,12 @@ class Replay:
         rows = jax.lax.dynamic_update_index_in_dim(memory.rows, _packed(new), slot, 0)
         return Memory(rows, memory.count + 1)
 
+    def recent(self, memory: Memory, spec: Spec, ago: int) -> Transition | None:
+        """The decisions [E] made `ago` rounds before the newest; None if they are not kept."""
+        length, count = memory.rows.shape[0], int(memory.count)
+        kept = ago < min(count, length)
+        return unpack(memory.rows[(count - 1 - ago) % length], spec) if kept else None
+
     def sample(self, memory: Memory, spec: Spec, batch_size: int, key: Array) -> Batch:
         """`batch_size` transitions, uniform among those whose successor is in the memory.
 

@@ -1,4 +1,7 @@
-"""Learners that reach NaN or infinity: each one ends, and the others of its program continue."""
+"""Learners that reach NaN or infinity: each one ends, and the others of its program continue.
+
+Where the world returned such a number, the message shows its decision, from the replay memory.
+"""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -7,10 +10,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from hybrid_rl.run.rows import of_world
 from hybrid_rl.run.store import Store
 from hybrid_rl.training.loop import Loop
 
-End = dict[str, Any]  # {"seed", "step", "quantity"} of a learner that diverged
+# {"seed", "step", "quantity"} of a learner that diverged; "world": why it is the world's fault
+End = dict[str, Any]
 
 
 class Diverged:
@@ -35,15 +40,39 @@ class Diverged:
         """Learners that go on."""
         return len(self.loop.seeds) - len(self.ends)
 
-    def add(self, failures: Mapping[int, tuple[int, str]]) -> list[End]:
-        """The new ends; failures: learner -> (step, quantity)."""
+    def add(
+        self, failures: Mapping[int, tuple[int, str]], state: Any = None, now: int = 0
+    ) -> list[End]:
+        """The new ends; failures: learner -> (step, quantity); state: [S, ...], at step `now`."""
         new = {
             s: {"seed": self.loop.seeds[s], "step": step, "quantity": quantity}
             for s, (step, quantity) in sorted(failures.items())
             if s not in self.ends
         }
+        for s, end in new.items():
+            if of_world(end["quantity"]):
+                end["world"] = self._decision(s, end, state, now)
+            elif end["quantity"].startswith("eval/") and s not in unsound(state.learners, now):
+                end["world"] = "all that was learned is finite: see the world's rewards"
         self.ends |= new
         return list(new.values())
+
+    def _decision(self, s: int, end: End, state: Any, now: int) -> str:
+        """What the world of learner s returned at `end`, if the memory still holds it."""
+        env = self.loop.agent.episode.env
+        name = f"{type(env).__module__}.{type(env).__name__}"
+        agent, memory = self.loop.agent, jax.tree.map(lambda leaf: leaf[s], state.memory)
+        made = agent.replay.recent(memory, agent.spec, (now - end["step"]) // agent.num_envs)
+        if made is None:
+            return f"a fault of the world {name}"
+        sound = np.isfinite(made.reward) & np.isfinite(made.next_obs).all(-1)
+        e = int(np.argmin(sound))  # the environment
+        obs, action, reward, after = (
+            np.array2string(np.asarray(each[e]), precision=4, threshold=8, separator=", ")
+            for each in (made.obs, made.action, made.reward, made.next_obs)
+        )
+        what = f"at obs {obs}, action {action} gives reward {reward}, obs {after}"
+        return " ".join(f"a fault of the world: {name} {what}".split())
 
     def resume(self, ends: Sequence[End]) -> None:
         """Restore the ends from a checkpoint."""
@@ -85,11 +114,14 @@ def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
     if left:
         others = "the other learner" if left == 1 else f"the other {left} learners"
         return f"{each}; {others} went on to the end"
+    of_learning = not any("world" in end for end in ends)
     advice = "begin again with a lower learning rate"
     if checkpoint is None:
-        return f"{each}; there is no checkpoint: {advice}"
-    return f"{each}; checkpoint {checkpoint} is whole: evaluate or resume it, or {advice}"
+        return f"{each}; there is no checkpoint" + (f": {advice}" if of_learning else "")
+    mend = f"evaluate or resume it, or {advice}" if of_learning else "mend the world and resume it"
+    return f"{each}; checkpoint {checkpoint} is whole: {mend}"
 
 
 def _words(end: End) -> str:
-    return f"seed {end['seed']}, step {end['step']}: {end['quantity']} is not finite"
+    line = f"seed {end['seed']}, step {end['step']}: {end['quantity']} is not finite"
+    return f"{line}, {end['world']}" if "world" in end else line

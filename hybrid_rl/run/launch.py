@@ -83,7 +83,7 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]
         RunLog(run_dir, run.seeds, loggers.made(names, run_dir, run.seeds, settings)) as log,
         _progress(run, label) as progress,
     ):
-        progress.note(f"{label}: run folder {run_dir}\n{size}")
+        progress.note("\n".join([f"{label}: run folder {run_dir}", size, *run.notes]))
         loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
         duration = Duration(jax.default_backend() == "cpu", instead(config))
         session = Session(loop, run.controllers, _schedule(config), log, progress, duration)

@@ -11,6 +11,7 @@ import numpy as np
 
 Metrics = dict[str, np.ndarray]
 Row = dict[str, Any]
+ACTION = "world/action"
 
 
 class Gathered:
@@ -43,16 +44,27 @@ class Gathered:
 
 
 def infinite(metrics: Metrics, start: int, worlds: int) -> dict[int, tuple[int, str]]:
-    """Learner -> (step, name) of its earliest infinite entry; the metrics begin after `start`."""
+    """Learner -> (step, name) of its earliest infinite entry; the metrics begin after `start`.
+
+    Numbers of the world come first, and only where its action was finite: what learns from them is
+    infinite at the same step.
+    """
     first: dict[int, tuple[int, str]] = {}
-    for name, values in metrics.items():
+    given = np.isfinite(metrics[ACTION]) if ACTION in metrics else np.True_
+    for name in sorted(metrics, key=lambda name: not of_world(name)):
         if name.startswith("episode/"):
             continue
-        for i, s in np.argwhere(np.isinf(values)):
+        bad = np.isinf(metrics[name])
+        for i, s in np.argwhere(bad & given if of_world(name) else bad):
             step = start + (int(i) + 1) * worlds
             if s not in first or step < first[s][0]:
                 first[int(s)] = step, name
     return first
+
+
+def of_world(name: str) -> bool:
+    """Whether a metric is what a world returns."""
+    return name.startswith("world/") and name != ACTION
 
 
 def episodes(

@@ -244,7 +244,7 @@ class Session:
 
     def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[rows.Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
-        new = self.diverged.add(failures)
+        new = self.diverged.add(failures, self.state, self.step)
         if left := self.diverged.left:  # else the error names it
             for end in new:
                 self.progress.note(divergence.note(end, left))

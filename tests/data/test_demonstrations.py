@@ -7,7 +7,7 @@ import jax
 import numpy as np
 import pytest
 
-from hybrid_rl.data.demonstrations import Demonstrations, load, save
+from hybrid_rl.data.demonstrations import COLUMNS, Demonstrations, load, save
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.types import Transition
@@ -92,6 +92,7 @@ def _with(array: np.ndarray, at: int, value: float) -> np.ndarray:
         ({"reward": None}, "lacks reward"),
         ({"obs": np.zeros((N, 4))}, r"obs is \(12, 4\), not \(12, 3\)"),
         ({"episode": EPISODE[:-1]}, r"episode is \(11,\), not \(12,\)"),
+        ({"reward": decisions().reward[:-1]}, r"reward is \(11,\), not \(12,\)"),
         ({"episode": EPISODE[::-1]}, "episodes must follow one another"),
         ({"obs": _with(decisions().obs, 7, np.nan)}, "obs is not finite in row 7"),
         ({"reward": _with(decisions().reward, 2, np.inf)}, "reward is not finite in row 2"),
@@ -99,7 +100,7 @@ def _with(array: np.ndarray, at: int, value: float) -> np.ndarray:
         ({"truncated": _with(np.zeros(N), 1, 1)}, "continues after its end, in row 1"),
         ({"reward": np.full(N, "a")}, "reward must hold numbers"),
         ({"obs": np.array([object()])}, "is damaged, cut short, or no .npz file"),
-        ({"reward": np.zeros(0)}, "holds no decision"),
+        ({name: np.zeros(0) for name in (*COLUMNS, "episode")}, "holds no decision"),
         (
             {"sizes": (4, 1), "obs": np.zeros((N, 4)), "next_obs": np.zeros((N, 4))},
             "obs has 4 numbers, this pendulum has 3",

@@ -122,10 +122,13 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
         patch.setattr(programs, "KEPT", [])
         line = [*TINY, "algo=sac", "checkpoint_every=50", f"run_dir={folder}"]
         assert call_train(*line) == 1
-    assert only_line(capfd) == (
-        "hybrid_rl: seed 0, step 51: world/reward is not finite; checkpoint 50 is whole: "
-        "evaluate or resume it, or begin again with a lower learning rate\n"
+    line = only_line(capfd)
+    assert line.startswith(
+        "hybrid_rl: seed 0, step 51: world/reward is not finite, a fault of the world: "
+        "hybrid_rl.envs.analytic.pendulum.Pendulum at obs ["
     )
+    assert " gives reward nan, obs [" in line
+    assert line.endswith("; checkpoint 50 is whole: mend the world and resume it\n")
     assert not json.loads((folder / "summary.json").read_text())["finished"]
     assert checkpoint.steps(folder / "checkpoints") == [50]
     assert call_train(f"resume={folder}") == 0

@@ -198,7 +198,10 @@ def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path, capfd):
         with pytest.raises(DivergenceError) as error:
             run(folder, "algo=sac")
     values = str(error.value)
-    assert values.startswith("seed 0, step 300: eval/return is not finite; checkpoint 200 is whole")
+    assert values == (
+        "seed 0, step 300: eval/return is not finite, all that was learned is finite: see the "
+        "world's rewards; checkpoint 200 is whole: mend the world and resume it"
+    )
     assert checkpoint.steps(folder / "checkpoints") == [100, 200]
     assert integrity.verify(folder / "checkpoints" / "200") is None
     assert rows(folder)[-1]["diverged"] == "eval/return"
@@ -256,3 +259,19 @@ def test_a_learner_is_read_back_from_the_loop(tmp_path):
     got = loop.with_learner(loop.on_devices(made), 1, {"a": jnp.full(2, 9.0), "key": key})
     np.testing.assert_array_equal(got["a"], wanted)
     assert jax.random.key_data(got["key"])[1].tolist() == jax.random.key_data(key).tolist()
+
+
+def test_a_run_of_random_actions_or_without_evaluations_ends_with_a_line(
+    tmp_path, monkeypatch, capsys
+):
+    done = {"signal": None, "run_dir": str(tmp_path), "wall_s": 1.0, "seeds": [0]}
+    monkeypatch.setattr(train, "train", lambda *_: done)
+    assert call_train("task=pendulum", "algo=sac", "total_steps=1000", "eval_modes=[]") == 0
+    first, *rest = capsys.readouterr().out.splitlines()
+    assert first.startswith("evaluation none yet; training return none yet")
+    assert rest == [
+        "nothing but random actions: random_steps=1000",
+        "nothing was evaluated: eval_modes=[]",
+    ]
+    assert call_train("task=pendulum", "algo=sac", "total_steps=1001") == 0
+    assert len(capsys.readouterr().out.splitlines()) == 1

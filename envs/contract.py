@@ -1,0 +1,264 @@
+"""What an environment must be, checked without a run; for tests of worlds of your own.
+
+    from hybrid_rl.envs import check
+
+    def test_my_world():
+        assert check(MyWorld()) == ()
+
+`reset` and `step` are traced, twice, and their results compared with `spec` and with each other;
+then both are compiled and make ten random decisions. This takes half a second, of which most is
+compiling; a world with a field `physics` is simulated by MuJoCo C, which compiles at once.
+"""
+
+import inspect
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, is_dataclass, replace
+from numbers import Integral, Real
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
+from hybrid_rl.errors import UsageError, gist, in_user_code, shown
+from hybrid_rl.types import EnvState, Spec
+
+LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
+SIGNATURES = {"reset": ("key",), "step": ("state", "action")}
+GYMNASIUM = "A Gymnasium environment in docs/howto.md makes a world of it, by jax.pure_callback"
+
+
+def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
+    """Check that runs can use `env`; see `protocols.Env`.
+
+    decisions: how many random ones it makes; 0 compiles nothing.
+
+    Returns:
+        Lines about what is allowed and seldom meant, such as an episode of one decision.
+
+    Raises:
+        UsageError: in one line: the file and line of the class or method, what it gives, and what
+            it must give.
+    """
+    simulated = is_dataclass(env) and getattr(env, "physics", None) in IMPLEMENTATIONS
+    world = _World(replace(env, physics="native") if simulated else env)  # type: ignore[type-var]
+    _check_members(world)
+    key = jax.random.key(0)
+    reset = world.traced("reset", key)
+    action = jax.ShapeDtypeStruct((world.env.spec.act,), jnp.float32)
+    step = world.traced("step", reset.out_info, action)
+    _check_trees(world, reset.out_info, step.out_info)
+    text = _text(step)
+    if text.count("\n") > LARGE:
+        return ()
+    again = world.traced("reset", key), world.traced("step", reset.out_info, action)
+    for method, first, second in (("reset", _text(reset), again[0]), ("step", text, again[1])):
+        if first != _text(second):
+            raise UsageError(
+                f"{world.at(method)}: gives other numbers when it is traced again: what NumPy or "
+                "Python draws is a constant of the compiled program; use jax.random, with a key "
+                "in state.info"
+            )
+    return _decide(world, *again, decisions) if decisions else ()
+
+
+@dataclass(frozen=True)
+class _World:
+    """An environment and where its source is."""
+
+    env: Any
+
+    def at(self, method: str = "") -> str:
+        """FILE:LINE: CLASS.METHOD, as far as they are known."""
+        kind = type(self.env)
+        name = f"{kind.__name__}.{method}" if method else kind.__name__
+        try:
+            source = inspect.unwrap(getattr(kind, method)) if method else kind
+            return f"{shown(self.file)}:{inspect.getsourcelines(source)[1]}: {name}"
+        except (OSError, TypeError, AttributeError):  # typed in, or no plain method
+            return f"{kind.__module__}: {name}"
+
+    @property
+    def file(self) -> str:
+        """The file of the class; "" if it has none."""
+        try:
+            return inspect.getsourcefile(type(self.env)) or ""
+        except TypeError:
+            return ""
+
+    def traced(self, method: str, *arguments: Any) -> Any:
+        """`method` traced by JAX, whose result is a valid EnvState."""
+
+        def call(*given: Any) -> EnvState:
+            result = getattr(self.env, method)(*given)
+            _check_state(self, method, result)
+            return result
+
+        return self.blamed(method, jax.jit(call).trace, *arguments)
+
+    def blamed(self, method: str, call: Any, *arguments: Any) -> Any:
+        """The result of `call`; what goes wrong in it is the line of the user's that caused it."""
+        try:
+            return call(*arguments)
+        except UsageError:
+            raise
+        except Exception as error:
+            line = in_user_code(error, self.file)
+            kind = type(self.env).__name__
+            if line is None:
+                raise UsageError(f"{self.at(method)}: {gist(error)}") from error
+            where, _, what = line.partition(": ")
+            raise UsageError(f"{where}: {kind}.{method}: {what}") from error
+
+
+def _check_members(world: _World) -> None:
+    """Raise UsageError if `spec`, `reset` or `step` is missing or has another form."""
+    env, at = world.env, world.at()
+    if any(kind.__module__.split(".")[0] in ("gym", "gymnasium") for kind in type(env).__mro__):
+        inner = _World(env.unwrapped)
+        if type(inner.env).__module__.startswith("gymnasium."):
+            at = f"env: {type(inner.env).__name__}"
+        else:
+            at = inner.at()
+        raise UsageError(
+            f"{at} is a gymnasium.Env, and environments are JAX functions; {GYMNASIUM}"
+        )
+    spec = world.blamed("spec", getattr, env, "spec", None)
+    if not isinstance(spec, Spec):
+        has = "has no spec" if spec is None else f"has a spec that is a {type(spec).__name__}"
+        raise UsageError(f"{at} {has}; write spec = Spec(obs=..., act=..., dt=...)")
+    for name in ("obs", "act"):
+        size = getattr(spec, name)
+        if not isinstance(size, Integral) or size < 1:
+            raise UsageError(f"{at}: spec.{name} is {size!r}; it must be a whole number, 1 or more")
+    if not isinstance(spec.dt, Real) or not 0 < spec.dt < np.inf:
+        raise UsageError(f"{at}: spec.dt is {spec.dt!r}; it must be a number of seconds above 0")
+    for method, takes in SIGNATURES.items():
+        form = f"{method}(self, {', '.join(takes)})"
+        bound = getattr(env, method, None)
+        if not callable(bound):
+            raise UsageError(f"{at} has no {method}; write def {form}")
+        try:
+            inspect.signature(bound).bind(*takes)
+        except TypeError:
+            has = inspect.signature(bound)
+            raise UsageError(f"{world.at(method)}{has}: must be {form}") from None
+        except ValueError:  # of a built-in function, which says nothing
+            pass
+
+
+def _check_state(world: _World, method: str, state: Any) -> None:
+    """Raise UsageError unless `state`, which `method` returned, is an EnvState of the spec."""
+    at, o = world.at(method), world.env.spec.obs
+    if not isinstance(state, EnvState):
+        got = "None" if state is None else type(state).__name__
+        got = f"a tuple of {len(state)}, as Gymnasium's do" if isinstance(state, tuple) else got
+        raise UsageError(f"{at}: returned {got}; it must be an EnvState")
+    size = jnp.size(state.obs) if _is_array(state.obs) else 0
+    flag = "write a comparison, or jnp.zeros((), bool)"
+    for name, shape, kind, remedy in (
+        ("obs", (o,), jnp.floating, f"return {o} numbers, or write Spec(obs={size}, ...)"),
+        ("reward", (), jnp.floating, "sum it, or take its entry; a whole number is no float"),
+        ("terminated", (), jnp.bool_, flag),
+        ("truncated", (), jnp.bool_, flag),
+    ):
+        value = getattr(state, name)
+        number = name == "reward" and type(value) is float
+        if number or (
+            _is_array(value) and value.shape == shape and jnp.issubdtype(value.dtype, kind)
+        ):
+            continue
+        wanted = "bool" if kind is jnp.bool_ else "float32"
+        has = f", as spec.obs is {o}" if name == "obs" else ""
+        must = f"it must be {wanted}{list(shape)}{has}"
+        raise UsageError(f"{at}: returned {name} {_described(value)}; {must}: {remedy}")
+    for name in ("metrics", "info"):
+        if not isinstance(value := getattr(state, name), Mapping):
+            raise UsageError(f"{at}: returned {name} {_described(value)}; it must be a dict")
+
+
+def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
+    """Raise UsageError if `step` and `reset` give states of different form.
+
+    `info` may lack entries in `step`, as episodes keep them.
+    """
+    after = after.replace(info={**first.info, **after.info})
+    one, two, structure = _leaves(first), _leaves(after), jax.tree.structure
+    if one == two and structure(first) == structure(after):
+        return
+    at, kind = world.at("step"), type(world.env).__name__
+    if one == two:  # a list for a tuple, or None for nothing
+        raise UsageError(f"{at}: returned a state of another structure than {kind}.reset")
+    if isinstance(first.data, PhysicsState) and one.get("data.ctrl") != two.get("data.ctrl"):
+        have, given = (
+            0 if each is None else len(each) for each in (first.data.ctrl, after.data.ctrl)
+        )
+        raise UsageError(
+            f"{at}: gives the physics {given} controls, and its model has {have} actuators; "
+            f"spec.act is {world.env.spec.act}"
+        )
+    name = next(name for name in (*one, *two) if one.get(name) != two.get(name))
+    gives = [f"{name} {each[name]}" if name in each else f"no {name}" for each in (two, one)]
+    raise UsageError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be equal")
+
+
+def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
+    """Make random decisions; notes about their episodes.
+
+    reset, step: traced. Raises UsageError if a number is not finite.
+    """
+    resetting, stepping = (each.lower().compile() for each in (reset, step))
+    rng, keys = np.random.default_rng(0), jax.random.split(jax.random.key(0), decisions + 1)
+    state, ended = world.blamed("reset", resetting, keys[0]), 0
+    if not np.isfinite(state.obs).all():
+        raise UsageError(f"{world.at('reset')}: returned obs {state.obs}; it must be finite")
+    for i in range(1, decisions + 1):
+        action = rng.uniform(-1, 1, world.env.spec.act).astype(np.float32)
+        after = world.blamed("step", stepping, state, action)
+        for name in ("reward", "obs"):
+            value = np.asarray(getattr(after, name))
+            if not np.isfinite(value).all():
+                seen = f"after obs {_numbers(state.obs)} and action {_numbers(action)}"
+                at = world.at("step")
+                raise UsageError(f"{at}: {name} is {_numbers(value)} at decision {i}, {seen}")
+        ended += bool(after.terminated)
+        kept = after.replace(info={**state.info, **after.info})
+        state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
+    if ended < decisions:
+        return ()
+    return (f"{world.at('step')}: every episode ended after one decision, of {decisions} tried",)
+
+
+def _text(traced: Any) -> str:
+    """The program that JAX traced, with its constants."""
+    program = traced.jaxpr
+    constants = "\n".join(map(str, program.consts))
+    return re.sub(r" at 0x\w+", "", f"{program}\n{constants}")
+
+
+def _leaves(tree: Any) -> dict[str, str]:
+    """Path of each leaf -> its type, such as float32[2]."""
+    paths = jax.tree_util.tree_leaves_with_path(tree)
+    return {
+        jax.tree_util.keystr(path, simple=True, separator="."): _described(leaf)
+        for path, leaf in paths
+    }
+
+
+def _is_array(value: Any) -> bool:
+    return hasattr(value, "shape") and hasattr(value, "dtype")
+
+
+def _described(value: Any) -> str:
+    """float32[2], or the Python value."""
+    if _is_array(value):
+        return f"{value.dtype}{list(value.shape)}"
+    return "None" if value is None else f"{value!r} of Python ({type(value).__name__})"
+
+
+def _numbers(value: Any) -> str:
+    """An array as a message shows it."""
+    text = np.array2string(np.asarray(value), precision=4, threshold=8, separator=", ")
+    return " ".join(text.split())

@@ -1,0 +1,161 @@
+"""Composing a configuration: the folder conf/, a user's task file, what Hydra's errors mean."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
+
+from hybrid_rl import overrides
+from hybrid_rl.checks import COUNTS, check_fields, part_class
+from hybrid_rl.errors import UsageError, shown
+from hybrid_rl.training.episode import Episode
+
+HERE = Path(__file__).parent
+CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
+OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin
+GLOBAL = "# @package _global_"
+ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
+INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
+
+
+def options(group: str) -> list[str]:
+    """Names that a configuration group offers, with their folders."""
+    return sorted(
+        str(path.relative_to(CONF / group).with_suffix(""))
+        for path in (CONF / group).rglob("*.yaml")
+    )
+
+
+def explain(error: Exception) -> str:
+    """One line that names the key, the value and what is allowed, from an error of Hydra's."""
+    from hydra.errors import MissingConfigException, OverrideParseException
+
+    if isinstance(error, yaml.YAMLError):
+        return _no_yaml(error)
+    if isinstance(error, MissingConfigException) and error.missing_cfg_file is not None:
+        parts = error.missing_cfg_file.split("/")
+        deep = 2 if parts[0] == "hydra" else 1
+        group, value = "/".join(parts[:deep]), "/".join(parts[deep:])
+        known = sorted({*options(group), *(error.options or ())})  # theirs: of --config-dir too
+        close = overrides.meant(value, known)
+        return f"{group}={value}: unknown; choose one of {', '.join(known)}{close}"
+    cause, text = error.__cause__, str(error)
+    if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
+        return overrides.unknown(cause.parent_node, str(cause.full_key))
+    if isinstance(error, OverrideParseException):
+        first, problem = text.splitlines()[0], text.splitlines()[-2]
+        if set(problem) == {" ", "^"}:  # it points at a character
+            problem = f"{first[len(problem) - 1]} stands outside quotes"
+        return f"{error.override}: {problem}; write key=value, text in quotes"
+    if absent := re.match(r"Could not override '([^']+)'", text):
+        return f"{absent[1]}: the method has no such part; `python -m hybrid_rl.list` shows methods"
+    if several := re.match(r"Ambiguous value for argument '([^']+)'", text):
+        return f"{several[1]}: several values are a sweep, which needs -m; a list is key=[a,b]"
+    if isinstance(error, InterpolationKeyError):
+        absent = re.search(r"'([^']+)'", text)
+        return f"{error.full_key}: refers to {absent[1] if absent else 'a key'}, which nothing sets"
+    return _sentences(f"{text}\n{cause or ''}")
+
+
+def _no_yaml(error: yaml.YAMLError) -> str:
+    """The file, the line and what is wrong there."""
+    mark = getattr(error, "problem_mark", None)
+    if mark is None:
+        return _sentences(str(error))
+    problem = str(getattr(error, "problem", "it is no YAML"))
+    tab = "; indent with spaces, not with a tab" if "'\\t'" in problem else ""
+    return f"{shown(mark.name)}:{mark.line + 1}: is no YAML: {problem}{tab}"
+
+
+def _sentences(text: str) -> str:
+    """The lines of a message as sentences of one line."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    lines = [line for line in lines if not re.match(r"(full_key|\w+_type)\b", line)]  # OmegaConf's
+    return " ".join(line if line[-1] in ".:;,?!" else f"{line};" for line in lines).rstrip(";")
+
+
+def chosen(hydra: Any, group: str) -> Path | None:
+    """The YAML file of the user's choice in a group; None if there is none.
+
+    hydra: Hydra's own part of what was composed.
+    """
+    name = f"{group}/{hydra.runtime.choices.get(group)}.yaml"
+    files = (Path(each.path) / name for each in hydra.runtime.config_sources if each.path)
+    return next((file for file in files if file.is_file()), None)
+
+
+def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | None:
+    """Check the user's task file; a line about its values that `settings` changed.
+
+    config: what was composed, with interpolations; roots: the keys that a run reads.
+
+    Raises:
+        UsageError: in one line that names the file: keys that it lacks, or sets in vain; for an
+            experiment with fields of another task's world.
+    """
+    _check_experiment(config, hydra)
+    file = chosen(hydra, "task")
+    if file is None or CONF in file.parents or config.get("resume") is not None:
+        return None
+    raw, name = overrides.plain(config), shown(file)
+    if isinstance(raw.get("task"), dict):
+        raise UsageError(f"{name}: its first line must be {GLOBAL}")
+    if lacking := [key for key in OF_A_TASK if raw.get(key) is None]:
+        raise UsageError(f"{name}: lacks {', '.join(lacking)}; {INHERIT}")
+    if "_target_" not in raw["env"]:
+        raise UsageError(f"{name}: env lacks _target_; write _target_: MODULE.CLASS")
+    try:
+        check_fields(config.episode, Episode, "episode.")
+    except UsageError as error:
+        raise UsageError(f"{name}: {error}") from error
+    own: Any = OmegaConf.to_container(OmegaConf.load(file), resolve=False)
+    own.pop("defaults", None)
+    read = overrides.reached(raw, roots)
+    if lost := [key for key in own if key not in read and key not in _root_keys(hydra, file)]:
+        close = overrides.meant(lost[0], [*read, *_root_keys(hydra, file)])
+        raise UsageError(f"{name}: {lost[0]}: unknown key, which nothing reads{close}")
+    return _changed(raw, own, hydra, name)
+
+
+def _check_experiment(config: DictConfig, hydra: Any) -> None:
+    """Raise UsageError if the experiment sets fields that the world of the run does not have."""
+    file, choices = chosen(hydra, "experiment"), hydra.runtime.choices
+    text = file.read_text(encoding="utf-8") if file else ""
+    meant = re.search(r"override /task: (\S+)", text)
+    if meant is None or meant[1] == choices.task:
+        return
+    try:
+        check_fields(config.env, part_class(config.env._target_), "env.")
+    except UsageError as error:
+        line = f"experiment={choices.experiment}: is for task={meant[1]}; {error}"
+        raise UsageError(line) from error
+
+
+def _root_keys(hydra: Any, without: Path) -> set[str]:
+    """The keys at the root of all YAML files that can be chosen, one left out."""
+    sources = [Path(each.path) for each in hydra.runtime.config_sources if each.schema == "file"]
+    files = {file for source in sources for file in source.rglob("*.yaml")} - {without}
+    texts = [file.read_text(encoding="utf-8", errors="replace") for file in files]
+    spread = [text for text in texts if GLOBAL in text]
+    root = (CONF / "train.yaml").read_text(encoding="utf-8")
+    return {key for text in (root, *spread) for key in ROOT_KEY.findall(text)}
+
+
+def _changed(raw: dict[str, Any], own: dict[str, Any], hydra: Any, name: str) -> str | None:
+    """The line about values of a task file that `settings` changed; None if there are none."""
+    settings, typed = hydra.runtime.choices.get("settings"), overrides.of_job(hydra)
+    changes = [
+        (key, value, overrides.select(raw, key))
+        for key, value in overrides.reached(own, own).items()
+        if not isinstance(value, dict) and key not in overrides.given(typed)
+    ]
+    changes = [each for each in changes if each[1] not in (each[2], overrides.LACKING)]
+    if settings is None or not changes:
+        return None
+    listed = ", ".join(f"{key} {mine} -> {now}" for key, mine, now in changes)
+    keep = " ".join(f"{key}={mine}" for key, mine, _ in changes)
+    return f"settings={settings} changes what {name} says: {listed}; to keep that, add {keep}"
