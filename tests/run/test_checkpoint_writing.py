@@ -144,7 +144,7 @@ def test_a_write_that_fails_halfway_leaves_what_was_there(three, capfd):
 
 def test_a_full_disk_is_one_clear_line(three, monkeypatch):
     def full(path, leaves):
-        path.mkdir()
+        (path / "state").mkdir()
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(leaves, "write", full)
