@@ -42,25 +42,25 @@ def train(config: DictConfig, given: Mapping[str, str] = launch.NOTHING) -> dict
     """Run `config` to its end, or to a signal; returns what summary.json holds.
 
     given: the overrides of the user, key -> value; of a run that `config.resume` names only
-    total_steps may differ from its settings. In a program that is no command of this library, a
-    signal has its usual effect once the checkpoint is written.
+    total_steps may differ from its settings. A signal, such as SIGTERM, has the effect that it has
+    in the calling program once the checkpoint is written.
 
     Raises:
-        KeyboardInterrupt: after Ctrl-C, except in the library's own commands.
+        KeyboardInterrupt: after Ctrl-C and a checkpoint.
         UsageError: if the configuration makes no run.
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
     summary = launch.train(config, given, interrupt.answered)
-    if summary["signal"] is not None and not interrupt.installed():
-        signal.raise_signal(summary["signal"])  # to the handlers of the program
+    if summary["signal"] is not None:
+        signal.raise_signal(summary["signal"])
     return summary
 
 
 def _job(config: DictConfig) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds."""
     given = overrides.given(overrides.of_job(HydraConfig.get()))
-    summary = train(configuration.resolved(config), given)
+    summary = launch.train(configuration.resolved(config), given, interrupt.answered)
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
     say(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})")
@@ -86,8 +86,12 @@ def _curve(run_dir: Path) -> None:
     known = np.isfinite(line.iqm)
     if known.sum() < CURVE:
         return
-    save(*learning_curves.figure(run_dir, EVALUATION), run_dir / "curve.png")
-    title = f"{learning_curves.LABELS[EVALUATION]} ({run_dir / 'curve.png'})"
+    drawn = run_dir / "curve.png"
+    try:
+        save(*learning_curves.figure(run_dir, EVALUATION), drawn)
+    except OSError as error:
+        say(f"{drawn}: not written ({error.strerror or error})")
+    title = f"{learning_curves.LABELS[EVALUATION]} ({drawn})"
     say(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))
 
 

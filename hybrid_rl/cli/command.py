@@ -1,14 +1,17 @@
 """What the commands share: Hydra's command line, exit codes, one line for each error.
 
-Exit codes: 0 done; 2 bad usage; 130 and 143 after Ctrl-C and SIGTERM; 1 any other failure.
+Exit codes: 0 done; 2 bad usage; 128 + number after a signal, as 130 after Ctrl-C and 143 after
+SIGTERM; 1 any other failure.
 """
 
 import inspect
 import os
 import re
 import sys
+import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, NoReturn
 
 from omegaconf import DictConfig
@@ -134,10 +137,24 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
         return 2, explain(error)
     if isinstance(error, (OSError, DivergenceError, MemoryError)):
         return 1, str(error)
+    if platform := _missing(error):
+        return (
+            2,
+            f"JAX_PLATFORMS={platform}: JAX finds no such device here; unset it, or choose cpu",
+        )
+    if isinstance(error, ImportError) and "failed to map segment" in str(error):  # ulimit -v
+        return 1, f"out of memory: {error}"
     if str(error).startswith("RESOURCE_EXHAUSTED"):  # of XLA
         what = str(error).splitlines()[0]
         return 1, f"{what}; fewer num_seeds or num_envs, or a smaller replay.capacity, may fit"
     return None
+
+
+def _missing(error: BaseException) -> str | None:
+    """The devices that JAX_PLATFORMS names, if JAX raised this as there are none."""
+    frames = traceback.extract_tb(error.__traceback__)
+    ours = bool(frames) and Path(frames[-1].filename).name == "xla_bridge.py"
+    return os.environ.get("JAX_PLATFORMS") if ours else None
 
 
 def _fail(code: int, line: str) -> NoReturn:

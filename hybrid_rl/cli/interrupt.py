@@ -30,6 +30,10 @@ WORDS = {
     signal.SIGHUP: "terminated, as its terminal was closed (SIGHUP)",
     signal.SIGUSR1: "terminated by SIGUSR1",
 }
+GRAPHICS = (  # what mujoco accepts as MUJOCO_GL on any system
+    *("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0"),
+    *("glfw", "glx", "egl", "osmesa", "wgl", "cgl"),
+)
 PATIENCE = 3.0  # [s] for the clean-up after KeyboardInterrupt
 
 Ask = Callable[[int], None]
@@ -53,6 +57,10 @@ def install() -> None:
     if _State.installed:
         return
     _State.installed = True
+    if os.environ.get("MUJOCO_GL", "").strip().lower() not in GRAPHICS:
+        chosen = os.environ["MUJOCO_GL"]  # importing mujoco would be a traceback
+        print(f"hybrid_rl: MUJOCO_GL={chosen}: unset it, or choose egl or osmesa", file=sys.stderr)
+        sys.exit(2)
     # Importing mujoco loads GLFW by a Python child, which would print a traceback on Ctrl-C.
     os.environ.setdefault("MUJOCO_GL", "disable")  # envs/mujoco/offscreen chooses its own backend
     heard, written = os.pipe()

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.loggers import Logger, scalars
 
@@ -63,7 +64,17 @@ class RunLog:
         self._rows.flush()
 
     def flush(self) -> int:
-        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`."""
+        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`.
+
+        Raises:
+            CheckpointError: if the folder is no longer where it was.
+        """
+        path = self.run_dir / "metrics.jsonl"
+        if not path.exists() or not os.path.samestat(path.stat(), os.fstat(self._rows.fileno())):
+            raise CheckpointError(
+                f"{path}: moved, deleted or replaced while the run wrote it; the run has stopped, "
+                "resume it where its folder is now"
+            )
         for each in (*self._boards.values(), *self.loggers):
             each.flush()
         self._rows.flush()

@@ -16,7 +16,6 @@ from tiny import TINY, call, call_train, contents, only_line, run
 
 from hybrid_rl import evaluate, render
 from hybrid_rl.cli import command
-from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.lock import locked
 
 HOLD = """
@@ -191,6 +190,7 @@ def other_module(path):
 
 HARM = [broken_yaml, random_bytes, empty, a_word, without_env, without_physics, other_seeds]
 HARM += [edited_seed, other_value, other_network, other_module]
+OF_RESUME = {other_network: "hidden was [16] and is [8]"}  # where its line is another one
 
 
 @pytest.mark.parametrize("harm", HARM, ids=[harm.__name__ for harm in HARM])
@@ -201,22 +201,43 @@ def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
     for name, main in READERS.items():
         assert call(lambda main=main: command.guarded(main), f"run={copied}") == 2, name
         lines.append(only_line(capfd))
+        assert words in lines[-1]
     assert call_train(f"resume={copied}", "total_steps=200") == 2
     lines.append(only_line(capfd))
+    assert OF_RESUME.get(harm, words) in lines[-1]
     for line in lines:
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
-        assert words in line
     assert contents(copied) == before
 
 
-def test_an_evaluation_that_cannot_be_written_is_not_made(copied, monkeypatch, capfd):
-    def full(dir):
-        raise OSError(errno.EROFS, "Read-only file system")
+def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
+    """Though such a configuration builds, and its checkpoint fits."""
+    path = copied / "config.yaml"
+    text = path.read_text()
+    path.write_text(
+        text.replace("capacity: 200", "capacity: 300").replace("_rate: 0.0003", "_rate: 3")
+    )
+    before = contents(copied)
+    assert call_train(f"resume={copied}", "total_steps=200") == 2
+    line = only_line(capfd)
+    assert line.startswith(f"hybrid_rl: {path}: ")
+    assert "replay.capacity was 200 and is 300, " in line
+    assert "learning_rate was 0.0003 and is 3" in line
+    assert "with resume only total_steps can be changed" in line
+    assert contents(copied) == before
+    path.write_text(text.replace("compile_cache: null", "compile_cache: elsewhere"))
+    assert call_train(f"resume={copied}", "total_steps=150") == 0  # of this machine, not the run
 
-    monkeypatch.setattr(run_folder, "TemporaryFile", full)
-    monkeypatch.setattr(evaluate, "evaluate", lambda *_: pytest.fail("it was evaluated"))
-    assert call(lambda: command.guarded(evaluate.main), f"run={copied}") == 2
-    assert f"run={copied}: cannot be written to (Read-only file system)" in only_line(capfd)
+
+def test_an_evaluation_of_a_run_that_cannot_be_written_to_is_shown(copied, monkeypatch, capfd):
+    def read_only(path, text):
+        raise OSError(errno.EROFS, "Read-only file system", str(path))
+
+    monkeypatch.setattr(evaluate, "write_text", read_only)
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
+    printed = capfd.readouterr().out
+    assert "mean return" in printed
+    assert f"not written: {copied}/evaluation_full.json: Read-only file system" in printed
 
 
 def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd):

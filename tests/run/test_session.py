@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call_train, run
+from tiny import TINY, call_train, run
 
 from hybrid_rl import train
 from hybrid_rl.errors import DivergenceError
@@ -100,13 +100,11 @@ def test_calls_of_other_lengths_make_the_same_run(interrupt, whole, short, tmp_p
 def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp_path):
     """Between marks, before an evaluation is made, and before the last one is."""
     folder, line = tmp_path / "run", []
+    begin = [*TINY, *SAC, f"run_dir={folder}"]
     for step in (123, 300, 600):
         with pytest.MonkeyPatch.context() as patch:
             stop_at(patch, step)
-            if line:
-                assert call_train(*line) == 128 + signal.SIGTERM
-            else:
-                assert run(folder, *SAC)["signal"] == signal.SIGTERM
+            assert call_train(*(line or begin)) == 128 + signal.SIGTERM
         result, line = summary(folder), [f"resume={folder}"]
         assert step <= result["total_steps"] < step + 7
         assert not result["finished"]
