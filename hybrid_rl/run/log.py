@@ -53,7 +53,11 @@ class RunLog:
         self._rows.close()
 
     def write(self, rows: list[dict[str, Any]]) -> None:
-        """Append rows {"step", "seed", "wall_s", name: number or word, ...}."""
+        """Append rows {"step", "seed", "wall_s", name: number or word, ...}.
+
+        Raises:
+            CheckpointError: before the first row, as `flush`.
+        """
         for row in rows:
             plain = {n: v if isinstance(v, str) else number(v) for n, v in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
@@ -69,17 +73,21 @@ class RunLog:
         Raises:
             CheckpointError: if the folder is no longer where it was.
         """
-        path = self.run_dir / "metrics.jsonl"
-        if not path.exists() or not os.path.samestat(path.stat(), os.fstat(self._rows.fileno())):
-            raise CheckpointError(
-                f"{path}: moved, deleted or replaced while the run wrote it; the run has stopped, "
-                "resume it where its folder is now"
-            )
+        self._check_place()
         for each in (*self._boards.values(), *self.loggers):
             each.flush()
         self._rows.flush()
         os.fsync(self._rows.fileno())
         return self._rows.tell()
+
+    def _check_place(self) -> None:
+        """Raise CheckpointError if metrics.jsonl is not the file that is open here."""
+        path, ours = self.run_dir / "metrics.jsonl", os.fstat(self._rows.fileno())
+        if not path.exists() or not os.path.samestat(path.stat(), ours):
+            raise CheckpointError(
+                f"{path}: moved, deleted or replaced while the run wrote it; the run has stopped, "
+                "resume it where its folder is now"
+            )
 
     def rewind(self, offset: int, step: int) -> list[str]:
         """Delete what was written after the checkpoint at `step`; call it before `write`.
@@ -110,6 +118,7 @@ class RunLog:
         if seed not in self._boards:
             from hybrid_rl.run.board import Board  # 0.2 s
 
+            self._check_place()  # a folder would come into being at the old place
             several = (f"seed_{seed}",) if len(self.seeds) > 1 else ()
             folder = self.run_dir.joinpath("tensorboard", *several)
             self._boards[seed] = Board(folder, self._purge_step)
