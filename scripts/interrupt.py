@@ -2,11 +2,12 @@
 
     python scripts/interrupt.py --trials 20 task=cartpole algo=hybrid_stochastic total_steps=3000
 
-A trial starts the run in a process of its own and stops it `--stops` times, each time after a
-random delay and by a random one of FAULTS: a signal, two at once, a console that is closed, a
-folder that is moved and, where this user may mount a small disk, a full one. A run that was stopped
-before its first checkpoint starts over. Then it goes on to its end. Compared are the newest
-checkpoints, bit for bit, and metrics.jsonl, all but its clocks. Exit code 1 where any differs.
+A trial starts the run in a process of its own and stops it `--stops` times, most times while it
+trains, at a random moment and by a random one of FAULTS: a signal, two at once, a console that is
+closed, a folder that is moved and, where this user may mount a small disk, a full one. A run that
+was stopped before its first checkpoint starts over. Then it goes on to its end. Compared are the
+newest checkpoints, bit for bit, and metrics.jsonl, all but its clocks. Exit code 1 where any
+differs.
 """
 
 import argparse
@@ -33,6 +34,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.run import checkpoint
 from hybrid_rl.training.loop import Loop
 
+EARLY = 0.2  # share of the faults that come before the run trains, perhaps
 DISK = 20_000_000  # [bytes]
 Fault = Callable[[subprocess.Popen, Path], None]  # of a process that writes to a run folder
 
@@ -186,15 +188,25 @@ def trial(
     within: float,
     faults: Mapping[str, Fault] = FAULTS,
 ) -> Trial:
-    """One run into `run`, stopped `stops` times, each `within` [s] of its start."""
+    """One run into `run`, stopped `stops` times, each `within` [s] of the start or of training."""
     made = []
     for _ in range(stops):
         by = random.choice([*faults])
         process = start(_or_resume(overrides, run))
+        if random.random() > EARLY:
+            _until(process, "compiled in")
         time.sleep(random.uniform(0, within))
         made.append(Stop(by, stop(process, faults[by], run), newest(run)))
     finish(_or_resume(overrides, run))
     return Trial(made, difference(whole, run))
+
+
+def _until(process: subprocess.Popen, words: str) -> None:
+    """Wait until the process prints a line with these words, or ends."""
+    assert process.stdout is not None
+    for printed in process.stdout:
+        if words in printed:
+            return
 
 
 def _or_resume(overrides: Sequence[str], run: Path) -> list[str]:

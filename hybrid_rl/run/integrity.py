@@ -57,7 +57,9 @@ def verify(folder: Path, contents: bool = True) -> str | None:
 
 def _plain(folder: Path, name: str) -> bool:
     """Whether `name` lies below `folder`, also behind links, and is a plain file if it is there."""
-    path = Path(os.path.realpath(folder / name.replace("\0", "")))
+    if "\0" in name:
+        return False
+    path = Path(os.path.realpath(folder / name))
     return path.is_relative_to(os.path.realpath(folder)) and (path.is_file() or not path.exists())
 
 
