@@ -99,7 +99,7 @@ def closed(process: subprocess.Popen, run: Path) -> None:
 
 def moved(process: subprocess.Popen, run: Path) -> None:
     """The folder has another name until the process has ended."""
-    if run.exists():
+    if newest(run) is not None:
         elsewhere = run.rename(run.with_name(f"{run.name}-moved"))
         process.wait()
         elsewhere.rename(run)  # fails where the process wrote to the old place

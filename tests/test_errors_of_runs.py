@@ -35,6 +35,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate run={trained} episode.late=1", 2, "episode.late=1: episode has steps, action_"),
     ("evaluate run={trained} env.gravity=1", 2, "env.gravity=1: env has no keys"),
     ("evaluate policy=cartpole env.reward=up", 2, "env.reward='up': choose one of cos"),
+    ("evaluate run={trained} episodes=100000000000", 2, "00: their worlds would take "),
     ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
     ("evaluate {trained}", 2, "unknown argument; give key=value"),
@@ -74,6 +75,7 @@ RESUMED = [  # overrides given with resume, words of the line
     ("experiment=thesis/fig_3_2_pendulum", "with resume only total_steps can be changed"),
     ("total_steps=100", "has 600; it can be raised, not lowered"),
     ("total_steps=1e9", f"total_steps=1e9: {COUNT}"),
+    ("total_steps=3000000000", "total_steps=3000000000: must be at most 2147483647: "),
 ]
 
 

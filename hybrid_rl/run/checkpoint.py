@@ -88,18 +88,21 @@ def save(
         _recover(folder)
         draft = _free(folder, str(step))
         draft.mkdir()
+        place = draft.stat()
         _fits(folder, sum(array.nbytes for array in arrays.values()))
         for name, text in texts.items():
             (draft / name).write_text(text + "\n", encoding="utf-8")
         leaves.write(draft, arrays)
+        if not os.path.samestat(draft.stat(), place):  # TensorStore makes folders that are gone
+            raise OSError("its folder was moved or deleted")
         integrity.write_manifest(draft)
         path = _rename(draft, folder / str(step))
     except Exception as problem:
         line = _refusal(folder, step, problem)
-        shutil.rmtree(draft, ignore_errors=True)
+        _discard(draft)
         raise CheckpointError(line) from problem
     except BaseException:  # Ctrl-C and the like
-        shutil.rmtree(draft, ignore_errors=True)
+        _discard(draft)
         raise
     _prune(folder, step, keep, known)
     return path
@@ -188,6 +191,14 @@ def _free(folder: Path, stem: str) -> Path:
     """A path FOLDER/.STEM.tmp, or FOLDER/.STEM.NUMBER.tmp, at which nothing is."""
     names = (f".{stem}{end}.tmp" for end in ("", *(f".{number}" for number in range(1, 10_000))))
     return next(path for path in map(folder.joinpath, names) if not os.path.lexists(path))
+
+
+def _discard(draft: Path) -> None:
+    """Delete a draft, and its empty parents, which TensorStore may have made."""
+    shutil.rmtree(draft, ignore_errors=True)
+    with contextlib.suppress(OSError):
+        draft.parent.rmdir()
+        draft.parent.parent.rmdir()
 
 
 def _rename(draft: Path, path: Path) -> Path:

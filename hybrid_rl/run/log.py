@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RunLog:
-    """Writes rows of numbers to a run folder.
+    """Writes rows of numbers to a run folder, which exists.
 
     tensorboard/ has one event file for a single learner, and one subfolder per seed for several,
     so that a chart overlays the seeds. loggers: get the rows, too.
@@ -33,7 +33,6 @@ class RunLog:
         self.run_dir = run_dir
         self.loggers = loggers
         self.seeds = tuple(seeds)
-        run_dir.mkdir(parents=True, exist_ok=True)
         self._rows = (run_dir / "metrics.jsonl").open("ab")
         self._boards: dict[int, Board] = {}  # by seed
         self._purge_step: int | None = None

@@ -215,6 +215,24 @@ def test_a_plain_file_with_the_name_of_a_checkpoint_is_none(three):
     assert kept == ["mine", "mine"]
 
 
+def test_a_folder_that_is_moved_meanwhile_is_not_made_again(tmp_path, monkeypatch):
+    """TensorStore does make it; what it left there would count as a whole checkpoint."""
+    run, write = tmp_path / "run", leaves.write
+    run.mkdir()
+    checkpoint.save(run / "checkpoints", 1, state_at(1), {})
+
+    def moved(path, arrays):
+        run.rename(tmp_path / "moved")
+        path.mkdir(parents=True)
+        write(path, arrays)
+
+    monkeypatch.setattr(leaves, "write", moved)
+    with pytest.raises(CheckpointError, match="not written: its folder was moved or deleted"):
+        checkpoint.save(run / "checkpoints", 2, state_at(2), {})
+    assert not run.exists()
+    assert checkpoint.steps(tmp_path / "moved" / "checkpoints") == [1]
+
+
 def test_a_folder_that_is_gone_is_not_made_again(tmp_path):
     with pytest.raises(CheckpointError, match="No such file or directory"):
         checkpoint.save(tmp_path / "gone" / "checkpoints", 1, state_at(1), {})
