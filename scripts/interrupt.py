@@ -88,7 +88,7 @@ def sent(*numbers: int) -> Fault:
 
 
 def closed(process: subprocess.Popen, run: Path) -> None:
-    """Nobody reads what the run prints; it is terminated later."""
+    """The pipe to which the run prints is closed; the run is terminated later."""
     assert process.stdout is not None
     process.stdout.close()
     process.stdout = None
@@ -102,7 +102,7 @@ def moved(process: subprocess.Popen, run: Path) -> None:
     if newest(run) is not None:
         elsewhere = run.rename(run.with_name(f"{run.name}-moved"))
         process.wait()
-        elsewhere.rename(run)  # fails where the process wrote to the old place
+        elsewhere.rename(run)  # fails where the process has made it again
     else:
         process.kill()
 

@@ -138,10 +138,8 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
     if isinstance(error, (OSError, DivergenceError, MemoryError)):
         return 1, str(error)
     if platform := _missing(error):
-        return (
-            2,
-            f"JAX_PLATFORMS={platform}: JAX finds no such device here; unset it, or choose cpu",
-        )
+        named = f"JAX_PLATFORMS={platform}"
+        return 2, f"{named}: JAX finds no such device here; unset it, or choose cpu"
     if isinstance(error, ImportError) and "failed to map segment" in str(error):  # ulimit -v
         return 1, f"out of memory: {error}"
     if str(error).startswith("RESOURCE_EXHAUSTED"):  # of XLA

@@ -88,12 +88,12 @@ def save(
         _recover(folder)
         draft = _free(folder, str(step))
         draft.mkdir()
-        place = draft.stat()
+        made = draft.stat()
         _fits(folder, sum(array.nbytes for array in arrays.values()))
         for name, text in texts.items():
             (draft / name).write_text(text + "\n", encoding="utf-8")
         leaves.write(draft, arrays)
-        if not os.path.samestat(draft.stat(), place):  # TensorStore makes folders that are gone
+        if not os.path.samestat(draft.stat(), made):  # TensorStore makes folders that are gone
             raise OSError("its folder was moved or deleted")
         integrity.write_manifest(draft)
         path = _rename(draft, folder / str(step))

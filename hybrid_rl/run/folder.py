@@ -60,14 +60,14 @@ def fresh(config: DictConfig) -> Iterator[Path]:
 @contextmanager
 def _cleared(folder: Path) -> Iterator[None]:
     """If the block raises before it has written a row or a checkpoint, delete what it wrote."""
-    before, place = {path.name for path in folder.iterdir()}, folder.stat()
+    before, then = {path.name for path in folder.iterdir()}, folder.stat()
     try:
         yield
     except BaseException:
         rows = folder / "metrics.jsonl"
         trained = rows.exists() and rows.stat().st_size > 0
         trained = trained or bool(checkpoint.steps(folder / "checkpoints"))
-        if not trained and folder.exists() and os.path.samestat(folder.stat(), place):
+        if not trained and folder.exists() and os.path.samestat(folder.stat(), then):
             for name in {"config.yaml", "metrics.jsonl", "metrics.csv"} - before:
                 (folder / name).unlink(missing_ok=True)
         raise

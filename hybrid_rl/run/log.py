@@ -72,14 +72,14 @@ class RunLog:
         Raises:
             CheckpointError: if the folder is no longer where it was.
         """
-        self._check_place()
+        self._check_folder()
         for each in (*self._boards.values(), *self.loggers):
             each.flush()
         self._rows.flush()
         os.fsync(self._rows.fileno())
         return self._rows.tell()
 
-    def _check_place(self) -> None:
+    def _check_folder(self) -> None:
         """Raise CheckpointError if metrics.jsonl is not the file that is open here."""
         path, ours = self.run_dir / "metrics.jsonl", os.fstat(self._rows.fileno())
         if not path.exists() or not os.path.samestat(path.stat(), ours):
@@ -117,7 +117,7 @@ class RunLog:
         if seed not in self._boards:
             from hybrid_rl.run.board import Board  # 0.2 s
 
-            self._check_place()  # a folder would come into being at the old place
+            self._check_folder()  # a folder would be made again where it was
             several = (f"seed_{seed}",) if len(self.seeds) > 1 else ()
             folder = self.run_dir.joinpath("tensorboard", *several)
             self._boards[seed] = Board(folder, self._purge_step)

@@ -6,7 +6,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import TracebackType
 from typing import Self
 
@@ -30,9 +30,9 @@ SHOWN = {  # scalar -> its format
 
 
 def say(text: str) -> None:
-    """Print a line; where nobody reads any more, this and all later ones vanish.
+    """Print a line; it vanishes where the pipe or the terminal was closed.
 
-    A pipe or a terminal that was closed ends no run, whose records are in its folder.
+    That ends no run, as its records are in its folder.
     """
     with shown():
         print(text, flush=True)
@@ -45,7 +45,8 @@ def shown() -> Iterator[None]:
         yield
     except OSError:
         nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())  # what Python's buffer still holds goes there, too
+        with suppress(OSError):  # it may be no file, as in a notebook
+            os.dup2(nowhere, sys.stdout.fileno())  # for what Python's buffer still holds, too
         os.close(nowhere)
 
 

@@ -27,7 +27,7 @@ class Store:
     settings: Mapping[str, Any]
     newest: int | None = None  # step of the checkpoint that was written or read last
     known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
-    told: set[Path] = field(default_factory=set)  # leftovers that a note has named
+    noted: set[Path] = field(default_factory=set)  # leftovers that a note has named
 
     def save(self, step: int, state: Any, gathered: Gathered, meta: dict) -> list[str]:
         """Write a checkpoint of the run; a note for each new leftover that cannot be deleted.
@@ -46,8 +46,8 @@ class Store:
         checkpoint.save(self.folder, step, leaves, here | meta, known=self.known)
         self.known.add(step)
         self.newest = step
-        stuck = [path for path in checkpoint.leftovers(self.folder) if path not in self.told]
-        self.told.update(stuck)
+        stuck = [path for path in checkpoint.leftovers(self.folder) if path not in self.noted]
+        self.noted.update(stuck)
         return [f"{path}: cannot be deleted, and is left there" for path in stuck]
 
     def restore(self) -> tuple[Any, Gathered, dict, list[str]]:

@@ -276,7 +276,7 @@ def test_links_in_a_run_folder_lead_to_nothing_that_is_written(tmp_path):
     assert precious.read_text() == "mine"
 
 
-def test_the_lock_of_a_folder_that_took_the_place_of_a_moved_one_stays(tmp_path):
+def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):
     folder = tmp_path / "run"
     folder.mkdir()
     with locked(folder, "run_dir"):

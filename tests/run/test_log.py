@@ -259,7 +259,7 @@ def _read(handle):
 
 
 @pytest.mark.parametrize("rows", [0, 1])
-def test_a_run_whose_folder_was_moved_stops_and_leaves_nothing_at_the_old_place(tmp_path, rows):
+def test_a_run_whose_folder_was_moved_stops_and_makes_no_new_one(tmp_path, rows):
     folder, elsewhere = tmp_path / "run", tmp_path / "elsewhere"
     folder.mkdir()
     with RunLog(folder, [0]) as log:
