@@ -8,10 +8,8 @@ import inspect
 import os
 import re
 import sys
-import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any, NoReturn
 
 from omegaconf import DictConfig
@@ -149,10 +147,17 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
 
 
 def _missing(error: BaseException) -> str | None:
-    """The devices that JAX_PLATFORMS names, if JAX raised this as there are none."""
-    frames = traceback.extract_tb(error.__traceback__)
-    ours = bool(frames) and Path(frames[-1].filename).name == "xla_bridge.py"
-    return os.environ.get("JAX_PLATFORMS") if ours else None
+    """What JAX_PLATFORMS names, if JAX may have raised this as there is no such device."""
+    named = os.environ.get("JAX_PLATFORMS")
+    if not named or not isinstance(error, (RuntimeError, AssertionError)):
+        return None
+    import jax
+
+    try:
+        jax.devices()
+    except (RuntimeError, AssertionError):
+        return named
+    return None
 
 
 def _fail(code: int, line: str) -> NoReturn:
