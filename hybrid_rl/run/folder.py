@@ -45,10 +45,10 @@ def fresh(config: DictConfig) -> Iterator[Path]:
     new = config.run_dir is None or not folder.exists()
     try:
         with locked(writable(folder, "run_dir"), "run_dir"), _cleared(folder):
-            if (folder / "config.yaml").exists() or checkpoint.steps(folder / "checkpoints"):
-                raise UsageError(
-                    f"run_dir={folder}: holds a run already; choose another, or resume={folder}"
-                )
+            saved = checkpoint.steps(folder / "checkpoints")
+            if saved or (folder / "config.yaml").exists():
+                line = f"run_dir={folder}: holds a run already; choose another"
+                raise UsageError(f"{line}, or resume={folder}" if saved else line)
             yield folder
     except BaseException:
         with suppress(OSError):  # it holds something

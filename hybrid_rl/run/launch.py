@@ -154,11 +154,11 @@ def _written(config: DictConfig) -> dict[str, Any]:
 
 def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
-    then = checkpoint.meta(run_dir / "checkpoints").get("settings")
     now = _written(config)
+    then = checkpoint.meta(run_dir / "checkpoints").get("settings") or now  # of an older version
     changed = [
         f"{key} was {then.get(key, 'absent')} and is {now.get(key, 'absent')}"
-        for key in dict.fromkeys([*now, *then] if then else ())
+        for key in dict.fromkeys([*now, *then])
         if key not in (*OF_A_SESSION, "compile_cache")
         and then.get(key, UNKNOWN) != now.get(key, UNKNOWN)
     ]
