@@ -25,6 +25,7 @@ COUNTS = (
     "log_every",
 )
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
+STEPS = 2**31  # decisions, fewer of which are counted
 SEEDS = 2**32  # distinct seeds of JAX's generator
 MODES = ("full", "policy", "planner")
 PRECISIONS = ("highest", "high", "default")
@@ -47,6 +48,9 @@ def check(config: DictConfig) -> None:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
     for key in COUNTS:
         whole(config, key)
+    countable(config)
+    if config.get("run_dir") == "":
+        raise UsageError("run_dir=: is empty; give a folder, or leave it out")
     if type(config.seed) is not int or config.seed < 0:
         raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
     if config.seed + config.num_seeds > SEEDS:
@@ -67,6 +71,14 @@ def check(config: DictConfig) -> None:
             raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
     check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
     check_kinds(config)
+
+
+def countable(config: DictConfig) -> None:
+    """Raise UsageError for more decisions than their counter holds, the last round included."""
+    if config.total_steps + config.num_envs > STEPS:
+        most = STEPS - config.num_envs
+        line = f"total_steps={config.total_steps}: must be at most {most}"
+        raise UsageError(f"{line}: decisions are counted in 32 bits")
 
 
 def check_kinds(node: DictConfig, where: str = "") -> None:

@@ -40,7 +40,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run import checkpoint
+from hybrid_rl.run import checkpoint, memory
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.jax_settings import prepare
@@ -211,6 +211,8 @@ def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[s
     """
     if mode not in trained.controllers:
         raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
+    modes = [trained.controllers[mode]]
+    memory.episodes("episodes", episodes, len(trained.seeds), trained.episode, modes)
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
     one = partial(evaluate_episodes, trained.episode, trained.controllers[mode])
     got = jax.jit(jax.vmap(one))(trained.params, keys)
@@ -246,9 +248,6 @@ def main() -> None:
     if changes:
         assert trained.config is not None
         trained = replace(trained, episode=configuration.disturbed(trained.config, changes))
-    folder = Path(given["run"])
-    if given["run"]:
-        run_folder.writable(folder, "run")  # before minutes of work
     for note in trained.notes:
         print(note)
     values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
@@ -259,9 +258,12 @@ def main() -> None:
     if not given["run"]:
         return
     stem = "_".join([given["mode"], *(f"{key}={value}" for key, value in changes.items())])
-    out = folder / f"evaluation_{stem}.json"
-    write_text(out, json.dumps(values, indent=1) + "\n")
-    print(f"{episodes} episodes a seed; written to {out}")
+    out = Path(given["run"]) / f"evaluation_{stem}.json"
+    try:
+        write_text(out, json.dumps(values, indent=1) + "\n")
+        print(f"{episodes} episodes a seed; written to {out}")
+    except OSError as error:  # the run of somebody else, say
+        print(f"{episodes} episodes a seed; not written: {out}: {error.strerror}")
 
 
 def _table(values: dict[str, Any]) -> Table:

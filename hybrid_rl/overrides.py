@@ -14,7 +14,7 @@ from typing import Any
 from hydra import compose
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override
+from hydra.core.override_parser.types import Override, Quote, QuotedString
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.errors import UsageError
@@ -43,6 +43,13 @@ def given(texts: Iterable[str]) -> dict[str, str]:
     """Overrides as key -> value, as they were typed."""
     pairs = (text.lstrip("+~").partition("=") for text in texts)
     return {key: value for key, _, value in pairs}
+
+
+def quoted(value: str) -> str:
+    """A value as it is typed in an override, in quotes if Hydra would read it as something else."""
+    if re.fullmatch(r"[\w./-]+", value) and _plain(value) == value:
+        return value
+    return QuotedString(value, Quote.double).with_quotes()
 
 
 def key(override: Override) -> str:

@@ -16,6 +16,8 @@ if __name__ == "__main__":
 
     interrupt.install()
 
+import shlex
+import signal
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,6 +32,7 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import curve, divergence, launch
+from hybrid_rl.run.progress import say
 
 EVALUATION = "eval/return"
 CURVE = 3  # evaluations
@@ -39,26 +42,32 @@ def train(config: DictConfig, given: Mapping[str, str] = launch.NOTHING) -> dict
     """Run `config` to its end, or to a signal; returns what summary.json holds.
 
     given: the overrides of the user, key -> value; of a run that `config.resume` names only
-    total_steps may differ from its settings.
+    total_steps may differ from its settings. A signal, such as SIGTERM, has the effect that it has
+    in the calling program once the checkpoint is written.
 
     Raises:
+        KeyboardInterrupt: after Ctrl-C and a checkpoint.
         UsageError: if the configuration makes no run.
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    return launch.train(config, given, interrupt.answered)
+    summary = launch.train(config, given, interrupt.answered)
+    if summary["signal"] is not None:
+        signal.raise_signal(summary["signal"])
+    return summary
 
 
 def _job(config: DictConfig) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds."""
     given = overrides.given(overrides.of_job(HydraConfig.get()))
     config = configuration.resolved(config)
-    summary = train(config, given)
+    summary = launch.train(config, given, interrupt.answered)
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
-    print(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})", flush=True)
+    say(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})")
     if summary["signal"] is not None:
-        print(f"continue: python -m hybrid_rl.train resume={summary['run_dir']}", flush=True)
+        resume = shlex.quote(f"resume={overrides.quoted(summary['run_dir'])}")
+        say(f"continue: python -m hybrid_rl.train {resume}")
         sys.exit(128 + summary["signal"])
     if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])
@@ -82,9 +91,13 @@ def _curve(run_dir: Path) -> None:
     known = np.isfinite(line.iqm)
     if known.sum() < CURVE:
         return
-    save(*learning_curves.figure(run_dir, EVALUATION), run_dir / "curve.png")
-    title = f"{learning_curves.LABELS[EVALUATION]} ({run_dir / 'curve.png'})"
-    print(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))
+    drawn = run_dir / "curve.png"
+    try:
+        save(*learning_curves.figure(run_dir, EVALUATION), drawn)
+    except OSError as error:
+        say(f"{drawn}: not written ({error.strerror or error})")
+    title = f"{learning_curves.LABELS[EVALUATION]} ({drawn})"
+    say(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))
 
 
 def _result(summary: Mapping[str, Any]) -> str:

@@ -2,14 +2,18 @@
 
     python scripts/interrupt.py --trials 20 task=cartpole algo=hybrid_stochastic total_steps=3000
 
-A trial starts the run in a process of its own and stops it up to `--stops` times, each time
-after a random delay and by a random one of Ctrl-C, SIGTERM and kill -9; a run that was stopped
-before its first checkpoint starts over. Then it goes on to its end. Compared are the newest
-checkpoints, bit for bit, and metrics.jsonl, all but its clocks. Exit code 1 where any differs.
+A trial starts the run in a process of its own and stops it `--stops` times, most times while it
+trains, at a random moment and by a random one of FAULTS: a signal, two at once, a console that is
+closed, a folder that is moved and, where this user may mount a small disk, a full one. A run that
+was stopped before its first checkpoint starts over. Then it goes on to its end. Compared are the
+newest checkpoints, bit for bit, and metrics.jsonl, all but its clocks. Exit code 1 where any
+differs.
 """
 
 import argparse
+import contextlib
 import json
+import os
 import random
 import shutil
 import signal
@@ -17,7 +21,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,7 +34,9 @@ from hybrid_rl import config as configuration
 from hybrid_rl.run import checkpoint
 from hybrid_rl.training.loop import Loop
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
+EARLY = 0.2  # share of the faults that come before the run trains, perhaps
+DISK = 20_000_000  # [bytes]
+Fault = Callable[[subprocess.Popen, Path], None]  # of a process that writes to a run folder
 
 
 class Stop(NamedTuple):
@@ -50,7 +57,7 @@ class Trial(NamedTuple):
 def start(overrides: Sequence[str]) -> subprocess.Popen:
     """`python -m hybrid_rl.train OVERRIDES`, silent."""
     line = [sys.executable, "-m", "hybrid_rl.train", *overrides]
-    return subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def finish(overrides: Sequence[str]) -> float:
@@ -63,11 +70,72 @@ def finish(overrides: Sequence[str]) -> float:
     return time.monotonic() - began
 
 
-def stop(process: subprocess.Popen, by: int) -> int:
-    """Send signal `by`; the exit code, minus the signal where that killed it."""
-    process.send_signal(by)
+def stop(process: subprocess.Popen, by: Fault, run: Path) -> int:
+    """Make a fault; the exit code, minus the signal where that killed it."""
+    by(process, run)
     process.communicate()
     return process.returncode
+
+
+def sent(*numbers: int) -> Fault:
+    """Signals, all of them pending when the process goes on."""
+
+    def fault(process: subprocess.Popen, run: Path) -> None:
+        for number in (signal.SIGSTOP, *numbers, signal.SIGCONT):
+            process.send_signal(number)
+
+    return fault
+
+
+def closed(process: subprocess.Popen, run: Path) -> None:
+    """The pipe to which the run prints is closed; the run is terminated later."""
+    assert process.stdout is not None
+    process.stdout.close()
+    process.stdout = None
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        process.wait(random.uniform(0, 2))
+    process.send_signal(signal.SIGTERM)
+
+
+def moved(process: subprocess.Popen, run: Path) -> None:
+    """The folder has another name until the process has ended."""
+    if newest(run) is not None:
+        elsewhere = run.rename(run.with_name(f"{run.name}-moved"))
+        process.wait()
+        elsewhere.rename(run)  # fails where the process has made it again
+    else:
+        process.kill()
+
+
+def full(process: subprocess.Popen, run: Path) -> None:
+    """Nothing more fits on the disk until the process has ended."""
+    ballast = run.with_name("ballast")
+    with contextlib.suppress(OSError), ballast.open("wb", 0) as file:
+        while True:
+            file.write(bytes(4096))
+    process.wait()
+    ballast.unlink()
+
+
+FAULTS: dict[str, Fault] = {
+    **{n.name: sent(n) for n in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP)},
+    "SIGINT and SIGTERM": sent(signal.SIGINT, signal.SIGTERM),
+    "closed": closed,
+    "moved": moved,
+}
+
+
+@contextlib.contextmanager
+def small_disk(folder: Path) -> Iterator[bool]:
+    """Whether `folder` is a disk of its own, of DISK bytes, within the block."""
+    folder.mkdir(parents=True)
+    line = ["mount", "-t", "tmpfs", "-o", f"size={DISK}", "tmpfs", str(folder)]
+    mounted = os.geteuid() == 0 and subprocess.run(line, capture_output=True).returncode == 0
+    try:
+        yield mounted
+    finally:
+        if mounted:
+            subprocess.run(["umount", str(folder)], check=True)
 
 
 def newest(run: Path) -> int | None:
@@ -112,16 +180,33 @@ def _state(run: Path) -> tuple[int, dict[str, np.ndarray]]:
     return step, arrays
 
 
-def trial(overrides: Sequence[str], whole: Path, run: Path, stops: int, within: float) -> Trial:
-    """One run into `run`, stopped up to `stops` times, each `within` [s] of its start."""
+def trial(
+    overrides: Sequence[str],
+    whole: Path,
+    run: Path,
+    stops: int,
+    within: float,
+    faults: Mapping[str, Fault] = FAULTS,
+) -> Trial:
+    """One run into `run`, stopped `stops` times, each `within` [s] of the start or of training."""
     made = []
     for _ in range(stops):
-        by = random.choice(SIGNALS)
+        by = random.choice([*faults])
         process = start(_or_resume(overrides, run))
+        if random.random() > EARLY:
+            _until(process, "compiled in")
         time.sleep(random.uniform(0, within))
-        made.append(Stop(by.name, stop(process, by), newest(run)))
+        made.append(Stop(by, stop(process, faults[by], run), newest(run)))
     finish(_or_resume(overrides, run))
     return Trial(made, difference(whole, run))
+
+
+def _until(process: subprocess.Popen, words: str) -> None:
+    """Wait until the process prints a line with these words, or ends."""
+    assert process.stdout is not None
+    for printed in process.stdout:
+        if words in printed:
+            return
 
 
 def _or_resume(overrides: Sequence[str], run: Path) -> list[str]:
@@ -142,7 +227,7 @@ def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(description="Stop a run at random moments, and resume it.")
     parser.add_argument("--trials", type=int, default=20)
-    parser.add_argument("--stops", type=int, default=2, help="interruptions of a trial at most")
+    parser.add_argument("--stops", type=int, default=2, help="interruptions of a trial")
     parser.add_argument("--seed", type=int, default=0, help="of the random moments")
     parser.add_argument("--within", type=float, help="[s] the latest moment; default: the run's")
     parser.add_argument("--keep", type=Path, help="folder of all runs; default: one that goes")
@@ -161,12 +246,17 @@ def main() -> int:
         within = args.within or finish([*args.overrides, f"run_dir={folder / 'again'}"])
         print(f"never stopped: {within:.0f} s, last checkpoint {newest(whole)}", flush=True)
         print("trial  result  signal -> exit code at newest checkpoint", flush=True)
-        same = 0
+        same, ends = 0, Counter()
         for number in range(1, args.trials + 1):
-            stops = random.randint(1, args.stops)
-            done = trial(args.overrides, whole, folder / str(number), stops, within)
+            with small_disk(folder / str(number)) as mounted:
+                faults = FAULTS | ({"full": full} if mounted else {})
+                run = folder / str(number) / "run"
+                done = trial(args.overrides, whole, run, args.stops, within, faults)
             print(line(number, done), flush=True)
             same += not done.difference
+            ends.update((each.by, each.code) for each in done.stops)
+    for (by, code), times in sorted(ends.items()):
+        print(f"{times:5}  {by} -> {code}")
     print(f"{same} of {args.trials} the same as the run that was never stopped")
     return int(same < args.trials)
 

@@ -2,11 +2,12 @@
 
 from importlib import import_module
 
+import jax
 import pytest
 from omegaconf import OmegaConf
 from tiny import call, call_train, contents, only_line
 
-from hybrid_rl import config
+from hybrid_rl import config, overrides
 from hybrid_rl.checks import COUNTS
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
@@ -91,7 +92,7 @@ USAGE = [  # overrides of train, words of the line
     ("eval_modes=full", "eval_modes=full: must be a list of full, policy, planner"),
     ("checkpoint_replay=0", "checkpoint_replay=0: must be true or false"),
     ("matmul_precision=low", "matmul_precision=low: choose one of highest, high, default"),
-    ("replay.capacity=1000000000000 total_steps=1000000000000", "learners would take"),
+    ("replay.capacity=1000000000000 total_steps=2147483647", "learners would take"),
     ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
     ("algo=bc demonstrations=null", "demonstrations.file=None: must be a word"),
     ("algo=bc num_demonstrations=0", "num_demonstrations=0: must be 1 or more"),
@@ -152,6 +153,13 @@ USAGE = [  # overrides of train, words of the line
     ("algo=fisher information.floor=0", "information.floor=0: must be above 0"),
     ("algo=disagreement model=gaussian", "objective.model=Gaussian: needs an ensemble"),
     ("resume=nowhere", "resume=nowhere: no run folder there"),
+    ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
+    ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
+    ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
+    (
+        "eval_episodes=100000000000",
+        "eval_episodes=100000000000: their worlds would take ",
+    ),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
 
@@ -217,3 +225,25 @@ def test_a_fault_of_ours_is_a_traceback_without_frames_of_hydra(tmp_path, monkey
 def test_python_has_the_line_of_the_command(given, words):
     with pytest.raises(UsageError, match=f"^{words}"):
         config.load(given)
+
+
+def test_devices_that_are_not_there_are_one_line(monkeypatch, capfd):
+    """JAX says "assert _default_backend is not None" for cuda, and another traceback for tpu."""
+
+    def fail():
+        raise AssertionError
+
+    monkeypatch.setenv("JAX_PLATFORMS", "cuda")
+    with pytest.raises(AssertionError):  # of something else, as JAX has the devices
+        command.guarded(fail)
+    monkeypatch.setattr(jax, "devices", fail)
+    assert call(lambda: command.guarded(fail)) == 2
+    assert only_line(capfd) == (
+        "hybrid_rl: JAX_PLATFORMS=cuda: JAX finds no such device here; unset it, or choose cpu\n"
+    )
+
+
+@pytest.mark.parametrize("value", ["a", "it's", "[8,8]", "a\\", 'a\\"b', "007", "null", "a b", ""])
+def test_a_value_in_quotes_is_read_as_it_was(value):
+    (read,) = overrides.parse([f"run_dir={overrides.quoted(value)}"])
+    assert read.value() == value

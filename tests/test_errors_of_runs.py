@@ -43,6 +43,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
         "env.gravity=1: the env of task pendulum has no keys",
     ),
     ("evaluate policy=cartpole env.reward=up", 2, "env.reward='up': choose one of cos"),
+    ("evaluate run={trained} episodes=100000000000", 2, "00: their worlds would take "),
     ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
     ("evaluate {trained}", 2, "unknown argument; give key=value"),
@@ -82,6 +83,7 @@ RESUMED = [  # overrides given with resume, words of the line
     ("experiment=thesis/fig_3_2_pendulum", "with resume only total_steps can be changed"),
     ("total_steps=100", "has 600; it can be raised, not lowered"),
     ("total_steps=1e9", f"total_steps=1e9: {COUNT}"),
+    ("total_steps=3000000000", "total_steps=3000000000: must be at most 2147483647: "),
 ]
 
 
@@ -145,6 +147,8 @@ def test_a_run_is_never_written_over(nothing_lost, folders, capfd):
     assert call_train(*TINY, "algo=sac", f"run_dir={folders['trained']}") == 2
     printed = only_line(capfd)
     assert "holds a run already; choose another, or resume=" in printed
+    assert call_train(*TINY, "algo=sac", f"run_dir={folders['begun']}") == 2
+    assert only_line(capfd).endswith("holds a run already; choose another\n")  # no checkpoint
 
 
 def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):

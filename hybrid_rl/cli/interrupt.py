@@ -1,18 +1,21 @@
-"""Ctrl-C and SIGTERM, from the start of a command to its end.
+"""Ctrl-C and the signals that end a process, from the start of a command to its end.
 
-A command calls `install` before it imports anything slow. From then on a thread handles both
-signals, also while the main thread is importing, compiling or in compiled code:
+They are SIGTERM, SIGHUP of a terminal that was closed, and SIGUSR1, by which Slurm warns of its
+time limit. A command calls `install` before it imports anything slow. From then on a thread handles
+them, also while the main thread is importing, compiling or in compiled code:
 
-* by default the process ends immediately, with one line on stderr and exit code 130 or 143;
+* by default the process ends immediately, with one line on stderr and exit code 128 + number;
 * within `tidily` the main thread gets KeyboardInterrupt and a few seconds to clean up; a
   second signal ends the process immediately;
-* within `answered` the first signal calls a function; Ctrl-C after it ends the process immediately,
-  and SIGTERM after it has no effect.
+* within `answered` the first signal calls a function; a second Ctrl-C ends the process immediately,
+  and all others after the first have no effect.
 
 Importing this module installs nothing. In a program that never calls `install`, such as a notebook,
-only `answered` has an effect: it sets Python's handlers until its block ends.
+only `answered` has an effect: it sets Python's handlers until its block ends. SIGHUP stays ignored
+where it is, as under nohup.
 """
 
+import atexit
 import os
 import signal
 import sys
@@ -21,7 +24,16 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NoReturn
 
-WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+WORDS = {
+    signal.SIGINT: "interrupted",
+    signal.SIGTERM: "terminated",
+    signal.SIGHUP: "terminated, as its terminal was closed (SIGHUP)",
+    signal.SIGUSR1: "terminated by SIGUSR1",
+}
+GRAPHICS = (  # what mujoco accepts as MUJOCO_GL on any system
+    *("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0"),
+    *("glfw", "glx", "egl", "osmesa", "wgl", "cgl"),
+)
 PATIENCE = 3.0  # [s] for the clean-up after KeyboardInterrupt
 
 Ask = Callable[[int], None]
@@ -35,22 +47,28 @@ class _State:
     patience = PATIENCE
     ask: Ask | None = None
     first: int | None = None  # the first signal in the present state
+    pressed = False  # whether Ctrl-C was among them
     raised: int | None = None  # the signal that became KeyboardInterrupt
     leaving = threading.Lock()  # never released: the process ends in one thread alone
 
 
 def install() -> None:
-    """Handle both signals from now on; call it in the main thread of a command."""
+    """Handle the signals from now on; call it in the main thread of a command."""
     if _State.installed:
         return
     _State.installed = True
+    if os.environ.get("MUJOCO_GL", "").strip().lower() not in GRAPHICS:
+        chosen = os.environ["MUJOCO_GL"]  # importing mujoco would be a traceback
+        print(f"hybrid_rl: MUJOCO_GL={chosen}: unset it, or choose egl or osmesa", file=sys.stderr)
+        sys.exit(2)
     # Importing mujoco loads GLFW by a Python child, which would print a traceback on Ctrl-C.
     os.environ.setdefault("MUJOCO_GL", "disable")  # envs/mujoco/offscreen chooses its own backend
     heard, written = os.pipe()
     os.set_blocking(written, False)
     signal.set_wakeup_fd(written, warn_on_full_buffer=False)
-    for number in WORDS:
+    for number in _heard():
         signal.signal(number, _in_the_main_thread)
+    atexit.register(_deaf)
     sys.unraisablehook = _unraisable
     threading.Thread(target=_listen, args=(heard,), name="signals", daemon=True).start()
 
@@ -61,7 +79,8 @@ def tidily(patience: float = PATIENCE) -> Iterator[None]:
 
     patience: [s] for its clean-up, after which the process ends.
     """
-    _State.tidily, _State.first, _State.patience = True, None, patience
+    _State.tidily, _State.patience = True, patience
+    _State.first, _State.pressed = None, False
     try:
         yield
     finally:
@@ -75,13 +94,14 @@ def answered(ask: Ask) -> Iterator[None]:
     Without `install` a second Ctrl-C raises KeyboardInterrupt.
     """
     if _State.installed:
-        _State.first, _State.ask = None, ask
+        _State.first, _State.pressed, _State.ask = None, False, ask
         try:
             yield
         finally:
             _State.ask = None
     elif threading.current_thread() is threading.main_thread():
-        old = {number: signal.signal(number, _asking(ask)) for number in WORDS}
+        handler = _asking(ask)
+        old = {number: signal.signal(number, handler) for number in _heard()}
         try:
             yield
         finally:
@@ -110,15 +130,31 @@ def installed() -> bool:
     return _State.installed
 
 
+def _heard() -> list[int]:
+    """The signals to handle: SIGHUP not where it is ignored."""
+    return [n for n in WORDS if n != signal.SIGHUP or signal.getsignal(n) != signal.SIG_IGN]
+
+
+def _deaf() -> None:
+    """Ignore the signals while Python ends, which would restore their default action."""
+    for number in _heard():
+        signal.signal(number, signal.SIG_IGN)
+
+
+def cause() -> int | None:
+    """The signal that became KeyboardInterrupt."""
+    return _State.raised
+
+
 def _asking(ask: Ask) -> Callable[[int, Any], None]:
     """Python's handler for a program without `install`."""
-    first: list[int] = []
+    heard: list[int] = []
 
     def handler(number: int, frame: Any) -> None:
-        if first and number == signal.SIGINT:
+        heard.append(number)
+        if heard.count(signal.SIGINT) > 1:
             raise KeyboardInterrupt
-        if not first:
-            first.append(number)
+        if len(heard) == 1:
             threading.Thread(target=ask, args=(number,)).start()
 
     return handler
@@ -140,10 +176,11 @@ def _listen(heard: int) -> None:
 
 def _act(number: int) -> None:
     first, _State.first = _State.first, _State.first or number
+    pressed, _State.pressed = _State.pressed, _State.pressed or number == signal.SIGINT
     if _State.ask is not None:
         if first is None:
             _State.ask(number)
-        elif number == signal.SIGINT:
+        elif pressed and number == signal.SIGINT:
             leave(number)
     elif _State.tidily and first is None:
         timer = threading.Timer(_State.patience, leave, (number,))

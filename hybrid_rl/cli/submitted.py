@@ -3,6 +3,7 @@
 import math
 import os
 import shutil
+import signal
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -57,6 +58,8 @@ def watched(results: dict[int, Result]) -> Iterator[None]:
             try:
                 _wait(jobs, results)
             except BaseException:
+                if interrupt.cause() == signal.SIGHUP:  # jobs elsewhere need no terminal
+                    raise
                 for job in jobs.values():
                     job.cancel(check=False)
                 _wait(jobs, results, PATIENCE)

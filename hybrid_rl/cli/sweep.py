@@ -23,7 +23,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, require_slurm, watched
 from hybrid_rl.composition import check_task
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import of_job, refuse_new_keys, refuse_unused
+from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
 from hybrid_rl.run.folder import made
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
@@ -171,7 +171,7 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             folder = Path(str(config.run_dir), str(number) if same else "")
         if (folder / "config.yaml").exists():
             raise UsageError(f"run_dir={folder}: holds a run already; choose another")
-        complete.append([*mine, f"run_dir='{folder}'"])
+        complete.append([*mine, f"run_dir={quoted(str(folder))}"])
     return complete
 
 
@@ -191,9 +191,9 @@ def _report(
     rows = []
     for number, (label, overrides) in enumerate(zip(labels, jobs, strict=True)):
         given = [text for text in overrides if text.startswith(("run_dir=", "resume="))]
-        run_dir = "".join(given[:1]).partition("=")[2].strip("'")
+        run_dir = "".join(str(each.value()) for each in parse(given[:1]))
         result = results.get(number, {"code": None, "line": "not run"})
-        if result["code"] is None and run_dir:
+        if result["code"] != 0 and run_dir:
             with suppress(OSError):  # it holds something, or is not there
                 Path(run_dir).rmdir()
         rows.append({"job": number, "overrides": label, "run_dir": run_dir, **result})

@@ -8,13 +8,15 @@
 A checkpoint is written to FOLDER/.STEP.tmp, forced to the disk, then renamed, so every folder
 whose name is a number is complete. An older checkpoint of that step is FOLDER/.STEP.replaced.tmp
 between the two renames, and counts as STEP until there is a new one. A checkpoint is renamed before
-it is deleted, so another process reads all of it or none, and then takes a newer one. Leaves are
+it is deleted, so another process reads all of it or none, and then takes a newer one. What cannot
+be deleted stays, and other names get a number: .STEP.1.tmp. Leaves are
 stored flat, by their path in the state, so the state may consist of any containers, and a part of
 it (parameters without replay memory, say) can be restored alone.
 """
 
 import contextlib
 import json
+import os
 import re
 import shutil
 from collections.abc import Collection
@@ -29,7 +31,7 @@ from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints
 ATTEMPTS = 100  # to read a folder whose checkpoints another process replaces
-NAME = re.compile(r"(\d+)|\.(\d+)\.replaced\.tmp")  # of a finished checkpoint
+NAME = re.compile(r"(\d+)|\.(\d+)\.replaced(?:\.\d+)?\.tmp")  # of a finished checkpoint
 
 
 def nbytes(state: PyTree) -> int:
@@ -46,7 +48,7 @@ def _finished(folder: Path) -> dict[int, Path]:
     """The finished checkpoints in `folder` by step."""
     checkpoints: dict[int, Path] = {}
     for path in folder.iterdir() if folder.is_dir() else ():
-        if match := NAME.fullmatch(path.name):
+        if (match := NAME.fullmatch(path.name)) and path.is_dir():
             step = int(match[1] or match[2])
             if match[1] or step not in checkpoints:  # a replaced one counts if there is no other
                 checkpoints[step] = path
@@ -82,20 +84,25 @@ def save(
     texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
     draft = folder / f".{step}.tmp"
     try:
+        folder.mkdir(exist_ok=True)  # not its parents: a run folder that is gone stays gone
         _recover(folder)
-        draft.mkdir(parents=True)
+        draft = _free(folder, str(step))
+        draft.mkdir()
+        made = draft.stat()
         _fits(folder, sum(array.nbytes for array in arrays.values()))
         for name, text in texts.items():
             (draft / name).write_text(text + "\n", encoding="utf-8")
-        leaves.write(draft.resolve() / "state", arrays)
+        leaves.write(draft, arrays)
+        if not os.path.samestat(draft.stat(), made):  # TensorStore makes folders that are gone
+            raise OSError("its folder was moved or deleted")
         integrity.write_manifest(draft)
         path = _rename(draft, folder / str(step))
     except Exception as problem:
         line = _refusal(folder, step, problem)
-        shutil.rmtree(draft, ignore_errors=True)
+        _discard(draft)
         raise CheckpointError(line) from problem
     except BaseException:  # Ctrl-C and the like
-        shutil.rmtree(draft, ignore_errors=True)
+        _discard(draft)
         raise
     _prune(folder, step, keep, known)
     return path
@@ -170,15 +177,34 @@ def _recover(folder: Path) -> None:
     """Rename a replaced checkpoint back if a kill left no newer one; delete old drafts."""
     for step, path in _finished(folder).items():
         if path.name != str(step):
-            path.rename(folder / str(step))
-    for stale in folder.glob(".*.tmp"):
-        shutil.rmtree(stale)
+            _rename(path, folder / str(step))
+    for stale in leftovers(folder):
+        shutil.rmtree(stale, ignore_errors=True)
+
+
+def leftovers(folder: Path) -> list[Path]:
+    """What neither a checkpoint nor its writer left in `folder` but could not be deleted."""
+    return sorted(folder.glob(".*.tmp"))
+
+
+def _free(folder: Path, stem: str) -> Path:
+    """A path FOLDER/.STEM.tmp, or FOLDER/.STEM.NUMBER.tmp, at which nothing is."""
+    names = (f".{stem}{end}.tmp" for end in ("", *(f".{number}" for number in range(1, 10_000))))
+    return next(path for path in map(folder.joinpath, names) if not os.path.lexists(path))
+
+
+def _discard(draft: Path) -> None:
+    """Delete a draft, and its empty parents, which TensorStore may have made."""
+    shutil.rmtree(draft, ignore_errors=True)
+    with contextlib.suppress(OSError):
+        draft.parent.rmdir()
+        draft.parent.parent.rmdir()
 
 
 def _rename(draft: Path, path: Path) -> Path:
     """Give a complete draft its name, which an older checkpoint loses."""
-    if path.exists():
-        path.rename(path.with_name(f".{path.name}.replaced.tmp"))
+    if os.path.lexists(path):
+        path.rename(_free(path.parent, f"{path.name}.replaced"))
     draft.rename(path)
     integrity.sync(path.parent)
     return path
@@ -190,8 +216,8 @@ def _prune(folder: Path, newest: int, keep: int, known: Collection[int] | None) 
     sound = [s for s in ours if s <= newest and not integrity.verify(folder / str(s), False)]
     for step in set(ours) - set(sound[-keep:]):
         with contextlib.suppress(OSError):
-            (folder / str(step)).rename(folder / f".{step}.pruned.tmp")
-    for path in folder.glob(".*.tmp"):
+            (folder / str(step)).rename(_free(folder, f"{step}.pruned"))
+    for path in leftovers(folder):
         shutil.rmtree(path, ignore_errors=True)
 
 

@@ -7,10 +7,11 @@ have, is written once and referenced by a YAML anchor.
 """
 
 import json
+import os
 import re
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
 from pkgutil import resolve_name
@@ -35,16 +36,42 @@ FIRST = "0.2"  # version that writes its number to config.yaml
 def fresh(config: DictConfig) -> Iterator[Path]:
     """A new run folder for `config`, locked by this process until the end of the block.
 
+    If the block raises before anything is trained, what it wrote there is deleted again, and the
+    folder too, if it was made here.
+
     Raises:
         UsageError: if it holds a run, another process holds it, or it cannot be written to.
     """
     folder = made(config) if config.run_dir is None else Path(str(config.run_dir))
-    with locked(writable(folder, "run_dir"), "run_dir"):
-        if (folder / "config.yaml").exists() or checkpoint.steps(folder / "checkpoints"):
-            raise UsageError(
-                f"run_dir={folder}: holds a run already; choose another, or resume={folder}"
-            )
-        yield folder
+    new = config.run_dir is None or not folder.exists()
+    try:
+        with locked(writable(folder, "run_dir"), "run_dir"), _cleared(folder):
+            saved = checkpoint.steps(folder / "checkpoints")
+            if saved or (folder / "config.yaml").exists():
+                line = f"run_dir={folder}: holds a run already; choose another"
+                raise UsageError(f"{line}, or resume={folder}" if saved else line)
+            yield folder
+    except BaseException:
+        with suppress(OSError):  # it holds something
+            if new:
+                folder.rmdir()
+        raise
+
+
+@contextmanager
+def _cleared(folder: Path) -> Iterator[None]:
+    """If the block raises before it has written a row or a checkpoint, delete what it wrote."""
+    before, then = {path.name for path in folder.iterdir()}, folder.stat()
+    try:
+        yield
+    except BaseException:
+        rows = folder / "metrics.jsonl"
+        trained = rows.exists() and rows.stat().st_size > 0
+        trained = trained or bool(checkpoint.steps(folder / "checkpoints"))
+        if not trained and folder.exists() and os.path.samestat(folder.stat(), then):
+            for name in {"config.yaml", "metrics.jsonl", "metrics.csv"} - before:
+                (folder / name).unlink(missing_ok=True)
+        raise
 
 
 def made(config: DictConfig, suffix: str = "") -> Path:

@@ -8,6 +8,7 @@ first difference. A folder without a manifest was never completed.
 import hashlib
 import json
 import os
+import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -43,6 +44,8 @@ def verify(folder: Path, contents: bool = True) -> str | None:
         return f"its {MANIFEST} cannot be read ({type(problem).__name__})"
     for name, size, sha256 in files:
         try:
+            if not _plain(folder, name):
+                return f"its {MANIFEST} names {name!r}, which is no file below it"
             if (size_now := (folder / name).stat().st_size) != size:
                 return f"{name} has {size_now} bytes instead of {size}"
             if contents and digest(folder / name) != sha256:
@@ -50,6 +53,14 @@ def verify(folder: Path, contents: bool = True) -> str | None:
         except OSError as problem:
             return f"{name} cannot be read ({problem.strerror})"
     return None
+
+
+def _plain(folder: Path, name: str) -> bool:
+    """Whether `name` lies below `folder`, also behind links, and is a plain file if it is there."""
+    if "\0" in name:
+        return False
+    path = Path(os.path.realpath(folder / name))
+    return path.is_relative_to(os.path.realpath(folder)) and (path.is_file() or not path.exists())
 
 
 def digest(path: Path) -> str:
@@ -69,10 +80,11 @@ def sync(path: Path) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """Replace the text of a file; a reader sees the old or the new text, never a part."""
-    draft = path.with_name(f".{path.name}.tmp")
+    draft = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
     with naming(path):
         try:
-            draft.write_text(text, encoding="utf-8")
+            with draft.open("x", encoding="utf-8") as file:  # never what lies there, nor a link
+                file.write(text)
             sync(draft)
             draft.replace(path)
         except OSError:

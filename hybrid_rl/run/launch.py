@@ -11,7 +11,7 @@ import jax
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
-from hybrid_rl.checks import check, whole
+from hybrid_rl.checks import check, countable, whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, provenance
@@ -20,6 +20,7 @@ from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.results import flat
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop
@@ -52,7 +53,7 @@ def train(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dic
         return _resume(config, given, handled)
     run = configuration.build(config)
     prepare(config)
-    size = memory.replay(run)
+    size = _fits(run)
     loggers.check(config.get("logger"))
     with folder.fresh(config) as run_dir:
         return _run(run, run_dir, size, handled)
@@ -69,7 +70,15 @@ def _resume(config: DictConfig, given: Mapping[str, str], handled: Handler) -> d
         with folder.blamed(run_dir):
             run = configuration.build(config)
             prepare(config)
-        return _run(run, run_dir, memory.replay(run), handled)
+        _refuse_edits(config, run_dir)
+        return _run(run, run_dir, _fits(run), handled)
+
+
+def _fits(run: Run) -> str:
+    """A line about the replay memory; raise UsageError if it, or the evaluations, do not fit."""
+    number, modes = run.config.eval_episodes, run.controllers.values()
+    memory.episodes("eval_episodes", number, len(run.seeds), run.agent.episode, modes)
+    return memory.replay(run)
 
 
 def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]:
@@ -86,7 +95,8 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]
         progress.note("\n".join([f"{label}: run folder {run_dir}", size, *run.notes]))
         loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
         duration = Duration(jax.default_backend() == "cpu", instead(config))
-        session = Session(loop, run.controllers, _schedule(config), log, progress, duration)
+        plan = _schedule(config), log, progress, duration
+        session = Session(loop, run.controllers, *plan, _written(config))
         if config.resume is None:
             session.begin()
         else:
@@ -131,8 +141,32 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
                 "raised, not lowered"
             )
         old.total_steps = steps
+        countable(old)
     old.resume = config.resume
     return old
+
+
+def _written(config: DictConfig) -> dict[str, Any]:
+    """What config.yaml holds, by full keys."""
+    values: Any = OmegaConf.to_container(config)
+    return flat({key: value for key, value in values.items() if key not in ("expert", "version")})
+
+
+def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
+    """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
+    now = _written(config)
+    then = checkpoint.meta(run_dir / "checkpoints").get("settings") or now  # of an older version
+    changed: dict[str, str] = {}  # a part occurs several times: its shortest key names the change
+    for key in sorted({*now, *then}, key=lambda key: (key.count("."), key)):
+        before, after = then.get(key, "absent"), now.get(key, "absent")
+        if before != after and key not in (*OF_A_SESSION, "compile_cache"):
+            line = f"was {before} and is {after}"
+            changed.setdefault(f"{key.rpartition('.')[2]} {line}", f"{key} {line}")
+    if changed:
+        raise UsageError(
+            f"{run_dir / 'config.yaml'}: {', '.join(changed.values())}; put it back: with resume "
+            "only total_steps can be changed"
+        )
 
 
 def _same(old: DictConfig, config: DictConfig) -> bool:

@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from urllib.parse import quote
 
 import jax
@@ -21,6 +22,7 @@ from hybrid_rl.errors import MisfitError
 from hybrid_rl.types import PyTree
 
 AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write
+WRITTEN = "manifest.ocdbt"  # by Orbax as the last file: without it nothing can be read
 
 
 def flatten(state: PyTree) -> tuple[dict[str, np.ndarray], dict[str, dict]]:
@@ -62,18 +64,37 @@ def _quiet() -> Iterator[None]:
         sys.unraisablehook = hook
 
 
+@contextlib.contextmanager
+def _plain(path: Path) -> Iterator[Path]:
+    r"""A path to the folder `path` that Orbax takes literally: it reads [...] and \ as patterns."""
+    path = path.resolve()
+    if not set("[]*?\\") & set(str(path)):
+        yield path
+        return
+    with TemporaryDirectory() as private:
+        link = Path(private).resolve() / "checkpoint"
+        link.symlink_to(path, target_is_directory=True)
+        yield link
+
+
 def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
-    """Orbax, uncompressed: three times as fast as compressed, and random bits do not shrink."""
+    """The folder `path`/state by Orbax, uncompressed: three times as fast, as bits do not shrink.
+
+    Raises:
+        OSError: if Orbax left it incomplete.
+    """
     import orbax.checkpoint as ocp  # 1 s
 
     filled = {name: leaf for name, leaf in leaves.items() if leaf.size}  # it refuses empty ones
     handler = ocp.PyTreeCheckpointHandler(use_compression=False)
-    with _quiet(), ocp.Checkpointer(handler) as writer:
+    with _quiet(), _plain(path) as plain, ocp.Checkpointer(handler) as writer:
         try:
-            writer.save(path, ocp.args.PyTreeSave(filled))
+            writer.save(plain / "state", ocp.args.PyTreeSave(filled))
         except Exception:
             time.sleep(AFTERMATH)
             raise
+    if filled and not (path / "state" / WRITTEN).is_file():
+        raise OSError(f"Orbax left no state/{WRITTEN}")
 
 
 def read(path: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
@@ -87,9 +108,9 @@ def read(path: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
     filled = {name: 0 for name in wanted if 0 not in kinds[name]["shape"]}
     host = dict.fromkeys(filled, ocp.RestoreArgs(restore_type=np.ndarray))
     args = ocp.args.PyTreeRestore(item=filled, restore_args=host, partial_restore=True)
-    with _quiet(), ocp.Checkpointer(ocp.PyTreeCheckpointHandler()) as reader:
+    with _quiet(), _plain(path) as plain, ocp.Checkpointer(ocp.PyTreeCheckpointHandler()) as reader:
         # Orbax refuses an empty selection, which a method that learns nothing has.
-        arrays = reader.restore(path.resolve() / "state", args) if filled else {}
+        arrays = reader.restore(plain / "state", args) if filled else {}
     state = []
     for name, leaf in wanted.items():
         array = jax.numpy.array(arrays.pop(name) if name in arrays else np.zeros(**_empty(leaf)))

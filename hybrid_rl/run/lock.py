@@ -37,7 +37,8 @@ def locked(folder: Path, key: str) -> Iterator[Path]:
         yield folder
     finally:
         with suppress(OSError):
-            path.unlink()
+            if os.path.samestat(os.fstat(handle), path.stat()):  # the folder may have been moved
+                path.unlink()
         os.close(handle)
 
 
@@ -45,9 +46,10 @@ def _open(path: Path, key: str) -> int:
     """A handle of the lock file at `path`, locked."""
     while True:
         try:
-            handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o644)
+            handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
         except OSError as error:
-            line = f"{key}={path.parent}: cannot be written to ({error.strerror})"
+            why = f"{LOCK} is a link" if path.is_symlink() else error.strerror
+            line = f"{key}={path.parent}: cannot be written to ({why})"
             raise UsageError(line) from error
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -64,6 +66,7 @@ def _open(path: Path, key: str) -> int:
         except OSError as error:
             if error.errno not in NO_LOCKS:
                 os.close(handle)
+                error.filename = str(path)
                 raise
             print(f"{path.parent}: this disk has no locks; let no other process write there")
             return handle

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
+from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.loggers import Logger, scalars
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RunLog:
-    """Writes rows of numbers to a run folder.
+    """Writes rows of numbers to a run folder, which exists.
 
     tensorboard/ has one event file for a single learner, and one subfolder per seed for several,
     so that a chart overlays the seeds. loggers: get the rows, too.
@@ -32,7 +33,6 @@ class RunLog:
         self.run_dir = run_dir
         self.loggers = loggers
         self.seeds = tuple(seeds)
-        run_dir.mkdir(parents=True, exist_ok=True)
         self._rows = (run_dir / "metrics.jsonl").open("ab")
         self._boards: dict[int, Board] = {}  # by seed
         self._purge_step: int | None = None
@@ -52,7 +52,11 @@ class RunLog:
         self._rows.close()
 
     def write(self, rows: list[dict[str, Any]]) -> None:
-        """Append rows {"step", "seed", "wall_s", name: number or word, ...}."""
+        """Append rows {"step", "seed", "wall_s", name: number or word, ...}.
+
+        Raises:
+            CheckpointError: before the first row, as `flush`.
+        """
         for row in rows:
             plain = {n: v if isinstance(v, str) else number(v) for n, v in row.items()}
             plain["wall_s"] = round(float(row["wall_s"]), 3)
@@ -63,12 +67,26 @@ class RunLog:
         self._rows.flush()
 
     def flush(self) -> int:
-        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`."""
+        """Force all rows to the disk; returns the size of metrics.jsonl [bytes], for `rewind`.
+
+        Raises:
+            CheckpointError: if the folder is no longer where it was.
+        """
+        self._check_folder()
         for each in (*self._boards.values(), *self.loggers):
             each.flush()
         self._rows.flush()
         os.fsync(self._rows.fileno())
         return self._rows.tell()
+
+    def _check_folder(self) -> None:
+        """Raise CheckpointError if metrics.jsonl is not the file that is open here."""
+        path, ours = self.run_dir / "metrics.jsonl", os.fstat(self._rows.fileno())
+        if not path.exists() or not os.path.samestat(path.stat(), ours):
+            raise CheckpointError(
+                f"{path}: moved, deleted or replaced while the run wrote it; the run has stopped, "
+                "resume it where its folder is now"
+            )
 
     def rewind(self, offset: int, step: int) -> list[str]:
         """Delete what was written after the checkpoint at `step`; call it before `write`.
@@ -99,6 +117,7 @@ class RunLog:
         if seed not in self._boards:
             from hybrid_rl.run.board import Board  # 0.2 s
 
+            self._check_folder()  # a folder would be made again where it was
             several = (f"seed_{seed}",) if len(self.seeds) > 1 else ()
             folder = self.run_dir.joinpath("tensorboard", *several)
             self._boards[seed] = Board(folder, self._purge_step)

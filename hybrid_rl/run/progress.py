@@ -1,11 +1,12 @@
 """Progress of a run on the terminal: a live bar, or plain lines in a file."""
 
+import os
 import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import TracebackType
 from typing import Self
 
@@ -26,6 +27,27 @@ SHOWN = {  # scalar -> its format
     "eval/success": "success {:.0%}",
     "perf/env_steps_per_s": "{} decisions/s",
 }
+
+
+def say(text: str) -> None:
+    """Print a line; it vanishes where the pipe or the terminal was closed.
+
+    That ends no run, as its records are in its folder.
+    """
+    with shown():
+        print(text, flush=True)
+
+
+@contextmanager
+def shown() -> Iterator[None]:
+    """Within, output that cannot be written is dropped, and so is all after it."""
+    try:
+        yield
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        with suppress(OSError):  # it may be no file, as in a notebook
+            os.dup2(nowhere, sys.stdout.fileno())  # for what Python's buffer still holds, too
+        os.close(nowhere)
 
 
 class Progress:
@@ -82,7 +104,8 @@ class Progress:
     ) -> None:
         self._ended.set()
         if self._live is not None:
-            self._live.stop()
+            with shown():
+                self._live.stop()
             self._live = None
         elif self._pending:
             self._print()
@@ -119,10 +142,11 @@ class Progress:
     def note(self, text: str) -> None:
         """Print a line above the display."""
         if self._live is not None:
-            self._live.console.print(text, markup=False, highlight=False)
+            with shown():
+                self._live.console.print(text, markup=False, highlight=False)
         else:
             with self._lock:
-                print(text, flush=True)
+                say(text)
 
     def seconds_left(self) -> float | None:
         """Time left at the present speed [s]; None before the first update and at the end."""
@@ -142,7 +166,7 @@ class Progress:
         with self._lock:
             share = self.step / self.total if self.total else 1.0
             count = f"{self.step:,}/{self.total:,} ({share:.0%})"
-            print("  ".join([self.label, count, *self._numbers(False)]).strip(), flush=True)
+            say("  ".join([self.label, count, *self._numbers(False)]).strip())
             self._printed, self._pending = time.monotonic(), False
 
     def _numbers(self, old: bool) -> list[str]:

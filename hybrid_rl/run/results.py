@@ -85,7 +85,7 @@ class RunFolder:
             raise UsageError(f"{file}{line}: is not YAML") from error
         if not isinstance(values, dict):
             raise UsageError(f"{file}: is empty, or no group of keys")
-        return _flat(values)
+        return flat(values)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -159,9 +159,11 @@ def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:
 
 
 def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
-    """Run folders with metrics that match a glob, or that lie in the given folders."""
+    """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob."""
     if isinstance(runs, (str, Path)):
-        matches = [Path(match) for match in glob.glob(str(Path(runs).expanduser()), recursive=True)]
+        path = Path(runs).expanduser()
+        matched = [path] if path.exists() else glob.glob(str(path), recursive=True)
+        matches = [Path(match) for match in matched]
     else:
         matches = [Path(run) for run in runs]
     files = sorted({path for match in matches for path in match.glob("**/metrics.jsonl")})
@@ -244,12 +246,12 @@ def _text(file: Path) -> str:
         raise UsageError(f"{file}: cannot be read ({error.strerror})") from error
 
 
-def _flat(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+def flat(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     """The values of a tree by their full keys."""
     values: dict[str, Any] = {}
     for key, value in node.items():
         if isinstance(value, Mapping) and value:
-            values |= _flat(value, f"{where}{key}.")
+            values |= flat(value, f"{where}{key}.")
         else:
             values[f"{where}{key}"] = value
     return values

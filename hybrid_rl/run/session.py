@@ -43,6 +43,7 @@ class Session:
     log: RunLog
     progress: Progress
     duration: Duration
+    settings: Mapping[str, Any]  # config.yaml by full keys
     state: Any = None  # AgentState [S, ...], once begun
     step: int = 0  # decisions of each learner
     before_s: float = 0.0  # [s] in earlier sessions
@@ -62,7 +63,7 @@ class Session:
     def __post_init__(self) -> None:
         """Create the store and the record of diverged learners."""
         folder = self.log.run_dir / "checkpoints"
-        self.store = Store(folder, self.loop, self.schedule.checkpoint_replay)
+        self.store = Store(folder, self.loop, self.schedule.checkpoint_replay, self.settings)
         self.diverged = Diverged(self.loop, self.store)
 
     @property
@@ -92,10 +93,7 @@ class Session:
         self.step = self.progress.step = meta["step"]
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
-            notes = [
-                *notes,
-                "no replay memory in checkpoints: it continues, but not bit for bit",
-            ]
+            notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
         self.before_s = meta["wall_s"]
         self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
         self.final_eval = meta.get("final_eval", [None for _ in self.loop.seeds])
@@ -274,7 +272,9 @@ class Session:
             "diverged": list(self.diverged.ends.values()),
         }
         with self.progress.doing("saving"):
-            self.store.save(self.step, self.state, self.gathered, meta)
+            notes = self.store.save(self.step, self.state, self.gathered, meta)
+        for note in notes:
+            self.progress.note(note)
         self.saved = self.step, self.unevaluated
 
     def _write(self, new: list[rows.Row]) -> None:

@@ -1,5 +1,6 @@
 """The checkpoints of a run: the learners' state, and the metrics since the last row."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -15,16 +16,21 @@ from hybrid_rl.training.loop import Loop
 
 @dataclass
 class Store:
-    """Checkpoints of `loop` in `folder`; replay: whether they hold the replay memory."""
+    """Checkpoints of `loop` in `folder`; replay: whether they hold the replay memory.
+
+    settings: config.yaml by full keys, which each checkpoint repeats.
+    """
 
     folder: Path
     loop: Loop
     replay: bool
+    settings: Mapping[str, Any]
     newest: int | None = None  # step of the checkpoint that was written or read last
     known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
+    noted: set[Path] = field(default_factory=set)  # leftovers that a note has named
 
-    def save(self, step: int, state: Any, gathered: Gathered, meta: dict) -> None:
-        """Write a checkpoint of the run.
+    def save(self, step: int, state: Any, gathered: Gathered, meta: dict) -> list[str]:
+        """Write a checkpoint of the run; a note for each new leftover that cannot be deleted.
 
         Raises:
             CheckpointError: if it could not be written.
@@ -35,11 +41,14 @@ class Store:
         leaves |= {} if array is None else {"gathered": array}
         shape = [] if array is None else list(array.shape)
         here = {"step": step, "seeds": list(self.loop.seeds)}
-        here |= {"capacity": self.loop.agent.replay.capacity}
+        here |= {"capacity": self.loop.agent.replay.capacity, "settings": dict(self.settings)}
         here |= {"gathered": {"names": names, "shape": shape}}
         checkpoint.save(self.folder, step, leaves, here | meta, known=self.known)
         self.known.add(step)
         self.newest = step
+        stuck = [path for path in checkpoint.leftovers(self.folder) if path not in self.noted]
+        self.noted.update(stuck)
+        return [f"{path}: cannot be deleted, and is left there" for path in stuck]
 
     def restore(self) -> tuple[Any, Gathered, dict, list[str]]:
         """(state, metrics since the last row, meta, notes) of the newest sound checkpoint.

@@ -14,7 +14,12 @@ from tiny import TINY
 from hybrid_rl.cli import interrupt
 
 ROOT = Path(__file__).parents[2]
-WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+WORDS = {
+    signal.SIGINT: "interrupted",
+    signal.SIGTERM: "terminated",
+    signal.SIGHUP: "terminated, as its terminal was closed (SIGHUP)",
+    signal.SIGUSR1: "terminated by SIGUSR1",
+}
 BEGIN = """
 import signal, sys, time
 from hybrid_rl.cli import interrupt
@@ -101,14 +106,61 @@ def test_a_run_is_asked_once_and_a_second_ctrl_c_ends_it():
     ended(process, signal.SIGINT)
 
 
-def test_after_sigterm_a_second_one_changes_nothing():
+@pytest.mark.parametrize("second", WORDS)
+@pytest.mark.parametrize("first", [signal.SIGTERM, signal.SIGHUP])
+def test_after_sigterm_one_more_signal_of_any_kind_changes_nothing(first, second):
     code = (
         "with interrupt.answered(say):\n    say('ready')\n    sys.stdin.readline()\n"
         "    time.sleep(0.2)\n    say('saved')\n"
     )
-    process = press(code, signal.SIGTERM, signal.SIGTERM)
+    process = press(code, first, second)
     assert process.communicate("\n")[0] == "saved\n"
     assert process.returncode == 0
+
+
+def test_signals_that_come_together_ask_once():
+    code = (
+        "with interrupt.answered(say):\n    say('ready')\n    time.sleep(0.3)\n    say('saved')\n"
+    )
+    process = press(code, signal.SIGSTOP)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCONT):
+        process.send_signal(number)
+    asked, end = process.communicate()[0].split()
+    assert (int(asked) in WORDS, end, process.returncode) == (True, "saved", 0)
+
+
+def test_a_process_under_nohup_is_deaf_to_its_terminal():
+    code = BEGIN.replace(
+        "interrupt.install", "signal.signal(signal.SIGHUP, signal.SIG_IGN)\ninterrupt.install"
+    )
+    code += "with interrupt.answered(say):\n    signal.raise_signal(signal.SIGHUP)\n"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_a_signal_while_python_ends_changes_no_exit_code():
+    code = (
+        BEGIN
+        + """
+import atexit
+class Late:
+    def __del__(self): signal.raise_signal(signal.SIGTERM)
+late = Late()
+sys.exit(130)
+"""
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (130, "")
+
+
+def test_an_unknown_backend_of_mujoco_is_one_line():
+    """Before mujoco is imported, which would be a traceback."""
+    given = os.environ | {"MUJOCO_GL": "foo"}
+    done = subprocess.run(
+        [sys.executable, "-c", BEGIN], cwd=ROOT, capture_output=True, text=True, env=given
+    )
+    line = "hybrid_rl: MUJOCO_GL=foo: unset it, or choose egl or osmesa\n"
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", line)
 
 
 @pytest.mark.parametrize("number", WORDS)

@@ -70,14 +70,14 @@ def test_a_job_that_cannot_run_is_found_before_the_first(tmp_path, capfd, given,
 
 
 def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):
-    line = ["-m", *SHORT, "seed=0,1", "run_dir=X"]
+    line = ["-m", *SHORT, "seed=0,1", 'run_dir="it\'s"']
     assert call_train(*line) == 0
     for number in (0, 1):
-        summary = json.loads((tmp_path / "X" / str(number) / "summary.json").read_text())
+        summary = json.loads((tmp_path / "it's" / str(number) / "summary.json").read_text())
         assert summary["seeds"] == [number]
     capfd.readouterr()
     assert call_train(*line) == 2
-    assert "run_dir=X/0: holds a run already" in capfd.readouterr().err
+    assert "run_dir=it's/0: holds a run already" in capfd.readouterr().err
 
 
 def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path, capfd):

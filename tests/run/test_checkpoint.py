@@ -1,6 +1,8 @@
 """A checkpoint is complete or absent, and is restored bit for bit."""
 
+import json
 import shutil
+from contextlib import nullcontext
 
 import jax
 import jax.numpy as jnp
@@ -8,7 +10,7 @@ import pytest
 from states import assert_same, largest_file, state_at
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.run import checkpoint
+from hybrid_rl.run import checkpoint, integrity, leaves
 
 
 @pytest.fixture
@@ -159,3 +161,34 @@ def test_size_is_known_beforehand(tmp_path):
     written = sum(path.stat().st_size for path in saved.rglob("*") if path.is_file())
     assert checkpoint.nbytes(state) == 400_008
     assert 400_000 < written < 420_000
+
+
+@pytest.mark.parametrize("name", ["hidden=[8,8]", "back\\slash", "*", "a b?"])
+def test_a_folder_of_any_name_keeps_its_checkpoints(tmp_path, name):
+    folder = tmp_path / name
+    checkpoint.save(folder, 7, state_at(7), {})
+    checkpoint.save(folder, 8, state_at(8), {})
+    step, result, _, notes = checkpoint.restore(folder, state_at(0))
+    assert (step, notes) == (8, [])
+    assert_same(result, state_at(8))
+
+
+def test_a_checkpoint_without_what_orbax_must_write_is_refused(three, monkeypatch):
+    """Its merge of files finds none in a folder whose name it takes as a pattern."""
+    monkeypatch.setattr(leaves, "_plain", nullcontext)
+    with pytest.raises(CheckpointError, match=r"Orbax left no state/manifest\.ocdbt; there is no"):
+        checkpoint.save(three / "[8]", 7, state_at(7), {})
+    assert checkpoint.steps(three) == [20, 30]
+    assert not (three / "[8]").exists()
+
+
+def test_a_manifest_names_files_of_its_folder_alone(three):
+    """/dev/zero would be read for ever."""
+    folder = three / "30"
+    (folder / "link").symlink_to("/dev/zero")
+    for name in ("../" * 20 + "dev/zero", "/dev/zero", "link", "a\0b"):
+        listed = {name: {"bytes": 0, "sha256": ""}}
+        (folder / "manifest.json").write_text(json.dumps({"files": listed}))
+        flaw = f"its manifest.json names {name!r}, which is no file below it"
+        assert integrity.verify(folder) == flaw
+    assert checkpoint.restore(three, state_at(0))[0] == 20

@@ -144,7 +144,7 @@ def test_a_write_that_fails_halfway_leaves_what_was_there(three, capfd):
 
 def test_a_full_disk_is_one_clear_line(three, monkeypatch):
     def full(path, leaves):
-        path.mkdir()
+        (path / "state").mkdir()
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(leaves, "write", full)
@@ -183,3 +183,57 @@ def test_it_says_nothing_on_the_terminal(tmp_path):
     command = [sys.executable, "-c", code, str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_what_cannot_be_deleted_is_passed_over(three, monkeypatch):
+    """A mount, say, or what another process holds open on a network disk."""
+    stuck = {".40.tmp", ".20.pruned.tmp"}
+    (three / ".40.tmp").mkdir()
+    rmtree = shutil.rmtree
+
+    def refuses(path, ignore_errors=False):
+        if path.name not in stuck:
+            rmtree(path)
+        elif not ignore_errors:
+            raise OSError(errno.EBUSY, "Device or resource busy")
+
+    monkeypatch.setattr(shutil, "rmtree", refuses)
+    for step in (40, 50, 60):
+        checkpoint.save(three, step, state_at(step), {})
+        assert_same(checkpoint.restore(three, state_at(0))[1], state_at(step))
+    assert sorted(path.name for path in three.iterdir()) == [*sorted(stuck), "50", "60"]
+
+
+def test_a_plain_file_with_the_name_of_a_checkpoint_is_none(three):
+    for step in (40, 50):
+        (three / str(step)).write_text("mine")
+    assert checkpoint.steps(three) == [20, 30]
+    for step in (40, 50, 60):
+        checkpoint.save(three, step, state_at(step), {})
+    assert checkpoint.steps(three) == [50, 60]
+    kept = [path.read_text() for path in checkpoint.leftovers(three)]
+    assert kept == ["mine", "mine"]
+
+
+def test_a_folder_that_is_moved_meanwhile_is_not_made_again(tmp_path, monkeypatch):
+    """TensorStore does make it; what it left there would count as a whole checkpoint."""
+    run, write = tmp_path / "run", leaves.write
+    run.mkdir()
+    checkpoint.save(run / "checkpoints", 1, state_at(1), {})
+
+    def moved(path, arrays):
+        run.rename(tmp_path / "moved")
+        path.mkdir(parents=True)
+        write(path, arrays)
+
+    monkeypatch.setattr(leaves, "write", moved)
+    with pytest.raises(CheckpointError, match="not written: its folder was moved or deleted"):
+        checkpoint.save(run / "checkpoints", 2, state_at(2), {})
+    assert not run.exists()
+    assert checkpoint.steps(tmp_path / "moved" / "checkpoints") == [1]
+
+
+def test_a_folder_that_is_gone_is_not_made_again(tmp_path):
+    with pytest.raises(CheckpointError, match="No such file or directory"):
+        checkpoint.save(tmp_path / "gone" / "checkpoints", 1, state_at(1), {})
+    assert list(tmp_path.iterdir()) == []

@@ -16,8 +16,12 @@ from tiny import TINY, call, call_train, contents, only_line, run
 
 from hybrid_rl import evaluate, render
 from hybrid_rl.cli import command
+from hybrid_rl.config import load
+from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run import integrity
 from hybrid_rl.run.lock import locked
+from hybrid_rl.training.loop import Loop
 
 HOLD = """
 import sys, time
@@ -191,6 +195,7 @@ def other_module(path):
 
 HARM = [broken_yaml, random_bytes, empty, a_word, without_env, without_physics, other_seeds]
 HARM += [edited_seed, other_value, other_network, other_module]
+OF_RESUME = {other_network: "hidden was [16] and is [8]"}  # where its line is another one
 
 
 @pytest.mark.parametrize("harm", HARM, ids=[harm.__name__ for harm in HARM])
@@ -201,22 +206,43 @@ def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
     for name, main in READERS.items():
         assert call(lambda main=main: command.guarded(main), f"run={copied}") == 2, name
         lines.append(only_line(capfd))
+        assert words in lines[-1]
     assert call_train(f"resume={copied}", "total_steps=200") == 2
     lines.append(only_line(capfd))
+    assert OF_RESUME.get(harm, words) in lines[-1]
     for line in lines:
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
-        assert words in line
     assert contents(copied) == before
 
 
-def test_an_evaluation_that_cannot_be_written_is_not_made(copied, monkeypatch, capfd):
-    def full(dir):
-        raise OSError(errno.EROFS, "Read-only file system")
+def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
+    """Though such a configuration builds, and its checkpoint fits."""
+    path = copied / "config.yaml"
+    text = path.read_text()
+    path.write_text(
+        text.replace("capacity: 200", "capacity: 300").replace("_rate: 0.0003", "_rate: 3")
+    )
+    before = contents(copied)
+    assert call_train(f"resume={copied}", "total_steps=200") == 2
+    line = only_line(capfd)
+    assert line.startswith(f"hybrid_rl: {path}: ")
+    assert "replay.capacity was 200 and is 300, " in line
+    assert "learning_rate was 0.0003 and is 3" in line
+    assert "with resume only total_steps can be changed" in line
+    assert contents(copied) == before
+    path.write_text(text.replace("compile_cache: null", "compile_cache: elsewhere"))
+    assert call_train(f"resume={copied}", "total_steps=150") == 0  # of this machine, not the run
 
-    monkeypatch.setattr(run_folder, "TemporaryFile", full)
-    monkeypatch.setattr(evaluate, "evaluate", lambda *_: pytest.fail("it was evaluated"))
-    assert call(lambda: command.guarded(evaluate.main), f"run={copied}") == 2
-    assert f"run={copied}: cannot be written to (Read-only file system)" in only_line(capfd)
+
+def test_an_evaluation_of_a_run_that_cannot_be_written_to_is_shown(copied, monkeypatch, capfd):
+    def read_only(path, text):
+        raise OSError(errno.EROFS, "Read-only file system", str(path))
+
+    monkeypatch.setattr(evaluate, "write_text", read_only)
+    assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
+    printed = capfd.readouterr().out
+    assert "mean return" in printed
+    assert f"not written: {copied}/evaluation_full.json: Read-only file system" in printed
 
 
 def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd):
@@ -235,3 +261,62 @@ def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd)
 def test_a_value_of_the_user_is_not_blamed_on_the_file(copied, capfd):
     assert call_train(f"resume={copied}", "total_steps=0") == 2
     assert "hybrid_rl: total_steps=0: must be" in only_line(capfd)
+
+
+def test_links_in_a_run_folder_lead_to_nothing_that_is_written(tmp_path):
+    precious = tmp_path / "precious.txt"
+    precious.write_text("mine")
+    (tmp_path / "lock").symlink_to(precious)
+    (tmp_path / ".config.yaml.tmp").symlink_to(precious)
+    refused = pytest.raises(UsageError, match=r"cannot be written to \(lock is a link\)")
+    with refused, locked(tmp_path, "run_dir"):
+        pass
+    integrity.write_text(tmp_path / "config.yaml", "new")
+    assert (tmp_path / "config.yaml").read_text() == "new"
+    assert precious.read_text() == "mine"
+
+
+def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    with locked(folder, "run_dir"):
+        folder.rename(tmp_path / "moved")
+        folder.mkdir()
+        (folder / "lock").write_text("of another process")
+    assert (folder / "lock").read_text() == "of another process"
+
+
+def test_a_lock_that_fails_is_named(tmp_path, monkeypatch):
+    def fails(handle, how):
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(fcntl, "flock", fails)
+    named = pytest.raises(OSError, match=f"Input/output error: '{tmp_path}/lock'")
+    with named, locked(tmp_path, "run_dir"):
+        pass
+
+
+@pytest.mark.parametrize("there", [None, "", "notes.txt"])
+def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, capfd, there):
+    """Here for memory, once config.yaml and metrics.jsonl are written."""
+    folder = tmp_path / "run"
+    if there is not None:
+        folder.mkdir()
+        (folder / (there or "x")).write_text("mine")
+        if not there:
+            (folder / "x").unlink()
+    before = contents(tmp_path)
+    monkeypatch.setattr(Loop, "memory", lambda *_: 1e15)
+    assert call_train(*TINY, "algo=sac", "logger=csv", f"run_dir={folder}") == 1
+    assert "num_seeds=1: the program would take 1,000,000.0 GB" in only_line(capfd)
+    assert contents(tmp_path) == before
+
+
+def test_a_start_beside_a_run_that_has_just_begun_deletes_nothing_of_it(tmp_path):
+    config = load([*TINY, "algo=sac", f"run_dir={tmp_path / 'run'}"])
+    with run_folder.fresh(config) as folder:
+        (folder / "metrics.jsonl").touch()
+        refused = pytest.raises(UsageError, match="is being written by process")
+        with refused, run_folder.fresh(config):
+            pass
+        assert sorted(path.name for path in folder.iterdir()) == ["lock", "metrics.jsonl"]

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from tensorboardX.proto.event_pb2 import Event
 
+from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import progress, provenance
 from hybrid_rl.run.log import RunLog, number
 from hybrid_rl.run.progress import Progress
@@ -255,3 +256,37 @@ def _read(handle):
         return os.read(handle, 4096)
     except OSError:  # Linux's end of a pseudo-terminal
         return b""
+
+
+@pytest.mark.parametrize("rows", [0, 1])
+def test_a_run_whose_folder_was_moved_stops_and_makes_no_new_one(tmp_path, rows):
+    folder, elsewhere = tmp_path / "run", tmp_path / "elsewhere"
+    folder.mkdir()
+    with RunLog(folder, [0]) as log:
+        log.write([row(1)] * rows)
+        log.flush()
+        folder.rename(elsewhere)
+        with pytest.raises(
+            CheckpointError, match=r"run/metrics\.jsonl: moved, deleted or replaced"
+        ):
+            log.flush()
+        if not rows:  # the folder of TensorBoard is made with the first row
+            with pytest.raises(CheckpointError, match="moved, deleted or replaced"):
+                log.write([row(1)])
+    assert not folder.exists()
+    assert len(lines(elsewhere)) == 1
+
+
+def test_a_console_that_is_closed_ends_nothing(monkeypatch, capfd):
+    """As by `| head -1`: what is printed then vanishes, without a word."""
+    read, written = os.pipe()
+    with open(written, "w") as console, monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", console)
+        with Progress(10, label="a run") as shown:
+            shown.note("is read")
+            assert os.read(read, 100) == b"is read\n"
+            os.close(read)
+            shown.note("is lost")
+            shown.update(3, {}, say=True)
+            progress.say("done")
+    assert capfd.readouterr() == ("", "")

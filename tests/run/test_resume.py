@@ -35,24 +35,23 @@ def halves(tmp_path_factory):
 
 
 def stopped(interrupt, folder, by, *overrides):
-    """Exit code of a run that `by` stops after its first checkpoint."""
+    """Exit code of a run that fault `by` stops after its first checkpoint."""
     process = interrupt.start([*TINY, *overrides, f"run_dir={folder}"])
     while interrupt.newest(folder) is None and process.poll() is None:
         time.sleep(0.002)
-    return interrupt.stop(process, by)
+    return interrupt.stop(process, interrupt.FAULTS[by], folder)
 
 
 @pytest.mark.parametrize(
     ("by", "code"),
-    [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)],
-    ids=["interrupt", "kill"],
+    [("SIGINT and SIGTERM", {130, 143}), ("SIGKILL", {-signal.SIGKILL}), ("moved", {1})],
 )
 def test_a_stopped_run_goes_on_bit_for_bit(interrupt, whole, tmp_path, by, code):
     folder = tmp_path / "run"
-    assert stopped(interrupt, folder, by, *HYBRID) == code
+    assert stopped(interrupt, folder, by, *HYBRID) in code
     reached = interrupt.newest(folder)
     assert 0 < reached < 600
-    if by != signal.SIGKILL:
+    if by == "SIGINT and SIGTERM":
         summary = json.loads((folder / "summary.json").read_text())
         assert not summary["finished"]
         assert summary["total_steps"] == reached == interrupt.rows(folder)[-1]["step"]

@@ -1,16 +1,19 @@
 """A run is stopped anywhere, its learners diverge alone, its numbers are what their names say."""
 
 import json
+import shlex
 import signal
+import time
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import call_train, run
+from tiny import TINY, call_train, run
 
 from hybrid_rl import train
 from hybrid_rl.errors import DivergenceError
+from hybrid_rl.overrides import quoted
 from hybrid_rl.run import checkpoint, integrity, schedule
 from hybrid_rl.run.evaluations import Evaluations
 from hybrid_rl.run.rows import Gathered
@@ -55,6 +58,35 @@ def stop_at(monkeypatch, step):
     monkeypatch.setattr(Session, "_advance", stopped)
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_program_that_trains_hears_the_signal_after_the_checkpoint(monkeypatch, tmp_path, number):
+    """As though nothing had come between: a script ends, and no loop starts its next run."""
+    folder, advance, heard = tmp_path / "run", Session._advance, []
+
+    def pressed(self):
+        advance(self)
+        if self.step >= 150 and self.stop is None:
+            signal.raise_signal(number)
+            while self.stop is None:
+                time.sleep(0.001)
+
+    def handler(*_):
+        heard.append(checkpoint.steps(folder / "checkpoints")[-1])
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Session, "_advance", pressed)
+    before = signal.signal(number, handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run(folder, *SAC)
+        assert signal.getsignal(number) is handler
+    finally:
+        signal.signal(number, before)
+    assert heard == [summary(folder)["total_steps"]]
+    assert summary(folder)["signal"] == number
+    assert not (folder / "lock").exists()
+
+
 def test_a_call_takes_about_a_second_and_a_half_whatever_the_speed():
     for each in (1e-5, 0.01, 0.4, 9.0):  # [s] a round
         pace_, took = Pace(), []
@@ -97,17 +129,20 @@ def test_calls_of_other_lengths_make_the_same_run(interrupt, whole, short, tmp_p
     assert interrupt.difference(tmp_path / "run", whole) == ""
 
 
-def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp_path):
-    """Between marks, before an evaluation is made, and before the last one is."""
-    folder, line = tmp_path / "run", []
+def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp_path, capsys):
+    """Between marks, before an evaluation is made, and before the last one is.
+
+    The name of the folder means something to the shell, to Hydra, to Orbax and to glob.
+    """
+    folder, line = tmp_path / "it's hidden=[8,8]", []
+    begin = [*TINY, *SAC, f"run_dir={quoted(str(folder))}"]
     for step in (123, 300, 600):
         with pytest.MonkeyPatch.context() as patch:
             stop_at(patch, step)
-            if line:
-                assert call_train(*line) == 128 + signal.SIGTERM
-            else:
-                assert run(folder, *SAC)["signal"] == signal.SIGTERM
-        result, line = summary(folder), [f"resume={folder}"]
+            assert call_train(*(line or begin)) == 128 + signal.SIGTERM
+        printed = capsys.readouterr().out.splitlines()[-1]
+        result, line = summary(folder), shlex.split(printed)[4:]
+        assert printed.startswith("continue: python -m hybrid_rl.train ")
         assert step <= result["total_steps"] < step + 7
         assert not result["finished"]
     assert call_train(*line) == 0

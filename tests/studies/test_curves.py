@@ -307,4 +307,6 @@ def test_runs_are_found_by_glob_by_folder_and_by_list(tmp_path):
     assert find(str(tmp_path / "a*" / "*")) == folders[:2]
     assert find(str(tmp_path / "**")) == folders
     assert find(tmp_path) == folders
+    odd = run(tmp_path / "a[1]" / "hidden=[8,8]", [1.0])  # exists, so it is no pattern
+    assert find(odd) == find(str(odd.parent)) == [odd]
     assert find([folders[2], tmp_path / "a1"]) == [folders[0], folders[2]]
