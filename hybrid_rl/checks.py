@@ -1,17 +1,17 @@
 """Checks of a configuration before its parts are built: counts, choices, kinds of values."""
 
-import logging
 import math
 from dataclasses import fields, is_dataclass
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
-from hydra.utils import get_object
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
+from hybrid_rl import parts
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import SHOW
+from hybrid_rl.types import NAME
 
 COUNTS = (
     "num_seeds",
@@ -41,6 +41,10 @@ def check(config: DictConfig) -> None:
     for key in SECTIONS:
         if not isinstance(config.get(key), DictConfig):
             raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
+    check_names(config)
+    for key in ("task", "algo"):
+        if not NAME.fullmatch(str(config[key])):
+            raise UsageError(f"{key}={config[key]}: must be letters, digits, _, . and -")
     for key in COUNTS:
         whole(config, key)
     if type(config.seed) is not int or config.seed < 0:
@@ -80,10 +84,12 @@ def check_kinds(node: DictConfig, where: str = "") -> None:
             raise UsageError(f"{where}{key}={value}: must be {called}")
 
 
-def part_class(target: str) -> Any:
-    """The object that a `_target_` names; Hydra's own log lines are suppressed."""
-    logging.getLogger("hydra").addHandler(logging.NullHandler())
-    return get_object(target)
+def check_names(config: DictConfig) -> None:
+    """Raise UsageError for a `_target_` that names no part; nothing is imported."""
+    try:
+        parts.check(OmegaConf.to_container(config))
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
 def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
@@ -91,11 +97,9 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     if "_target_" not in node:
         return {}
     try:
-        part = part_class(node._target_)
-    except (ImportError, ValueError) as error:
-        hint = "is its folder on PYTHONPATH?"
-        line = f"{where}_target_={node._target_}: cannot be imported ({error.__cause__ or error})"
-        raise UsageError(f"{line}; {hint}") from error
+        part = parts.part_class(node._target_)
+    except ValueError as error:
+        raise UsageError(f"{where}_target_={node._target_}: {error}") from error
     kinds = {}
     for field in fields(part) if is_dataclass(part) else ():
         several = get_origin(field.type) in (Union, UnionType)

@@ -19,6 +19,7 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.reading import shown
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
@@ -141,7 +142,7 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
 
 
 def _fail(code: int, line: str) -> NoReturn:
-    print(f"hybrid_rl: {' '.join(line.split())}", file=sys.stderr, flush=True)
+    print(f"hybrid_rl: {shown(' '.join(line.split()))}", file=sys.stderr, flush=True)
     sys.exit(code)
 
 

@@ -15,9 +15,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.records import COORDINATES, Row
 
-Row = dict[str, Any]  # of metrics.jsonl
-COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
 HEADER = (*COORDINATES, "metric", "value")
 NAMES = ("csv", "wandb")
 INSTALL = 'not installed; pip install "hybrid_rl[wandb]"'

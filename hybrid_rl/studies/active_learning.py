@@ -35,7 +35,7 @@ from hybrid_rl.studies import unseen
 from hybrid_rl.studies.curves import band, iqm
 from hybrid_rl.studies.recorded import Recorded, matching, read
 from hybrid_rl.studies.significant import rounded
-from hybrid_rl.studies.style import COLOURS, STROKES, STYLE, legend_below
+from hybrid_rl.studies.style import COLOURS, STROKES, STYLE, legend_below, plain_log
 from hybrid_rl.studies.unseen import Unseen
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch
@@ -262,6 +262,7 @@ def picture(each: dict[str, dict[str, np.ndarray]], exact: dict[str, Any]) -> An
             axes.set(title=title, xlabel="Episodes")
             if name in LOG:
                 axes.set_yscale("log")
+                plain_log(axes.yaxis)
         panels[0].axhline(exact["cost"][0], color="k", lw=0.8, ls=":", label="exact model")
         panels[0].set_ylim(-0.5, MOST_COST)
         panels[-1].set_ylim(-0.02, 1.02)
