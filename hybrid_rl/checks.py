@@ -9,7 +9,7 @@ from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, shown
 from hybrid_rl.overrides import SHOW
 from hybrid_rl.types import NAME
 
@@ -44,7 +44,8 @@ def check(config: DictConfig) -> None:
     check_names(config)
     for key in ("task", "algo"):
         if not NAME.fullmatch(str(config[key])):
-            raise UsageError(f"{key}={config[key]}: must be letters, digits, _, . and -")
+            line = "must be letters, digits, _, . and -"
+            raise UsageError(f"{key}={shown(config[key])}: {line}")
     for key in COUNTS:
         whole(config, key)
     if type(config.seed) is not int or config.seed < 0:

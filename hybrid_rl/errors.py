@@ -15,3 +15,8 @@ class CheckpointError(OSError):
 
 class MisfitError(CheckpointError):
     """A checkpoint is intact but belongs to another run."""
+
+
+def shown(words: object) -> str:
+    """Words of a file or a user in a line of ours: what a terminal would obey is escaped."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(words))

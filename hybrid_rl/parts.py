@@ -21,7 +21,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-TARGET = "_target_"
+from hybrid_rl.errors import shown
+
+TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
 ROOMS = (  # folders of hybrid_rl that hold parts
     *("beliefs", "controllers", "core", "critics", "data", "envs", "features", "learners"),
@@ -39,7 +41,7 @@ def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
         ValueError: for a tree that is nested too deeply.
     """
     if where.count(".") > DEEPEST:
-        raise ValueError(f"{where[:SHOWN]}...: is nested too deeply")
+        raise ValueError(f"{shown(where)[:SHOWN]}...: is nested too deeply")
     pairs = node.items() if isinstance(node, dict) else enumerate(node)
     for name, value in pairs:
         if name == TARGET:
@@ -49,7 +51,7 @@ def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def check(node: Any, near: Path | None = None) -> None:
-    """Judge every name in a tree of dicts and lists; nothing is imported.
+    """Judge every name in a tree of dicts and lists; only modules of this package are imported.
 
     near: the run folder or the file that the tree comes from; None: from the user.
 
@@ -58,9 +60,9 @@ def check(node: Any, near: Path | None = None) -> None:
     """
     for key, target in targets(node):
         try:
-            _source(target, near)
+            part_class(target) if str(target).startswith(OURS) else _source(target, near)
         except ValueError as error:
-            raise ValueError(f"{key}={str(target)[:SHOWN]}: {error}") from error
+            raise ValueError(f"{shown(key)}={shown(target)[:SHOWN]}: {error}") from error
 
 
 def part_class(target: Any, near: Path | None = None) -> Any:
@@ -78,8 +80,7 @@ def part_class(target: Any, near: Path | None = None) -> Any:
         raise ValueError(f"cannot be imported ({error})") from error
     if not isinstance(found, type) or Path(str(home.__file__)).resolve() != source:
         raise ValueError(OTHER)
-    ours = module.startswith("hybrid_rl.")
-    if ours and not (is_dataclass(found) and found.__module__ == module):
+    if module.startswith(OURS) and not (is_dataclass(found) and found.__module__ == module):
         raise ValueError(NONE)
     if found.__module__.partition(".")[0] != module.partition(".")[0]:
         raise ValueError(OTHER)
@@ -110,8 +111,6 @@ def _made(node: Any, near: Path | None) -> Any:
         return kind(**fields)
     except ValueError:
         raise
-    except RecursionError as error:
-        raise ValueError(f"{kind.__name__}: is nested too deeply, or names its own file") from error
     except Exception as error:  # such as a field that it does not have
         raise ValueError(str(error)) from error
 
@@ -157,8 +156,7 @@ def _theirs(names: list[str], near: Path | None) -> Path:
         spec = None
     if spec is None or names[0] == "__main__":
         raise ValueError(OTHER)
-    places = spec.submodule_search_locations or [spec.origin or ""]
-    tops = [Path(place).absolute() for place in places]
+    tops = [Path(top).absolute() for top in spec.submodule_search_locations or [spec.origin or ""]]
     if not all(_of_user(top.parent) for top in tops):
         raise ValueError(OTHER)
     if near is not None and any(_together(top, near.resolve()) for top in tops):

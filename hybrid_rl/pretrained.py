@@ -17,11 +17,11 @@ from hybrid_rl.core import archive
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.trained import TrainedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, shown
 from hybrid_rl.evaluate import Trained, load
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.run.reading import from_json, json_file, shown
+from hybrid_rl.run.reading import from_json, json_file
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
@@ -122,9 +122,9 @@ def _origin(about: Mapping[str, Any]) -> list[str]:
     lines = []
     if about.get("command"):
         lines.append(f"trained by: {shown(about['command'])}")
-    if (found := about.get("evaluation")) is not None:
-        mean, count = float(found["mean"]), len(found["returns"])
-        lines.append(f"evaluated then: {mean:,.1f} (mean of {count} episodes)")
+    match about.get("evaluation"):
+        case {"mean": int() | float() as mean, "returns": list() as returns}:
+            lines.append(f"evaluated then: {mean:,.1f} (mean of {len(returns)} episodes)")
     return lines
 
 

@@ -23,7 +23,7 @@ from flax import struct
 from jax import Array
 
 PyTree = Any
-NAME = re.compile(r"[A-Za-z0-9_.-]+")  # of a task or a method
+NAME = re.compile(r"(?!\.+$)[A-Za-z0-9_.-]+")  # of a task or a method
 
 
 class Spec(NamedTuple):

@@ -27,7 +27,7 @@ CONFIG |= {"checks", "config", "overrides"}
 ALLOWED = {
     "types": set(),
     "errors": set(),
-    "parts": set(),  # judges names, and builds what they name
+    "parts": {"errors"},  # judges names, and builds what they name
     "protocols": {"types", "protocols"},
     "core": {"types", "protocols", "core"},
     "networks": {"types", "core"},

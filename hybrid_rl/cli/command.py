@@ -18,8 +18,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.config import CONF
-from hybrid_rl.errors import UsageError
-from hybrid_rl.run.reading import shown
+from hybrid_rl.errors import UsageError, shown
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),

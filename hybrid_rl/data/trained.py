@@ -20,6 +20,8 @@ from hybrid_rl.core import archive
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import PyTree, Spec
 
+ITSELF = "hybrid_rl.data.trained.TrainedPolicy"
+
 
 def save(
     file: Path | str, task: str, spec: Spec, params: PyTree, about: Mapping[str, Any] | None = None
@@ -67,6 +69,8 @@ def part(prefix: str, file: str, node: Any) -> Any:
             accept.
     """
     try:
+        if any(name == ITSELF for _, name in parts.targets([node])):
+            raise ValueError("describes a policy in another file, not its own")
         return parts.built(node, archive.find(file))
     except ValueError as error:
         raise ValueError(f"{prefix} {error}") from error

@@ -157,8 +157,3 @@ def _check_scalar(event: Any) -> None:
         raise ValueError(f"{line} is no YAML of training (<< merges keys)")
     if "${" in event.value:
         raise ValueError(f"{line}: {event.value} is an interpolation; it must be a plain value")
-
-
-def shown(words: Any) -> str:
-    """Words from a file on one line: what a terminal would obey is escaped."""
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(words))
