@@ -63,14 +63,13 @@ DEFINED = {  # those that NumPy lacks
     "silu": "def silu(z):\n    return z / (1 + np.exp(-z))\n\n\n",
     "elu": "def elu(z):\n    return np.where(z > 0, z, np.expm1(np.minimum(z, 0)))\n\n\n",
 }
-CODE = '''"""The policy of TASK: observation [{o}] -> action [{m}] in [-1, 1], every {dt:g} s."""
+CODE = '''"""The policy of {task}: observation [{o}] -> action [{m}] in [-1, 1], every {dt:g} s."""
 
 from pathlib import Path
 
 import numpy as np
 
-TASK = {task!r}
-P = dict(np.load(Path(__file__).with_suffix(".npz"), allow_pickle=False))
+P = dict(np.load(Path(__file__).with_suffix(".npz")))
 
 
 {defined}def act(obs):
@@ -161,7 +160,7 @@ def save_layers(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
     archive.write(out, task, spec, arrays)
     last, layer = len(net.weights), 'x @ P[f"W{i}"] + P[f"b{i}"]'
     code = CODE.format(
-        task=task,
+        task=repr(task),
         o=int(spec.obs),
         m=int(spec.act),
         dt=float(spec.dt),

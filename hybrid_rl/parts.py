@@ -152,9 +152,9 @@ def _theirs(names: list[str], near: Path | None) -> Path:
     """The file of a module of the user; ValueError if there is none."""
     try:
         spec = find_spec(names[0])  # of the first name alone, so that nothing is imported
-    except (ImportError, ValueError, AttributeError):  # such as that of __main__
+    except (ImportError, ValueError, AttributeError):
         spec = None
-    if spec is None or names[0] == "__main__":
+    if spec is None:
         raise ValueError(OTHER)
     tops = [Path(top).absolute() for top in spec.submodule_search_locations or [spec.origin or ""]]
     if not all(_of_user(top.parent) for top in tops):

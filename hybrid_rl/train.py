@@ -77,6 +77,9 @@ def _curve(run_dir: Path) -> None:
     known = np.isfinite(line.iqm)
     if known.sum() < CURVE:
         return
+    for path in (run_dir / "curve.png", run_dir / "curve.json"):
+        if path.is_symlink():  # of a run of somebody else
+            path.unlink()
     save(*learning_curves.figure(run_dir, EVALUATION), run_dir / "curve.png")
     title = f"{learning_curves.LABELS[EVALUATION]} ({run_dir / 'curve.png'})"
     print(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))

@@ -230,6 +230,25 @@ def test_what_is_no_plain_file_of_its_size_is_not_read(folder, name, kind):
         getattr(run, READ[name])
 
 
+@pytest.mark.parametrize("name", ["metrics.jsonl", "metrics.csv"])
+@pytest.mark.parametrize("kind", ["link", "pipe"])
+def test_a_resumed_run_writes_to_its_own_files_only(folder, name, kind):
+    """A link in it does not cut a file elsewhere, and a pipe does not hang."""
+    precious = Path("precious.txt")
+    precious.write_text("all that I have\n")
+    (folder / name).unlink(missing_ok=True)
+    if kind == "link":
+        (folder / name).symlink_to(precious.absolute())
+    else:
+        os.mkfifo(folder / name)
+    with (
+        pytest.raises(UsageError, match=f"{name}: is a link, or no plain file"),
+        RunLog(folder, [0], [CSV(folder)] if name == "metrics.csv" else []),
+    ):
+        pass
+    assert precious.read_text() == "all that I have\n"
+
+
 BAD_ROWS = [
     b'{"step": 5, "wall_s": 1.0}',
     b'{"step": 5, "seed": [0], "wall_s": 1.0}',
@@ -239,6 +258,7 @@ BAD_ROWS = [
     b'{"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": 1' + b"0" * 400 + b"}",
     b"[" * 100_000,
     b"\xff\xfe\x00",
+    b'{"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": "high"}',
     b"7",
 ]
 
@@ -279,6 +299,13 @@ def test_a_damaged_summary_is_one_line(folder, capfd, text):
     (folder / "summary.json").write_text(text)
     assert call(lambda: command.guarded(report.main), f"run={folder}", "video=none") == 2
     assert only_line(capfd).startswith(f"hybrid_rl: {folder}/summary.json: ")
+
+
+def test_a_run_without_a_finite_evaluation_has_no_curve(folder, capfd):
+    (folder / "metrics.jsonl").write_text(json.dumps(ROW | {"eval/return": None}) + "\n")
+    line = [f"runs={folder}", METRIC, "out=a.png"]
+    assert call(lambda: command.guarded(figures.main), *line) == 2
+    assert "metric=eval/return: has no finite value in these runs" in only_line(capfd)
 
 
 def test_words_that_a_terminal_or_matplotlib_obeys_are_shown_as_they_are(folder, capfd):

@@ -16,7 +16,7 @@ import numpy as np
 
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.loggers import Logger, scalars
-from hybrid_rl.run.reading import lines
+from hybrid_rl.run.reading import appended, lines
 from hybrid_rl.run.records import row_of
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class RunLog:
         self.loggers = loggers
         self.seeds = tuple(seeds)
         run_dir.mkdir(parents=True, exist_ok=True)
-        self._rows = (run_dir / "metrics.jsonl").open("ab")
+        self._rows = appended(run_dir / "metrics.jsonl")
         self._boards: dict[int, Board] = {}  # by seed
         self._purge_step: int | None = None
 

@@ -13,8 +13,9 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run.reading import from_json, json_file
 
 Row = dict[str, Any]
-COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name is a metric, or a word
+COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric
 END = ("seed", "step", "quantity")
+WORD = "diverged"  # of a row: the only value that is no number
 LARGE = 2**63  # no whole number of a row is as large
 
 
@@ -30,7 +31,9 @@ def row_of(line: bytes) -> Row | None:
         type(step) is type(seed) is int
         and min(step, seed) >= 0
         and _number(wall)
-        and all(isinstance(each, (int, float, str, NoneType)) for each in row.values())
+        and all(
+            isinstance(each, (int, float, NoneType)) for name, each in row.items() if name != WORD
+        )
         and all(abs(each) < LARGE for each in whole)
     )
     return row if sound else None
