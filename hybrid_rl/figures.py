@@ -96,6 +96,7 @@ def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
     """
     import matplotlib
 
+    out.parent.mkdir(parents=True, exist_ok=True)
     undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
     with matplotlib.rc_context(STYLE):
         figure.savefig(out, dpi=DPI, metadata=undated)
