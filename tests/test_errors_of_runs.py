@@ -65,7 +65,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     (
         "render task=panda_stack out=/dev/null/a.mp4",
         2,
-        "a.mp4: there is no folder /dev/null (Not a dir",
+        "a.mp4: there is no folder /dev/null",
     ),
     ("demonstrate task=panda_stack out=/dev/null/a.npz", 2, "a.npz: there is no folder /dev/null"),
     ("evaluate run = {trained}", 2, "run: write run="),

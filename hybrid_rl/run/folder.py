@@ -249,5 +249,6 @@ def parsed(folder: Path, key: str = "runs") -> DictConfig:
     except ValueError as error:
         _check_version(folder, key, config)  # another one may have had such a part
         raise UsageError(f"{path}: {error}") from error
-    config.compile_cache = OmegaConf.load(CONF / "train.yaml").get("compile_cache")
+    defaults: Any = OmegaConf.load(CONF / "train.yaml")
+    config.compile_cache = defaults.compile_cache
     return config
