@@ -22,7 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import UsageError, gist, in_user_code, shown
+from hybrid_rl.errors import UsageError, gist, in_user_code, relative
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
@@ -76,7 +76,7 @@ class _World:
         name = f"{kind.__name__}.{method}" if method else kind.__name__
         try:
             source = inspect.unwrap(getattr(kind, method)) if method else kind
-            return f"{shown(self.file)}:{inspect.getsourcelines(source)[1]}: {name}"
+            return f"{relative(self.file)}:{inspect.getsourcelines(source)[1]}: {name}"
         except (OSError, TypeError, AttributeError):  # typed in, or no plain method
             return f"{kind.__module__}: {name}"
 

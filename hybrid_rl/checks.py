@@ -1,19 +1,18 @@
 """Checks of a configuration before its parts are built: counts, choices, kinds of values."""
 
 import inspect
-import logging
 import math
-import sys
 from dataclasses import fields, is_dataclass
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 
-from hydra.utils import get_object
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
+from hybrid_rl import parts
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
-from hybrid_rl.errors import UsageError, in_user_code, shown
+from hybrid_rl.errors import UsageError, relative, shown
 from hybrid_rl.overrides import SHOW, meant
+from hybrid_rl.types import NAME
 
 COUNTS = (
     "num_seeds",
@@ -46,6 +45,11 @@ def check(config: DictConfig) -> None:
             raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
     if "_target_" not in config.env:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
+    check_names(config)
+    for key in ("task", "algo"):
+        if not NAME.fullmatch(str(config[key])):
+            line = "must be letters, digits, _, . and -"
+            raise UsageError(f"{key}={shown(config[key])}: {line}")
     for key in COUNTS:
         whole(config, key)
     countable(config)
@@ -98,22 +102,12 @@ def check_kinds(node: DictConfig, where: str = "") -> None:
             raise UsageError(f"{where}{key}={value}: must be {called}")
 
 
-def part_class(target: str) -> Any:
-    """The object that a `_target_` names; Hydra's own log lines are suppressed."""
-    logging.getLogger("hydra").addHandler(logging.NullHandler())
-    return get_object(target)
-
-
-def unimportable(target: str, error: BaseException) -> str:
-    """Why the object that a `_target_` names cannot be imported."""
-    if not isinstance(error, ModuleNotFoundError) or not f"{target}.".startswith(f"{error.name}."):
-        return in_user_code(error) or f"cannot be imported ({error})"
-    module = sys.modules.get(str(error.name).rpartition(".")[0])
-    if module is None:
-        return f"there is no module {error.name}; put its folder on PYTHONPATH"
-    own = [name for name, value in vars(module).items() if isinstance(value, type)]
-    close = meant(target.rpartition(".")[2], own)
-    return f"{shown(module.__file__ or module.__name__)} has no {target.rpartition('.')[2]}{close}"
+def check_names(config: DictConfig) -> None:
+    """Raise UsageError for a `_target_` that names no part; nothing is imported."""
+    try:
+        parts.check(OmegaConf.to_container(config))
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
 def check_fields(node: DictConfig, part: Any, where: str) -> None:
@@ -130,7 +124,7 @@ def check_fields(node: DictConfig, part: Any, where: str) -> None:
             continue
         called = getattr(part, "__name__", part)
         if not part.__module__.startswith("hybrid_rl."):
-            called = f"{called} in {shown(inspect.getsourcefile(part) or part.__module__)}"
+            called = f"{called} in {relative(inspect.getsourcefile(part) or part.__module__)}"
         if isinstance(part, type) and not is_dataclass(part) and not takes:
             called = f"{called} is no dataclass (@dataclass(frozen=True)), and"
         names = [name for name in takes if (where, name) != ("episode.", "env")]
@@ -143,10 +137,9 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     if "_target_" not in node:
         return {}
     try:
-        part = part_class(node._target_)
-    except (ImportError, ValueError) as error:
-        why = unimportable(node._target_, error.__cause__ or error)
-        raise UsageError(f"{where}_target_={node._target_}: {why}") from error
+        part = parts.part_class(node._target_)
+    except ValueError as error:
+        raise UsageError(f"{where}_target_={node._target_}: {error}") from error
     check_fields(node, part, where)
     kinds = {}
     for field in fields(part) if is_dataclass(part) else ():

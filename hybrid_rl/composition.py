@@ -10,8 +10,9 @@ from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from hybrid_rl import overrides
-from hybrid_rl.checks import COUNTS, check_fields, part_class
-from hybrid_rl.errors import UsageError, shown
+from hybrid_rl.checks import COUNTS, check_fields
+from hybrid_rl.errors import UsageError, relative
+from hybrid_rl.parts import part_class
 from hybrid_rl.training.episode import Episode
 
 HERE = Path(__file__).parent
@@ -68,7 +69,7 @@ def _no_yaml(error: yaml.YAMLError) -> str:
         return _sentences(str(error))
     problem = str(getattr(error, "problem", "it is no YAML"))
     tab = "; indent with spaces, not with a tab" if "'\\t'" in problem else ""
-    return f"{shown(mark.name)}:{mark.line + 1}: is no YAML: {problem}{tab}"
+    return f"{relative(mark.name)}:{mark.line + 1}: is no YAML: {problem}{tab}"
 
 
 def _sentences(text: str) -> str:
@@ -101,7 +102,7 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
     file = chosen(hydra, "task")
     if file is None or CONF in file.parents or config.get("resume") is not None:
         return None
-    raw, name = overrides.plain(config), shown(file)
+    raw, name = overrides.plain(config), relative(file)
     if isinstance(raw.get("task"), dict):
         raise UsageError(f"{name}: its first line must be {GLOBAL}")
     if lacking := [key for key in OF_A_TASK if raw.get(key) is None]:

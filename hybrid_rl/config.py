@@ -10,17 +10,17 @@ from typing import Any
 import yaml
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
-from hydra.errors import HydraException, InstantiationException
-from hydra.utils import instantiate
+from hydra.errors import HydraException
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, part_class, whole
+from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, whole
 from hybrid_rl.composition import CONF, check_task, explain
 from hybrid_rl.envs.contract import check as check_world
 from hybrid_rl.envs.mujoco.physics import resolve
-from hybrid_rl.errors import UsageError, in_user_code
+from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import plain, reached, refuse_new_keys, refuse_unused, search_path
+from hybrid_rl.parts import built, part_class
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -219,7 +219,8 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
 
 
 def _instantiate(node: Any) -> Any:
-    return instantiate(node, _convert_="all")
+    plain = isinstance(node, (DictConfig, ListConfig))
+    return built(OmegaConf.to_container(node, resolve=True) if plain else node)
 
 
 @contextmanager
@@ -230,12 +231,8 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
     """
     try:
         yield
-    except (InstantiationException, ValueError) as error:
-        cause = error.__cause__ if isinstance(error, InstantiationException) else error
-        raised = in_user_code(cause) if cause and not isinstance(cause, ValueError) else None
-        if raised is None and not isinstance(cause, (ValueError, TypeError)):
-            raise
-        line = raised or str(cause)
+    except ValueError as error:
+        line = str(error)
         for needs, method in NEEDS.items():
             if needs in line:
                 names = ", ".join(tasks_with(method))
@@ -253,6 +250,6 @@ def tasks_with(method: str, conf: Path = CONF) -> list[str]:
     names = []
     for path in sorted((conf / "task").glob("*.yaml")):
         task: Any = OmegaConf.load(path)
-        with suppress(ImportError, KeyError, AttributeError):  # an unfinished task of the user
+        with suppress(ValueError, KeyError, AttributeError):  # an unfinished task of the user
             names += [path.stem] if hasattr(part_class(task.env._target_), method) else []
     return names

@@ -153,6 +153,8 @@ def main() -> None:
     if given["out"]:
         output("out", given["out"], (".npz",))
     task, world, controller, params = _expert(given, changes)
+    if not given["out"]:
+        Path("demonstrations").mkdir(exist_ok=True)
     out = output("out", given["out"] or f"demonstrations/{task}.npz", (".npz",))
     recording = record(world, controller, params, episodes, seed)
     save(out, task, world.spec.dt, recording.decisions, recording.episode)

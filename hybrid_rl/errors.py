@@ -42,14 +42,14 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
     called this package, in which it was raised.
     """
     if isinstance(error, SyntaxError) and error.filename:
-        return f"{shown(error.filename)}:{error.lineno}: {error.msg}"
+        return f"{relative(error.filename)}:{error.lineno}: {error.msg}"
     frames = [(each.filename, each.lineno) for each in traceback.extract_tb(error.__traceback__)]
     frames += re.findall(r'File "(.+)", line (\d+)', str(error))  # of a callback, in JAX's message
     owners = OURS if ours else set()
     for file, line in reversed(frames):
         folders = set(Path(file).parents)
         if file == own or (file[:1] != "<" and not folders & FOREIGN):
-            return f"{shown(file)}:{line}: {gist(error)}"
+            return f"{relative(file)}:{line}: {gist(error)}"
         if folders & owners:
             return None
     return None
@@ -68,7 +68,12 @@ def gist(error: BaseException) -> str:
     return f"{kind.__name__}: {text}".rstrip(": ") + (f"; {hint}" if hint else "")
 
 
-def shown(file: str | Path) -> str:
+def relative(file: str | Path) -> str:
     """A path as messages show it: from the working folder if it lies below."""
     path = Path(file)
     return str(path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path)
+
+
+def shown(words: object) -> str:
+    """Words of a file or a user in a line of ours: what a terminal would obey is escaped."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(words))

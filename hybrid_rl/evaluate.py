@@ -36,6 +36,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hybrid_rl import config as configuration
+from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
 from hybrid_rl.errors import UsageError
@@ -173,6 +174,7 @@ def load(folder: Path | str) -> Trained:
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
     with run_folder.blamed(folder):
+        check(config)
         prepare(config)
         run = configuration.build(_without_demonstrations(config))
         like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)

@@ -149,7 +149,10 @@ def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
 
 
 def save_layers(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
-    """Write OUT.npz and OUT.py, which has a function `act` of NumPy; returns the latter."""
+    """Write OUT.npz and OUT.py, which has a function `act` of NumPy; returns the latter.
+
+    The code holds numbers, and of words only the name of the task, which `archive.write` checked.
+    """
     numbered = zip(net.weights, net.biases, strict=True)
     arrays = {"mean": net.mean, "scale": net.scale}
     for i, (weights, bias) in enumerate(numbered, 1):
@@ -157,10 +160,10 @@ def save_layers(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
     archive.write(out, task, spec, arrays)
     last, layer = len(net.weights), 'x @ P[f"W{i}"] + P[f"b{i}"]'
     code = CODE.format(
-        task=task,
-        o=spec.obs,
-        m=spec.act,
-        dt=spec.dt,
+        task=repr(task),
+        o=int(spec.obs),
+        m=int(spec.act),
+        dt=float(spec.dt),
         last=last,
         defined=DEFINED.get(net.activation, ""),
         activation=NUMPY[net.activation].format(layer),
@@ -192,7 +195,6 @@ def main() -> None:
         print(f"{out} and {script}: from {script.stem} import act; action = act(obs)")
         return
     made = program(spec, controller, params, given["platforms"])
-    out.parent.mkdir(parents=True, exist_ok=True)
     out.write_bytes(made.serialize())
     print(f"{out}: {trained.task}, {given['mode']}, {', '.join(given['platforms'])}")
     print(f'  f = jax.jit(jax.export.deserialize(open("{out.name}", "rb").read()).call)')

@@ -125,7 +125,7 @@ def _content(file: Path) -> Any:
     """The content of a JSON file; None if it has none."""
     try:
         return json.loads(file.read_text(encoding="utf-8"))
-    except ValueError:
+    except (ValueError, RecursionError):
         return None
 
 
@@ -201,7 +201,6 @@ def main() -> None:
     prepare(load([]))
     figure, numbers = study.figure(**values)
     if table is not None and out.suffix == TABLE:
-        out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(table(numbers), encoding="utf-8")
         print(*study.summary(numbers), out, sep="\n")
         return

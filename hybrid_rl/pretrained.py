@@ -4,7 +4,6 @@ A file is that of hybrid_rl.data.trained. Its `about` is JSON with the world, th
 policy as in config.yaml of the run, and with the command, the seed and the evaluation.
 """
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -18,14 +17,17 @@ from hybrid_rl.core import archive
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.trained import TrainedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, shown
 from hybrid_rl.evaluate import Trained, load
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.reading import from_json, json_file
+from hybrid_rl.run.results import RunFolder
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
-PARTS = ("env", "episode", "policy")  # of `about`
+PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
+UNFIT = (TypeError, AttributeError, LookupError, ArithmeticError, AssertionError, RecursionError)
 
 
 def names() -> list[str]:
@@ -61,20 +63,27 @@ def read(name: str) -> Trained:
             raise UsageError(f"{prefix} has no description; write it again with `demonstrate`")
         about = _described(prefix, str(arrays[archive.ABOUT]))
         prepare(configuration.load([]))
-        env, task = _environment(prefix, about["env"]), str(arrays["task"])
-        trained = TrainedPolicy(None, str(file), task, env, about["episode"])
+        return _trained(prefix, str(file), str(arrays["task"]), about)
     except UsageError:
         raise
     except ValueError as error:
         raise UsageError(str(error)) from error
+    except UNFIT as error:
+        raise UsageError(f"{prefix} its description fits no policy ({shown(error)})") from error
+
+
+def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Trained:
+    """The policy that a description names, with the parameters in `file`."""
+    env = _environment(prefix, file, about["env"])
+    trained = TrainedPolicy(None, file, task, env, about["episode"])
     controller = PolicyController(trained.policy, explore=False)
     return Trained(
         task,
         Episode(env, **about["episode"]),
         {"full": controller, "policy": controller},
         Params(policy=jax.tree.map(lambda leaf: leaf[None], trained.load())),
-        (int(about["seed"]),),
-        int(about["step"]),
+        (about["seed"],),
+        about["step"],
         tuple(_origin(about)),
         _world(task, about),
     )
@@ -89,30 +98,33 @@ def _world(task: str, about: Mapping[str, Any]) -> DictConfig:
 def _described(prefix: str, text: str) -> dict[str, Any]:
     """`about` of a file."""
     try:
-        about = json.loads(text)
-        missing = [key for key in (*PARTS, "seed", "step") if key not in about]
-    except (ValueError, TypeError) as error:
+        about = from_json(text)
+    except ValueError as error:
         raise UsageError(f"{prefix} its description is damaged") from error
+    kinds = {**dict.fromkeys(PARTS, dict), **dict.fromkeys(COUNTS, int)}
+    missing = [key for key in kinds if not isinstance(about, dict) or key not in about]
     if missing:
         raise UsageError(f"{prefix} its description lacks {', '.join(missing)}")
+    if wrong := [key for key, kind in kinds.items() if type(about[key]) is not kind]:
+        raise UsageError(f"{prefix} {wrong[0]} of its description is of a wrong kind")
     return about
 
 
-def _environment(prefix: str, node: dict[str, Any]) -> Any:
+def _environment(prefix: str, file: str, node: dict[str, Any]) -> Any:
     """The environment that a description names, with physics of this machine."""
     if isinstance(node.get("physics"), str):
         node = node | {"physics": resolve(node["physics"], 1)}
-    return part(prefix, node)
+    return part(prefix, file, node)
 
 
 def _origin(about: Mapping[str, Any]) -> list[str]:
     """Lines about how a policy was made."""
     lines = []
     if about.get("command"):
-        lines.append(f"trained by: {about['command']}")
-    if (found := about.get("evaluation")) is not None:
-        count = len(found["returns"])
-        lines.append(f"evaluated then: {found['mean']:,.1f} (mean of {count} episodes)")
+        lines.append(f"trained by: {shown(about['command'])}")
+    match about.get("evaluation"):
+        case {"mean": int() | float() as mean, "returns": list() as returns}:
+            lines.append(f"evaluated then: {mean:,.1f} (mean of {len(returns)} episodes)")
     return lines
 
 
@@ -137,21 +149,17 @@ def description(folder: Path, trained: Trained, command: str) -> dict[str, Any] 
     if isinstance(parts["env"].get("physics"), str):
         parts["env"]["physics"] = "auto"
     about = {**parts, "algo": config.algo, "seed": trained.seeds[0], "step": trained.step}
-    summary = _json(folder / "summary.json")
+    summary = RunFolder(folder).summary
     made = {key: summary.get(key) for key in ("device", "versions", "git_commit")}
     return {**about, "command": command, "evaluation": _evaluation(folder, trained.step), **made}
 
 
 def _evaluation(folder: Path, step: int) -> dict[str, Any] | None:
     """Mean and returns of the first seed in evaluation_policy.json of this step, if there are."""
-    values = _json(folder / "evaluation_policy.json")
-    if values.get("step") != step:
+    file = folder / "evaluation_policy.json"
+    if not file.exists() or (values := json_file(file)).get("step") != step:
         return None
-    return {"mean": values["mean"][0], "returns": values["returns"][0]}
-
-
-def _json(file: Path) -> dict[str, Any]:
     try:
-        return json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
+        return {"mean": float(values["mean"][0]), "returns": list(map(float, values["returns"][0]))}
+    except (TypeError, ValueError, LookupError) as error:
+        raise UsageError(f"{file}: is no evaluation that `evaluate` wrote") from error

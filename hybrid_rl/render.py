@@ -192,7 +192,9 @@ def main() -> None:
     from hybrid_rl.run.drawing import SUFFIXES, draw_beside
 
     default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
-    out = output("out", given["out"] or default, SUFFIXES)
+    out = Path(given["out"] or default)
+    if given["out"] or out.parent.is_dir():  # a run that is not there is named below
+        output("out", out, SUFFIXES)
     if given["at"] and out.suffix != ".png":
         raise UsageError(f"at={','.join(map(str, given['at']))}: needs out=FILE.png")
     width, height = given["width"], given["height"]

@@ -32,6 +32,8 @@ from hybrid_rl.cli.arguments import Argument, one_of, output, read
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.progress import clock
+from hybrid_rl.run.reading import json_file
+from hybrid_rl.run.reading import text as text_of
 from hybrid_rl.run.results import RunFolder, differences, find
 from hybrid_rl.studies import report_panels
 from hybrid_rl.studies.curves import Curve, area, plural, spread
@@ -124,7 +126,7 @@ def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:
     if not wanted:
         return ""
     films = {run.path: run.path / "video.mp4" for run in runs}
-    videos = {str(film): film.read_bytes() for film in films.values() if film.exists()}
+    videos = {str(film): film.read_bytes() for film in films.values() if film.is_file()}
     if len(runs) == 1 and not videos:
         try:
             videos = _drawn(runs[0].path)
@@ -201,7 +203,7 @@ def _evaluations(runs: Sequence[RunFolder]) -> str:
 def _evaluation(run: RunFolder, file: Path) -> list[list[Any]]:
     """A row for each seed of a file of `evaluate`."""
     try:
-        values = json.loads(file.read_text(encoding="utf-8"))
+        values = json_file(file)
         each = zip(values["seeds"], values["returns"], strict=True)
         rows = []
         for i, (seed, got) in enumerate(each):
@@ -210,7 +212,9 @@ def _evaluation(run: RunFolder, file: Path) -> list[list[Any]]:
             row = [run.path, mode, values["step"], seed, len(got), *map(float, ends)]
             rows.append([*row, *(f"{s:.0%}" for s in values.get("success", [])[i : i + 1])])
         return rows
-    except (ValueError, KeyError, TypeError) as error:
+    except UsageError:
+        raise
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"{file}: is no evaluation that `evaluate` wrote") from error
 
 
@@ -227,7 +231,7 @@ def _configuration(runs: Sequence[RunFolder]) -> str:
     for run in runs:
         file = run.path / "config.yaml"
         if file.exists():
-            same.setdefault(file.read_text(encoding="utf-8"), []).append(str(run.path))
+            same.setdefault(text_of(file), []).append(str(run.path))
     return text + "\n".join(
         f"<details><summary>config.yaml of {html.escape(', '.join(paths))}</summary>"
         f"<pre>{html.escape(yaml)}</pre></details>"
@@ -277,7 +281,6 @@ def main() -> None:
             raise
         many = f"one of the {len(runs)} runs in run={given['run']}"
         raise UsageError(f"{error}; it is {many}") from error
-    out.parent.mkdir(parents=True, exist_ok=True)
     write_text(out, text)
     size = out.stat().st_size / 1e6
     print(f"{out}: {plural(len(runs), 'run')}, {size:.1f} MB")

@@ -93,6 +93,9 @@ def _curve(run_dir: Path) -> None:
         return
     drawn = run_dir / "curve.png"
     try:
+        for path in (drawn, drawn.with_suffix(".json")):
+            if path.is_symlink():  # of a run of somebody else
+                path.unlink()
         save(*learning_curves.figure(run_dir, EVALUATION), drawn)
     except OSError as error:
         say(f"{drawn}: not written ({error.strerror or error})")

@@ -15,6 +15,7 @@ objectives see x. Where the model is the world itself, x is an EnvState, of whic
 critics see the observation.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import field
 from typing import Any, NamedTuple
@@ -23,6 +24,7 @@ from flax import struct
 from jax import Array
 
 PyTree = Any
+NAME = re.compile(r"(?!\.+$)[A-Za-z0-9_.-]+")  # of a task or a method
 
 
 class Spec(NamedTuple):

@@ -69,7 +69,10 @@ PAGES
 """
 NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
 PAGES = {
-    "Start": ["Getting started <self>", "docs/concepts", "docs/howto", "docs/faq", "CONTRIBUTING"],
+    "Start": [
+        *("Getting started <self>", "docs/concepts", "docs/howto", "docs/faq", "docs/files"),
+        "CONTRIBUTING",
+    ],
     "Notebooks": NOTEBOOKS,
     "Methods": ["docs/methods", "All methods <methods/index>"],
     "Results": ["docs/atlas", "docs/results/README"],

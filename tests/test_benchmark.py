@@ -43,7 +43,7 @@ def test_a_race_takes_turns_and_divides_by_the_first():
 
 def test_the_command_measures_every_part(tmp_path, capsys):
     """On the smallest of everything."""
-    out = tmp_path / "new" / "b.json"
+    out = tmp_path / "b.json"
     small = ["tasks=cartpole", "worlds=2", "learners=1", "plans=4x2", "rounds=1"]
     world = ["experiment=thesis/fig_3_2_pendulum", "algo=nn_mppi", "parts=physics,plan,loop"]
     assert run(*small, *world, f"out={out}") == 0

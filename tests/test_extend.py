@@ -117,7 +117,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
         (["target=ring", "target._target_=ring.Any"], "target._target_=ring.Any: "),
         (
             ["target=ring", "target._target_=their.Any"],
-            "target._target_=their.Any: there is no module their; put its folder on PYTHONPATH",
+            "_target_=their.Any: is no part of hybrid_rl; put its folder on PYTHONPATH",
         ),
         (
             ["algo=nn_mppi", "proposal=noise"],

@@ -80,7 +80,7 @@ def test_the_studies_are_listed_without_their_libraries(toy, capsys, arguments):
 
 
 def test_a_study_is_one_file(toy, tmp_path, capsys):
-    out = tmp_path / "new" / "a.png"
+    out = tmp_path / "a.png"
     assert draw("study=toy", "title=x", "points=5", f"out={out}") == 0
     printed = capsys.readouterr().out
     assert printed == f"x: 5 points\n{out} and {out.with_suffix('.json')}\n"

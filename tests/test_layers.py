@@ -1,6 +1,6 @@
 """Which layers import which, and the size of files.
 
-types, errors
+types, errors, parts
       ^
 core, networks
       ^
@@ -21,21 +21,24 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
 LAYER_FILES = {"types", "networks", "errors", "checks", "composition", "config", "overrides"}
+LAYER_FILES |= {"parts"}
 SHARED = {"types", "protocols", "core", "networks"}
 CONFIG = {
-    *("types", "protocols", "errors", "envs", "training"),
+    *("types", "protocols", "errors", "parts", "envs", "training"),
     *("checks", "composition", "config", "overrides"),
 }
 ALLOWED = {
     "types": set(),
     "errors": set(),
+    "parts": {"errors"},  # judges names, and builds what they name
     "protocols": {"types", "protocols"},
     "core": {"types", "protocols", "core"},
     "networks": {"types", "core"},
     "envs": {"types", "protocols", "errors", "envs"},
     "training": {*SHARED, "envs", "data", "training"},
+    "data": {*SHARED, "parts"},
     "overrides": {"errors"},
-    "checks": {"errors", "overrides", "envs"},
+    "checks": {"types", "errors", "overrides", "parts", "envs"},
     "composition": {"errors", "checks", "overrides", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints

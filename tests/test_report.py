@@ -80,7 +80,7 @@ main = partial(call, lambda: command.guarded(report.main))
 
 def test_a_page_about_two_runs_holds_everything(runs, tmp_path, capsys):
     first, second = runs
-    out = tmp_path / "new" / "page.html"
+    out = tmp_path / "page.html"
     assert main(f"run={first},{second}", f"out={out}") == 0
     assert capsys.readouterr().out.startswith(f"{out}: 2 runs, ")
     text = out.read_text()

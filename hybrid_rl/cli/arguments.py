@@ -186,11 +186,14 @@ def output(key: str, out: str | Path, suffixes: Sequence[str], *others: str) -> 
     key: of the argument. others: suffixes of further files with the same name.
 
     Raises:
-        UsageError: if its suffix is none of `suffixes`, or it cannot be written to.
+        UsageError: if its suffix is none of `suffixes`, its folder does not exist, or it cannot be
+            written to.
     """
     out = Path(out)
     if out.suffix not in suffixes:
         raise UsageError(f"{key}={out}: must end in {', '.join(suffixes)}")
+    if not out.absolute().parent.is_dir():
+        raise UsageError(f"{key}={out}: there is no folder {out.parent}")
     for path in (out, *(out.with_suffix(suffix) for suffix in others)):
         if path.is_dir():
             raise UsageError(f"{key}={out}: {path} is a folder")
@@ -198,8 +201,7 @@ def output(key: str, out: str | Path, suffixes: Sequence[str], *others: str) -> 
             if path.exists():
                 with path.open("ab"):
                     pass
-            folder = next(above for above in path.absolute().parents if above.exists())
-            with TemporaryFile(dir=folder):
+            with TemporaryFile(dir=path.absolute().parent):
                 pass
         except OSError as error:
             raise UsageError(f"{key}={out}: cannot be written to ({error.strerror})") from error

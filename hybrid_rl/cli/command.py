@@ -21,7 +21,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_task, explain, options
-from hybrid_rl.errors import UsageError, in_user_code
+from hybrid_rl.errors import UsageError, in_user_code, shown
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
@@ -170,7 +170,7 @@ def _missing(error: BaseException) -> str | None:
 
 
 def _fail(code: int, line: str) -> NoReturn:
-    print(f"hybrid_rl: {' '.join(line.split())}", file=sys.stderr, flush=True)
+    print(f"hybrid_rl: {shown(' '.join(line.split()))}", file=sys.stderr, flush=True)
     sys.exit(code)
 
 

@@ -9,9 +9,9 @@ repository come with the installed package: a relative path that does not exist 
 directory is searched there.
 """
 
+import math
 import zipfile
-import zlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.protocols import Env
-from hybrid_rl.types import PyTree, Spec
+from hybrid_rl.types import NAME, PyTree, Spec
 
 PACKAGE = Path(__file__).parents[1]
 PARENTS = (PACKAGE, PACKAGE.parent)  # of FOLDERS in a wheel and in a checkout
@@ -28,11 +28,22 @@ FOLDERS = ("demonstrations", "policies")
 HEADER = ("task", "sizes", "dt")
 ABOUT = "about"
 WRITE = "`python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes one"
-UNREADABLE = (OSError, ValueError, EOFError, TypeError, zipfile.BadZipFile, zlib.error)
+WORDS = ("task", ABOUT)  # arrays that hold text
+SMALL, RATIO = 2**26, 100  # [bytes] of all arrays that any file may hold; bytes of one on the disk
+HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
 
 
 def write(file: Path | str, task: str, spec: Spec, arrays: Mapping[str, np.ndarray]) -> None:
-    """Write `arrays` of `task`, whose sizes and time step are those of `spec`."""
+    """Write `arrays` of `task`, whose sizes and time step are those of `spec`.
+
+    Raises:
+        ValueError: for a task whose name no file can have.
+    """
+    if not NAME.fullmatch(task):
+        raise ValueError(f"task={task!r}: a file needs a name of letters, digits, _, . and -")
     header: dict[str, Any] = {
         "task": np.array(task),
         "sizes": np.array([spec.obs, spec.act]),
@@ -61,29 +72,65 @@ def read(
     """The arrays of `file` by name, with the header; the others are numbers.
 
     prefix: the beginning of every message; needed: names that the file must have besides the
-    header, which may be empty; hint: what to do if there is no such file.
+    header, which may be empty; others are then not read; hint: what to do if there is no such file.
 
     Raises:
-        ValueError: for a file that is missing or damaged, or lacks a name.
+        ValueError: for a file that is missing, damaged or too large, or lacks a name.
     """
+    needed = tuple(needed)
     path = find(file)
     if not path.is_file():
         raise ValueError(f"{prefix} no such file{hint and '; '}{hint}")
     try:
-        with path.open("rb") as data, np.load(data, allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-    except UNREADABLE as error:
+        arrays = _arrays(path, (*needed, *header, ABOUT) if needed else None)
+    except Exception as error:  # whatever NumPy makes of damaged bytes
         raise ValueError(f"{prefix} is damaged, cut short, or no .npz file") from error
+    if arrays is None:
+        raise ValueError(f"{prefix} would need {RATIO} times its size in memory")
     if missing := [name for name in (*needed, *header) if name not in arrays]:
         raise ValueError(f"{prefix} lacks {', '.join(missing)}")
     for name, array in arrays.items():
-        if name not in ("task", ABOUT) and array.dtype.kind not in "biuf":
-            raise ValueError(f"{prefix} {name} must hold numbers")
-    if not header:
-        return arrays
-    if arrays["sizes"].shape != (2,) or arrays["dt"].ndim or arrays["task"].ndim:
-        raise ValueError(f"{prefix} sizes must be two numbers, dt a number, task a name")
+        if array.dtype.kind not in ("U" if name in WORDS else "biuf"):
+            raise ValueError(f"{prefix} {name} must hold {'text' if name in WORDS else 'numbers'}")
+    if header:
+        _check_header(prefix, arrays)
     return arrays
+
+
+def _arrays(path: Path, wanted: Container[str] | None) -> dict[str, np.ndarray] | None:
+    """The wanted arrays of a file, None: all; None if they would be much larger than the file.
+
+    Raises an error of any kind for a damaged file. Sizes are compared before memory is taken.
+    """
+    with zipfile.ZipFile(path) as file:
+        members = {each.filename.removesuffix(".npy"): each for each in file.infolist()}
+        if len(members) < len(file.infolist()):
+            raise ValueError("a name occurs twice")
+        kept = {n: each for n, each in members.items() if wanted is None or n in wanted}
+        most = max(SMALL, RATIO * path.stat().st_size)
+        if sum(each.file_size for each in kept.values()) > most:
+            return None
+        return {name: _array(file, each) for name, each in kept.items()}
+
+
+def _array(file: zipfile.ZipFile, member: zipfile.ZipInfo) -> np.ndarray:
+    """One array, whose header must tell the size that the file has."""
+    with file.open(member) as data:
+        shape, _, dtype = HEADERS[np.lib.format.read_magic(data)](data)
+        size = data.tell() + math.prod(shape) * dtype.itemsize
+    if dtype.hasobject or min(shape, default=0) < 0 or size != member.file_size:
+        raise ValueError("its header does not fit")
+    with file.open(member) as data:
+        return np.lib.format.read_array(data, allow_pickle=False)
+
+
+def _check_header(prefix: str, arrays: Mapping[str, np.ndarray]) -> None:
+    """Raise ValueError unless the header has the form that `write` gives it."""
+    task, sizes, dt = (arrays[name] for name in HEADER)
+    if sizes.shape != (2,) or sizes.dtype.kind not in "iu" or dt.ndim or task.ndim:
+        raise ValueError(f"{prefix} sizes must be two numbers, dt a number, task a name")
+    if not NAME.fullmatch(str(task)):
+        raise ValueError(f"{prefix} task={str(task)[:40]!r}: must be letters, digits, _, . and -")
 
 
 def check_task(
@@ -146,7 +193,8 @@ def policy(
             raise ValueError(
                 f"{prefix} {name} is {arrays[name].shape}, this policy's is {shapes[name]}"
             )
-    kept = {name: arrays[name] for name in shapes}
+    with np.errstate(all="ignore"):  # what becomes infinite is refused
+        kept = {_name(path): arrays[_name(path)].astype(leaf.dtype) for path, leaf in leaves}
     _check_finite(prefix, kept)
     return jax.tree.unflatten(tree, map(jnp.asarray, kept.values()))
 

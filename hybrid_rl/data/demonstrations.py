@@ -45,7 +45,8 @@ def load(file: Path | str) -> dict[str, np.ndarray]:
     arrays = archive.read(prefix, file, (*COLUMNS, "episode"), RECORD)
     _check_sizes(prefix, arrays)
     for name in COLUMNS:
-        arrays[name] = arrays[name].astype(np.float32)
+        with np.errstate(over="ignore"):  # what becomes infinite is refused
+            arrays[name] = arrays[name].astype(np.float32)
         finite = np.isfinite(arrays[name].reshape(len(arrays[name]), -1)).all(1)
         if not finite.all():
             raise ValueError(f"{prefix} {name} is not finite in row {finite.argmin()}")

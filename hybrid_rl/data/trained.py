@@ -7,8 +7,7 @@ policy's parameters by its path, such as policy/trunk/params/Dense_0/kernel. `ab
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, is_dataclass
-from importlib import import_module
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +15,12 @@ import jax
 import numpy as np
 from jax import Array
 
+from hybrid_rl import parts
 from hybrid_rl.core import archive
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import PyTree, Spec
+
+ITSELF = "hybrid_rl.data.trained.TrainedPolicy"
 
 
 def save(
@@ -49,48 +51,29 @@ def described(file: str) -> Any:
         raise ValueError(f"{prefix} does not describe its policy; {archive.WRITE}")
     try:
         node = json.loads(str(text))["policy"]
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise ValueError(f"{prefix} its description lacks policy, or is damaged") from error
-    policy = part(prefix, node)
+    policy = part(prefix, file, node)
     if not hasattr(policy, "mean"):
         raise ValueError(f"{prefix} describes no policy")
     return policy
 
 
-def part(prefix: str, node: Any) -> Any:
-    """The part that `node` of a description names, with the parts in it.
+def part(prefix: str, file: str, node: Any) -> Any:
+    """The part that `node` of the description in `file` names, with the parts in it.
 
-    Nothing but dataclasses of hybrid_rl is called, since a file may come from anywhere. prefix:
-    the beginning of every message.
+    prefix: the beginning of every message.
 
     Raises:
-        ValueError: for another class, or fields that it does not have or accept.
+        ValueError: for what is no part (hybrid_rl.parts), or fields that it does not have or
+            accept.
     """
-    if isinstance(node, list):
-        return [part(prefix, each) for each in node]
-    if not isinstance(node, dict):
-        return node
-    fields = {key: part(prefix, value) for key, value in node.items() if key != "_target_"}
-    if "_target_" not in node:
-        return fields
-    target = str(node["_target_"])
     try:
-        return _class(target)(**fields)
-    except (ImportError, AttributeError) as error:
-        raise ValueError(f"{prefix} {target} is no part of hybrid_rl") from error
-    except TypeError as error:
-        raise ValueError(f"{prefix} {target}: {error}") from error
-
-
-def _class(target: str) -> Any:
-    """The dataclass of hybrid_rl of this name; ImportError or AttributeError if there is none."""
-    module, _, name = target.rpartition(".")
-    if not module.startswith("hybrid_rl."):
-        raise ImportError(target)
-    found = getattr(import_module(module), name)
-    if not (isinstance(found, type) and is_dataclass(found) and found.__module__ == module):
-        raise ImportError(target)
-    return found
+        if any(name == ITSELF for _, name in parts.targets([node])):
+            raise ValueError("describes a policy in another file, not its own")
+        return parts.built(node, archive.find(file))
+    except ValueError as error:
+        raise ValueError(f"{prefix} {error}") from error
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ overrides. A part that occurs several times, such as a model that both the plann
 have, is written once and referenced by a YAML anchor.
 """
 
-import json
+import io
 import os
 import re
 from collections import Counter
@@ -14,7 +14,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
-from pkgutil import resolve_name
 from tempfile import TemporaryFile
 from typing import Any
 
@@ -22,12 +21,14 @@ import yaml
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
-from hybrid_rl import __version__
+from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
+from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.lock import locked
+from hybrid_rl.run.reading import json_file, yaml_file
 
 FIRST = "0.2"  # version that writes its number to config.yaml
 
@@ -181,21 +182,11 @@ def read(folder: Path, key: str) -> DictConfig:
             training wrote.
     """
     path = folder / "config.yaml"
-    if not path.exists():
-        raise UsageError(f"{key}={folder}: no run folder there (no config.yaml in it)")
-    config: Any = _parsed(path)
+    config: Any = parsed(folder, key)
     _check_version(folder, key, config)
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
         raise UsageError(f"{path}: lacks {', '.join(missing)}")
-    for part, target in _targets({"env": config.env} | dict(config.items())):
-        try:
-            resolve_name(target)
-        except (ImportError, AttributeError, ValueError) as error:
-            raise UsageError(
-                f"{path}: {part}={target} cannot be imported ({error}); put the folder of its "
-                "module on PYTHONPATH"
-            ) from error
     _check_seeds(folder, config)
     return config
 
@@ -224,9 +215,8 @@ def _minor(version: Any) -> list[str]:
 def _version_of_summary(folder: Path) -> str | None:
     """The version that summary.json names, if it does."""
     try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        return str(summary["versions"]["hybrid_rl"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return str(json_file(folder / "summary.json")["versions"]["hybrid_rl"])
+    except (ValueError, KeyError, TypeError):
         return None
 
 
@@ -236,7 +226,7 @@ def _check_seeds(folder: Path, config: DictConfig) -> None:
     first, number = config.seed, config.num_seeds
     if saved is None or not (isinstance(first, int) and isinstance(number, int)):
         return
-    if saved != list(range(first, first + number)):
+    if len(saved) != number or saved != list(range(first, first + number)):
         listed = ", ".join(map(str, saved))
         raise UsageError(
             f"{folder / 'config.yaml'}: seed={first} num_seeds={number}: its checkpoint holds the "
@@ -261,30 +251,28 @@ def blamed(folder: Path) -> Iterator[None]:
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 
 
-def _parsed(path: Path) -> DictConfig:
-    """What a file holds that OmegaConf wrote."""
-    try:
-        config = OmegaConf.load(path)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = f"line {mark.line + 1}" if mark else "it"
-        raise UsageError(f"{path}: {line} is no YAML") from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: is no text in YAML") from error
-    except OSError as error:  # of the system, or OmegaConf's for a file that is one word
-        reason = error.strerror or "it holds no keys"
-        raise UsageError(f"{path}: cannot be read ({reason})") from error
+def parsed(folder: Path, key: str = "runs") -> DictConfig:
+    """What config.yaml of the run in `folder` holds, which the argument `key` named.
+
+    It may come from anybody: it has plain values only, names parts only (hybrid_rl.parts), and
+    compiled programs are kept where this machine keeps them.
+
+    Raises:
+        UsageError: if there is none, or it is not what training writes.
+    """
+    path = folder / "config.yaml"
+    if not path.exists():
+        raise UsageError(f"{key}={folder}: no run folder there (no config.yaml in it)")
+    config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))
     if not isinstance(config, DictConfig):
         raise UsageError(f"{path}: holds no keys")
     if not config:
         raise UsageError(f"{path}: is empty")
+    try:
+        parts.check(OmegaConf.to_container(config), folder)
+    except ValueError as error:
+        _check_version(folder, key, config)  # another one may have had such a part
+        raise UsageError(f"{path}: {error}") from error
+    defaults: Any = OmegaConf.load(CONF / "train.yaml")
+    config.compile_cache = defaults.compile_cache
     return config
-
-
-def _targets(node: Any, where: str = "") -> Iterator[tuple[str, str]]:
-    """Every `_target_` below a part of a configuration, with its key."""
-    for name, value in node.items():
-        if name == "_target_":
-            yield f"{where}{name}", str(value)
-        elif isinstance(value, DictConfig):
-            yield from _targets(value, f"{where}{name}.")

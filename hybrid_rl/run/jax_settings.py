@@ -1,6 +1,7 @@
 """Settings of JAX for a process: compilation cache, matrix precision, threads."""
 
 import os
+import re
 import sys
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -9,6 +10,8 @@ from omegaconf import DictConfig
 
 CACHE = "JAX_COMPILATION_CACHE_DIR"  # JAX's own variable, which overrides compile_cache
 CACHE_BYTES = 4 * 2**30  # [bytes] at most
+OURS = "programs"  # folder in compile_cache, as JAX deletes from its folder what it likes
+ENTRY = re.compile(r"(.+-[0-9a-f]{64})-cache")  # a file of JAX's cache
 THREADS = 8  # of XLA with MJX on a CPU, at least
 
 
@@ -37,7 +40,7 @@ def prepare(config: DictConfig) -> None:
 
 def cache_folder(compile_cache: str) -> Path | None:
     """The folder of compiled programs; None, after a line on stderr, if it cannot be written."""
-    cache = Path(compile_cache).expanduser()
+    cache = Path(compile_cache).expanduser() / OURS
     try:
         cache.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=cache):
@@ -52,5 +55,6 @@ def cache_folder(compile_cache: str) -> Path | None:
 def _repair(cache: Path) -> None:
     """Remove entries that a kill left incomplete: JAX warns of them and never replaces them."""
     for entry in cache.glob("*-cache"):
-        if not entry.with_name(entry.name.removesuffix("-cache") + "-atime").exists():
+        name = ENTRY.fullmatch(entry.name)
+        if name and not entry.with_name(f"{name[1]}-atime").exists():
             entry.unlink(missing_ok=True)

@@ -1,6 +1,5 @@
 """A run from its configuration to its summary: a new one, or one that is resumed."""
 
-import json
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -20,6 +19,7 @@ from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.records import summary_of
 from hybrid_rl.run.results import flat
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
@@ -28,6 +28,7 @@ from hybrid_rl.training.loop import Loop
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "logger")
+OF_A_SESSION += ("compile_cache",)
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 
@@ -125,7 +126,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
     old = folder.read(run_dir, "resume")
     if not checkpoint.steps(run_dir / "checkpoints"):
         raise UsageError(f"resume={run_dir}: holds no checkpoint; start the run again")
-    for key in given.keys() - {"resume", "total_steps"}:
+    for key in given.keys() - {"resume", "total_steps", "compile_cache"}:
         before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
         if _same(old, config) if before is UNKNOWN else before == now:
             continue
@@ -142,7 +143,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
             )
         old.total_steps = steps
         countable(old)
-    old.resume = config.resume
+    old.resume, old.compile_cache = config.resume, config.compile_cache
     return old
 
 
@@ -177,7 +178,7 @@ def _same(old: DictConfig, config: DictConfig) -> bool:
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     """summary.json of a run that has reached its end and has a checkpoint there; None else."""
     try:
-        summary = json.loads((run_dir / "summary.json").read_text(encoding="utf-8"))
+        summary = summary_of(run_dir / "summary.json") | {"run_dir": str(run_dir)}
         done = summary["finished"] and summary["total_steps"] >= config.total_steps
         newest = run_dir / "checkpoints" / str(summary["total_steps"])
     except (OSError, ValueError, KeyError, TypeError):

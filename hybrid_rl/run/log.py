@@ -17,6 +17,8 @@ import numpy as np
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.loggers import Logger, scalars
+from hybrid_rl.run.reading import appended, lines
+from hybrid_rl.run.records import row_of
 
 if TYPE_CHECKING:
     from hybrid_rl.run.board import Board
@@ -33,7 +35,7 @@ class RunLog:
         self.run_dir = run_dir
         self.loggers = loggers
         self.seeds = tuple(seeds)
-        self._rows = (run_dir / "metrics.jsonl").open("ab")
+        self._rows = appended(run_dir / "metrics.jsonl")
         self._boards: dict[int, Board] = {}  # by seed
         self._purge_step: int | None = None
 
@@ -95,14 +97,15 @@ class RunLog:
         state at the checkpoint.
         """
         path = self.run_dir / "metrics.jsonl"
-        known = path.read_bytes()[:offset]
-        whole = known[: known.rfind(b"\n") + 1]
-        self._rows.truncate(len(whole))
+        whole = [line for line in lines(path, offset) if line.endswith(b"\n")]
+        rows = list(map(row_of, whole))  # before anything is cut
+        size = sum(map(len, whole))
+        self._rows.truncate(size)
         self._rows.seek(0, os.SEEK_END)
         self._purge_step = step + 1
         for logger in self.loggers:
-            logger.rewind(map(json.loads, whole.splitlines()))
-        if len(whole) == offset:
+            logger.rewind(row for row in rows if row is not None)
+        if size == offset and None not in rows:
             return []
         return [f"{path} has changed: rows before step {step} are missing or edited"]
 

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.reading import appended, text
+from hybrid_rl.run.records import COORDINATES, Row
 
-Row = dict[str, Any]  # of metrics.jsonl
-COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name is a scalar
 HEADER = (*COORDINATES, "metric", "value")
 NAMES = ("csv", "wandb")
 INSTALL = 'not installed; pip install "hybrid_rl[wandb]"'
@@ -54,7 +54,7 @@ class CSV:
     def __init__(self, folder: Path) -> None:
         self._path = folder / "metrics.csv"
         new = not self._path.exists()
-        self._file = self._path.open("a", 1, "ascii", newline="")
+        self._file = appended(self._path, "a", buffering=1, encoding="ascii", newline="")
         self._lines = csv.writer(self._file)
         if new:
             self._lines.writerow(HEADER)
@@ -121,7 +121,7 @@ class WandB:
         if not file.exists():
             file.parent.mkdir(exist_ok=True)
             file.write_text(uuid.uuid4().hex[:12], encoding="ascii")
-        return file.read_text(encoding="ascii")
+        return text(file)
 
     def flush(self) -> None:
         """Nothing: they send rows from a process of their own."""

@@ -14,12 +14,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import yaml  # OmegaConf's own parser, in C: a configuration has a thousand lines
+import yaml
 
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.reading import Loader, lines, yaml_file
+from hybrid_rl.run.records import COORDINATES, row_of, summary_of
 
-NOT_ROWS = ("step", "seed", "wall_s", "diverged")  # of a row; every other name is a metric
+NOT_ROWS = (*COORDINATES, "diverged")  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
 # what they write, when and where. None of them changes what a learner does up to a given step.
 NOT_SETTINGS = (
@@ -46,20 +48,17 @@ class RunFolder:
     @cached_property
     def _read(self) -> tuple[list[dict[str, Any]], bool]:
         """The rows, and whether the last one is incomplete."""
-        file = self.path / "metrics.jsonl"
-        lines = _text(file).split("\n")
-        rows = []
-        for number, line in enumerate(lines[:-1], 1):  # what follows the last line end is cut
-            try:
-                row = json.loads(line)
-            except ValueError:
-                row = None
-            if not isinstance(row, dict) or not {"step", "seed", "wall_s"} <= row.keys():
+        file, rows, last = self.path / "metrics.jsonl", [], b""
+        for number, last in enumerate(lines(file), 1):
+            if not last.endswith(b"\n"):  # what follows the last line end is cut
+                break
+            row = row_of(last)
+            if row is None:
                 raise UsageError(
                     f"{file}: line {number} is no row of metrics (JSON with step, seed and wall_s)"
                 )
             rows.append(row)
-        return rows, bool(lines[-1].strip())
+        return rows, not last.endswith(b"\n") and bool(last.strip())
 
     @property
     def rows(self) -> list[dict[str, Any]]:
@@ -77,12 +76,7 @@ class RunFolder:
         file = self.path / "config.yaml"
         if not file.exists():
             return {}
-        try:
-            values = yaml.load(_text(file), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-        except yaml.YAMLError as error:
-            mark = getattr(error, "problem_mark", None)
-            line = f", line {mark.line + 1}" if mark else ""
-            raise UsageError(f"{file}{line}: is not YAML") from error
+        values = yaml_file(file, lambda text: yaml.load(text, Loader))
         if not isinstance(values, dict):
             raise UsageError(f"{file}: is empty, or no group of keys")
         return flat(values)
@@ -93,13 +87,7 @@ class RunFolder:
         file = self.path / "summary.json"
         if not file.exists():
             return {}
-        try:
-            values = json.loads(_text(file))
-        except ValueError as error:
-            raise UsageError(f"{file}: is not JSON") from error
-        if not isinstance(values, dict):
-            raise UsageError(f"{file}: is no group of keys")
-        return values
+        return summary_of(file)
 
     def word(self, key: str) -> str:
         """The value at `key` as a word, of a part its class; "null" for null.
@@ -235,15 +223,6 @@ def _ending(key: str, keys: Sequence[str]) -> str:
 def _letters(number: int) -> str:
     """A, B, ..., Z, A1, B1, ..."""
     return chr(ord("A") + number % 26) + (str(number // 26) if number >= 26 else "")
-
-
-def _text(file: Path) -> str:
-    try:
-        return file.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise UsageError(f"{file}: is not text (UTF-8)") from error
-    except OSError as error:
-        raise UsageError(f"{file}: cannot be read ({error.strerror})") from error
 
 
 def flat(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:

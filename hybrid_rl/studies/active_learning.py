@@ -35,7 +35,7 @@ from hybrid_rl.studies import unseen
 from hybrid_rl.studies.curves import band, iqm
 from hybrid_rl.studies.recorded import Recorded, matching, read
 from hybrid_rl.studies.significant import rounded
-from hybrid_rl.studies.style import STYLE, legend_outside, line_styles, words
+from hybrid_rl.studies.style import STYLE, legend_outside, line_styles, plain_log, words
 from hybrid_rl.studies.unseen import Unseen
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch
@@ -263,6 +263,7 @@ def draw(numbers: dict[str, Any]) -> Any:
             axes.set(title=title, xlabel="Episodes")
             if name in LOG:
                 axes.set_yscale("log")
+                plain_log(axes.yaxis)
         panels[0].axhline(exact["cost"][0], color="k", lw=0.8, ls=":", label="exact model")
         panels[0].set_ylim(-0.5, MOST_COST)
         panels[-1].set_ylim(-0.02, 1.02)

@@ -23,13 +23,12 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from omegaconf import OmegaConf
 
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import labels
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.results import RunFolder
+from hybrid_rl.run.folder import parsed
 from hybrid_rl.studies.recorded import learned, matching, read
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import (
@@ -104,8 +103,7 @@ def of(folder: Path) -> Explored:
     Raises:
         UsageError: unless they asked for flips of a lander.
     """
-    has_run = bool(RunFolder(folder).settings)  # a damaged file raises here, with its name
-    config: Any = OmegaConf.load(folder / "config.yaml") if has_run else {}
+    config: Any = parsed(folder) if (folder / "config.yaml").exists() else {}
     if "spacing" not in (config.get("learners", {}).get("policy") or {}):
         raise UsageError(f"runs={folder}: needs a run of experiment=thesis/fig_6_9")
     recorded = read(folder, "lander")

@@ -118,12 +118,10 @@ def reported(best: Curve, lyapunov: Curve | None) -> dict[str, Any]:
 
 def _seconds(curve: Curve) -> np.ndarray:
     """Time [s] of a curve's points."""
-    from omegaconf import OmegaConf
-
     from hybrid_rl.config import build
+    from hybrid_rl.run.folder import parsed
 
-    config: Any = OmegaConf.load(Path(curve.runs[0]) / "config.yaml")
-    return curve.x * build(config).agent.spec.dt
+    return curve.x * build(parsed(Path(curve.runs[0]))).agent.spec.dt
 
 
 def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str, colour: str) -> None:

@@ -79,7 +79,7 @@ def curves(
         every = [each for run in members for each in learners(run, metric, _time(x))]
         groups[key] = [each for each in every if each.counts]
         notes[key] = [*settings, *_without_metric(metric, every), *_truncated(members)]
-    if not any(len(each.x) for members in groups.values() for each in members):
+    if not any(np.isfinite(each.y).any() for members in groups.values() for each in members):
         raise _no_metric(folders, metric)
     for task in {task for (task, _), members in groups.items() if members}:
         panel = {key: members for key, members in groups.items() if key[0] == task and members}
@@ -212,8 +212,10 @@ def _truncated(members: list[RunFolder]) -> list[str]:
 
 
 def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:
-    """The error if no run has the metric; it names those that the runs have."""
+    """The error if no run has a value of the metric; it names those that the runs have."""
     names = {name for run in folders for row in run.rows for name in row} - set(NOT_ROWS)
+    if metric in names:
+        return UsageError(f"metric={metric}: has no finite value in these runs")
     has = ", ".join(sorted(names)) or "none yet"
     return UsageError(f"metric={metric}: not in these runs; they have {has}")
 

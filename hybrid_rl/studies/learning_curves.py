@@ -15,7 +15,6 @@ missing values and failed seeds are in the picture and in the JSON.
 """
 
 import itertools
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -23,6 +22,7 @@ import numpy as np
 
 from hybrid_rl.cli.arguments import number
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.reading import json_file
 from hybrid_rl.studies.curves import (
     Curve,
     area,
@@ -137,11 +137,11 @@ def _read(file: str | Path) -> dict[str, Any]:
         UsageError: if the file cannot be read or has no curves.
     """
     try:
-        numbers = json.loads(Path(file).read_text(encoding="utf-8"))
+        numbers = json_file(Path(file))
         from_numbers(numbers)
         return numbers
-    except OSError as error:
-        raise UsageError(f"runs={file}: cannot be read ({error.strerror})") from error
+    except UsageError as error:
+        raise UsageError(f"runs={error}") from error
     except (ValueError, KeyError, TypeError) as error:
         raise UsageError(f"runs={file}: has no curves written by figures") from error
 

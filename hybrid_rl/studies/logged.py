@@ -6,6 +6,7 @@ that step: the failure counts against its method, and the curve of the others go
 metrics the worst value is not known, and a failed learner has no value.
 """
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -41,9 +42,10 @@ class Learner:
 
 def learners(run: RunFolder, metric: str, x: str) -> list[Learner]:
     """The learners of a run; x: "step" or "wall_s"."""
-    every = []
-    for seed in sorted({row["seed"] for row in run.rows}):
-        rows = [row for row in run.rows if row["seed"] == seed]
+    every, of_seed = [], defaultdict(list)
+    for row in run.rows:
+        of_seed[row["seed"]].append(row)
+    for seed, rows in sorted(of_seed.items()):
         points = [(row[x], row[metric]) for row in rows if metric in row]
         at, y = np.array(points, float).reshape(-1, 2).T  # None becomes NaN
         order = np.argsort(at, kind="stable")

@@ -21,6 +21,7 @@ from omegaconf import OmegaConf
 from hybrid_rl.config import Run, build
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
+from hybrid_rl.run.folder import parsed
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.studies.curves import band, curves, improvement, iqm
 from hybrid_rl.studies.recorded import labels, learned, matching
@@ -84,9 +85,7 @@ def queries(pattern: str, refit: int, at: Sequence[int]) -> dict[str, Any]:
 
 def _config(folder: Path) -> Any:
     """The configuration of a run whose clone asks a teacher."""
-    if not RunFolder(folder).settings:  # a damaged file raises here, with its name
-        raise UsageError(f"runs={folder}: not a run folder (it has no config.yaml)")
-    config: Any = OmegaConf.load(folder / "config.yaml")
+    config: Any = parsed(folder)
     learner = config.learners.get("policy")
     if learner is None or "teacher" not in learner or not learner.first:
         raise UsageError(

@@ -1,6 +1,5 @@
 """Pictures and lines of clones that choose their queries (hybrid_rl.studies.queries)."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -8,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.reading import json_file
 from hybrid_rl.studies import queries
 from hybrid_rl.studies.style import legend_outside, line_styles, words
 
@@ -33,10 +33,10 @@ def merged(files: Sequence[Path]) -> dict[str, Any]:
     made: dict[str, Any] = {}
     for file in files:
         try:
-            one = json.loads(file.read_text())
-        except (OSError, ValueError) as error:
-            raise UsageError(f"runs={file}: cannot be read as JSON") from error
-        if not isinstance(one, dict) or one.get("view") != "queries":
+            one = json_file(file)
+        except UsageError as error:
+            raise UsageError(f"runs={error}") from error
+        if one.get("view") != "queries":
             raise UsageError(f"runs={file}: needs a JSON of study=imitation view=queries")
         made = made or {**one, "methods": {}}
         for key in SAME:

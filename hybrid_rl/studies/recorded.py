@@ -6,12 +6,12 @@ from typing import Any, NamedTuple
 
 import jax
 import numpy as np
-from omegaconf import OmegaConf
 
 from hybrid_rl.config import Run, build
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
+from hybrid_rl.run.folder import parsed
 from hybrid_rl.run.results import RunFolder, differences, short
 from hybrid_rl.training.loop import Loop
 
@@ -53,9 +53,7 @@ def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
         UsageError: unless it is a run of one of the tasks, or of any if none is given, with a
             complete memory of one world.
     """
-    if not RunFolder(folder).settings:  # a damaged file raises here, with its name
-        raise UsageError(f"{key}={folder}: not a run folder (it has no config.yaml)")
-    config: Any = OmegaConf.load(folder / "config.yaml")
+    config: Any = parsed(folder, key)
     fits = config.task in tasks or not tasks
     if not fits or config.num_envs != 1 or not config.checkpoint_replay:
         words = f"{' or '.join(tasks)}, " if tasks else ""

@@ -89,6 +89,7 @@ STYLE: dict[Any, Any] = {
     "pdf.fonttype": 42,  # text stays text
     "svg.fonttype": "none",
     "svg.hashsalt": "hybrid_rl",  # equal numbers give equal files
+    "text.parse_math": False,  # names in run folders may hold a $
 }
 
 

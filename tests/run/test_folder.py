@@ -142,7 +142,7 @@ def broken_yaml(path):
 
 def random_bytes(path):
     path.write_bytes(bytes(range(160, 256)))
-    return "config.yaml: is no text in YAML"
+    return "config.yaml: is not text (UTF-8)"
 
 
 def empty(path):
@@ -190,7 +190,7 @@ def other_network(path):
 
 def other_module(path):
     path.write_text(path.read_text().replace("hybrid_rl.envs.analytic.pendulum.", "kettle."))
-    return "config.yaml: env._target_=kettle.Pendulum cannot be imported (No module named 'kettle')"
+    return "config.yaml: env._target_=kettle.Pendulum: is no part of hybrid_rl; put its folder on"
 
 
 HARM = [broken_yaml, random_bytes, empty, a_word, without_env, without_physics, other_seeds]

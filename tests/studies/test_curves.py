@@ -215,9 +215,9 @@ def test_another_class_is_one_difference(tmp_path):
     [
         ("metrics.jsonl", b'{"step": 1, "seed": 0, "wall_s": 1}\nnonsense\n', "line 2 is no row"),
         ("metrics.jsonl", b"[1]\n", "line 1 is no row of metrics"),
-        ("metrics.jsonl", b"\xa0\xff\n", "is not text"),
+        ("metrics.jsonl", b"\xa0\xff\n", "line 1 is no row of metrics"),
         ("metrics.jsonl", b"", "metrics.jsonl: no row of metrics yet"),
-        ("config.yaml", b"a: [\n", "config.yaml, line 2: is not YAML"),
+        ("config.yaml", b"a: [\n", "config.yaml: line 2 is no YAML"),
         ("config.yaml", b"", "config.yaml: is empty, or no group of keys"),
         ("config.yaml", b"\xa0\xff", "config.yaml: is not text"),
         ("summary.json", b"{", "summary.json: is not JSON"),

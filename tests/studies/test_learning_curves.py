@@ -240,11 +240,11 @@ def test_a_table_has_a_row_for_each_value_of_each_seed(tmp_path, capsys):
     one.each[2, 1] = np.nan
     drawn = [one, curve("ant", "hybrid, long", seeds=1, points=3)]
     save(plot(drawn), numbers_of(drawn, "eval/return"), tmp_path / "a.png")
-    arguments = f"runs={tmp_path / 'a.json'}", f"out={tmp_path / 'new' / 'a.csv'}"
+    arguments = f"runs={tmp_path / 'a.json'}", f"out={tmp_path / 'a.csv'}"
     assert call(lambda: command.guarded(figures.main), *arguments) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "new" / "a.csv")
-    assert [path.name for path in (tmp_path / "new").iterdir()] == ["a.csv"]
-    with (tmp_path / "new" / "a.csv").open(newline="") as file:
+    assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "a.csv")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.json", "a.png"]
+    with (tmp_path / "a.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == ["exp_name", "env_name", "seed", "metric", "env_step", "value"]
     read = {

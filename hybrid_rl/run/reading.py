@@ -1,0 +1,180 @@
+"""Text, JSON and YAML from files that may be damaged, or come from anybody.
+
+A file that is no plain one, such as a pipe or a device, is not read; one that is too large, or
+whose content would grow beyond measure, is refused before it is parsed.
+"""
+
+import errno
+import json
+import os
+import stat
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import yaml
+
+from hybrid_rl.errors import UsageError
+
+TEXT, YAML, LINE = 2**25, 2**20, 2**20  # [bytes] of a file, of one in YAML, of a line at most
+VALUES = 20_000  # of a YAML file at most; what is referenced counts each time
+DEEPEST = 40  # groups within groups
+NO_WAIT, NO_LINK = getattr(os, "O_NONBLOCK", 0), getattr(os, "O_NOFOLLOW", 0)
+Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def opened(file: Path) -> BinaryIO:
+    """A plain file, open for reading.
+
+    Raises:
+        UsageError: if it cannot be read, or is a folder, a pipe or a device.
+    """
+    try:
+        handle = os.open(file, os.O_RDONLY | NO_WAIT)
+        if stat.S_ISREG(os.fstat(handle).st_mode):
+            return os.fdopen(handle, "rb")
+    except OSError as error:
+        raise UsageError(f"{file}: cannot be read ({error.strerror})") from error
+    os.close(handle)
+    raise UsageError(f"{file}: cannot be read (it is no plain file)")
+
+
+def appended(file: Path, mode: str = "ab", **how: Any) -> Any:
+    """A file of a run, open to append, made if there is none; a link in a run is not followed.
+
+    how: as for `open`.
+
+    Raises:
+        UsageError: for a link, a pipe or a device, behind which something else may be lost.
+    """
+    try:
+        handle = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND | NO_LINK | NO_WAIT, 0o666)
+        if stat.S_ISREG(os.fstat(handle).st_mode):
+            return os.fdopen(handle, mode, **how)
+        os.close(handle)
+    except OSError as error:
+        if error.errno not in (errno.ELOOP, errno.ENXIO):
+            raise
+    raise UsageError(f"{file}: is a link, or no plain file; a run writes to its own files")
+
+
+def text(file: Path, most: int = TEXT) -> str:
+    """The text of a file of at most so many bytes.
+
+    Raises:
+        UsageError: if it is no plain file, too large, or no text.
+    """
+    with opened(file) as data:
+        content = data.read(most + 1)
+    if len(content) > most:
+        raise UsageError(f"{file}: is larger than {most // 2**20} MB")
+    try:
+        return content.decode("utf-8").replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        raise UsageError(f"{file}: is not text (UTF-8)") from error
+
+
+def lines(file: Path, most: int | None = None) -> Iterator[bytes]:
+    """The lines of a file with their ends, of its first `most` bytes.
+
+    Raises:
+        UsageError: if it is no plain file, or a line is too long.
+    """
+    with opened(file) as data:
+        left, number = most, 0
+        while left is None or left > 0:
+            line = data.readline(LINE if left is None else min(left, LINE))
+            if not line:
+                return
+            number += 1
+            if len(line) == LINE:
+                raise UsageError(f"{file}: line {number} is longer than {LINE // 2**20} MB")
+            left = None if left is None else left - len(line)
+            yield line
+
+
+def from_json(content: str | bytes) -> Any:
+    """What a text of JSON holds.
+
+    Raises:
+        ValueError: if it is none, or nested too deeply.
+    """
+    try:
+        return json.loads(content)
+    except RecursionError as error:
+        raise ValueError("is nested too deeply") from error
+
+
+def json_file(file: Path) -> dict[str, Any]:
+    """The group of keys in a file of JSON.
+
+    Raises:
+        UsageError: if it cannot be read, or is something else.
+    """
+    content = text(file)
+    try:
+        values = from_json(content)
+    except ValueError as error:
+        raise UsageError(f"{file}: is not JSON") from error
+    if not isinstance(values, dict):
+        raise UsageError(f"{file}: is no group of keys")
+    return values
+
+
+def yaml_file(file: Path, load: Callable[[str], Any]) -> Any:
+    """What `load` makes of the text of a YAML file.
+
+    Raises:
+        UsageError: if it is no YAML, has tags, merged keys or interpolations, which training does
+            not write, or is too large or nested too deeply.
+    """
+    content = text(file, YAML)
+    try:
+        _measure(content)
+        return load(content)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = f"line {mark.line + 1}" if mark else "it"
+        raise UsageError(f"{file}: {line} is no YAML") from error
+    except yaml.YAMLError as error:
+        raise UsageError(f"{file}: is no text in YAML") from error
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{file}: {str(error).partition(chr(10))[0]}") from error
+
+
+def _measure(content: str) -> None:
+    """Raise ValueError for YAML that would become too large, or more than plain values."""
+    sizes = [0]  # values in each open group; the first counts the whole file
+    anchors: list[str | None] = []  # of each open group
+    known: dict[str, int] = {}  # anchor -> values below it
+    for event in yaml.parse(content, Loader):
+        match event:
+            case yaml.CollectionStartEvent():
+                sizes.append(1)
+                anchors.append(event.anchor)
+            case yaml.CollectionEndEvent():
+                size, anchor = sizes.pop(), anchors.pop()
+                sizes[-1] += size
+                known |= {anchor: size} if anchor else {}
+            case yaml.AliasEvent():
+                if event.anchor not in known:
+                    raise ValueError(f"*{event.anchor} refers to itself, or to nothing")
+                sizes[-1] += known[event.anchor]
+            case yaml.ScalarEvent():
+                known |= {event.anchor: 1} if event.anchor else {}
+                sizes[-1] += 1
+                _check_scalar(event)
+        if getattr(event, "tag", None) not in (None, "!"):
+            raise ValueError(f"line {event.start_mark.line + 1} is no YAML of training (a tag)")
+        if len(sizes) > DEEPEST:
+            raise ValueError(f"line {event.start_mark.line + 1} is nested too deeply")
+        if sizes[-1] > VALUES:
+            raise ValueError(f"holds more than {VALUES:,} values")
+
+
+def _check_scalar(event: Any) -> None:
+    line = f"line {event.start_mark.line + 1}"
+    if event.value == "<<":
+        raise ValueError(f"{line} is no YAML of training (<< merges keys)")
+    if "${" in event.value:
+        raise ValueError(f"{line}: {event.value} is an interpolation; it must be a plain value")
