@@ -35,6 +35,7 @@ from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.config import load
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.reading import json_file
 from hybrid_rl.studies.style import STYLE
 
 if TYPE_CHECKING:
@@ -136,10 +137,10 @@ def redrawn(study: Study, file: str) -> tuple["Figure", dict[str, Any]]:
         UsageError: if it has no numbers that the study draws.
     """
     try:
-        content = json.loads(Path(file).read_text(encoding="utf-8"))
+        content = json_file(Path(file))
         return study.draw(arrays(content)), content
-    except OSError as error:
-        raise UsageError(f"from={file}: cannot be read ({error.strerror})") from error
+    except UsageError as error:
+        raise UsageError(f"from={error}") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"from={file}: has no numbers of this study") from error
 

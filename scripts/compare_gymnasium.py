@@ -1,14 +1,18 @@
 """Walking robots against Gymnasium's: one decision from the same state, random actions.
 
     python scripts/compare_gymnasium.py --physics native mjx --out docs/results/gymnasium.json
+    python scripts/compare_gymnasium.py --speed --out docs/results/gymnasium_speed.json
 
 Before every decision ours is set to the state of Gymnasium's, so that differences do not grow
 from decision to decision. `state` is the largest difference of an entry of qpos or qvel after the
 decision, `reward` the difference of the reward, which for Ant-v5 includes the contact cost.
+--speed: steps/s of one environment of ours through the Gymnasium adapter and of Gymnasium's, in
+turns, each by its fastest block.
 """
 
 import argparse
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +21,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
@@ -30,6 +35,7 @@ WORLDS = {  # name -> environment, its fields, Gymnasium's
     "ant, capsules": (Ant, {"reward": "gymnasium", "contacts": "capsules"}, "Ant-v5"),
 }
 EPISODES, LONGEST = 20, 100  # decisions
+BLOCKS, BLOCK = 150, 100  # steps of a block
 
 
 def differences(name: str, physics: str) -> dict[str, Any]:
@@ -72,16 +78,36 @@ def differences(name: str, physics: str) -> dict[str, Any]:
     }
 
 
+def speed(name: str) -> dict[str, Any]:
+    """One row: steps/s of both, and their ratio."""
+    kind, fields, theirs_name = WORLDS[name]
+    pair = [GymnasiumEnv(kind("native", **fields), 0), gymnasium.make(theirs_name)]
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1, 1, (BLOCK, pair[0].env.spec.act)).astype(np.float32)
+    best = [np.inf, np.inf]  # [s] of a block
+    for _ in range(BLOCKS):
+        for i, env in enumerate(pair):
+            env.reset(seed=0)
+            began = time.perf_counter()
+            for action in actions:
+                if env.step(action)[2]:
+                    env.reset()
+            best[i] = min(best[i], time.perf_counter() - began)
+    ours, theirs = (round(BLOCK / seconds, 1) for seconds in best)
+    return {"name": name, "steps_per_s": ours, "gymnasium": theirs, "ratio": ours / theirs}
+
+
 def main() -> None:
     """The command."""
     parser = argparse.ArgumentParser(description="Walking robots against Gymnasium's")
     parser.add_argument("--physics", nargs="+", default=["native"])
+    parser.add_argument("--speed", action="store_true")
     parser.add_argument("--out", type=Path)
     arguments = parser.parse_args()
     rows = []
-    for physics in arguments.physics:
+    for physics in [None] if arguments.speed else arguments.physics:
         for name in WORLDS:
-            rows.append(differences(name, physics))
+            rows.append(speed(name) if physics is None else differences(name, physics))
             print(json.dumps(rows[-1]), flush=True)
     if arguments.out:
         arguments.out.write_text(json.dumps({"rows": rows}, indent=1) + "\n", encoding="ascii")
