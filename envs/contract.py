@@ -22,7 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import UsageError, gist, in_user_code, relative
+from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code, relative
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
@@ -39,7 +39,7 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
         Lines about what is allowed and seldom meant, such as an episode of one decision.
 
     Raises:
-        UsageError: in one line: the file and line of the class or method, what it gives, and what
+        WorldError: in one line: the file and line of the class or method, what it gives, and what
             it must give.
     """
     simulated = is_dataclass(env) and getattr(env, "physics", None) in IMPLEMENTATIONS
@@ -56,7 +56,7 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     again = world.traced("reset", key), world.traced("step", reset.out_info, action)
     for method, first, second in (("reset", _text(reset), again[0]), ("step", text, again[1])):
         if first != _text(second):
-            raise UsageError(
+            raise WorldError(
                 f"{world.at(method)}: gives other numbers when it is traced again: what NumPy or "
                 "Python draws is a constant of the compiled program; use jax.random, with a key "
                 "in state.info"
@@ -108,9 +108,9 @@ class _World:
             line = in_user_code(error, self.file)
             kind = type(self.env).__name__
             if line is None:
-                raise UsageError(f"{self.at(method)}: {gist(error)}") from error
+                raise WorldError(f"{self.at(method)}: {gist(error)}") from error
             where, _, what = line.partition(": ")
-            raise UsageError(f"{where}: {kind}.{method}: {what}") from error
+            raise WorldError(f"{where}: {kind}.{method}: {what}") from error
 
 
 def _check_members(world: _World) -> None:
@@ -122,29 +122,29 @@ def _check_members(world: _World) -> None:
             at = f"env: {type(inner.env).__name__}"
         else:
             at = inner.at()
-        raise UsageError(
+        raise WorldError(
             f"{at} is a gymnasium.Env, and environments are JAX functions; {GYMNASIUM}"
         )
     spec = world.blamed("spec", getattr, env, "spec", None)
     if not isinstance(spec, Spec):
         has = "has no spec" if spec is None else f"has a spec that is a {type(spec).__name__}"
-        raise UsageError(f"{at} {has}; write spec = Spec(obs=..., act=..., dt=...)")
+        raise WorldError(f"{at} {has}; write spec = Spec(obs=..., act=..., dt=...)")
     for name in ("obs", "act"):
         size = getattr(spec, name)
         if not isinstance(size, Integral) or size < 1:
-            raise UsageError(f"{at}: spec.{name} is {size!r}; it must be a whole number, 1 or more")
+            raise WorldError(f"{at}: spec.{name} is {size!r}; it must be a whole number, 1 or more")
     if not isinstance(spec.dt, Real) or not 0 < spec.dt < np.inf:
-        raise UsageError(f"{at}: spec.dt is {spec.dt!r}; it must be a number of seconds above 0")
+        raise WorldError(f"{at}: spec.dt is {spec.dt!r}; it must be a number of seconds above 0")
     for method, takes in SIGNATURES.items():
         form = f"{method}(self, {', '.join(takes)})"
         bound = getattr(env, method, None)
         if not callable(bound):
-            raise UsageError(f"{at} has no {method}; write def {form}")
+            raise WorldError(f"{at} has no {method}; write def {form}")
         try:
             inspect.signature(bound).bind(*takes)
         except TypeError:
             has = inspect.signature(bound)
-            raise UsageError(f"{world.at(method)}{has}: must be {form}") from None
+            raise WorldError(f"{world.at(method)}{has}: must be {form}") from None
         except ValueError:  # of a built-in function, which says nothing
             pass
 
@@ -155,7 +155,7 @@ def _check_state(world: _World, method: str, state: Any) -> None:
     if not isinstance(state, EnvState):
         got = "None" if state is None else type(state).__name__
         got = f"a tuple of {len(state)}, as Gymnasium's do" if isinstance(state, tuple) else got
-        raise UsageError(f"{at}: returned {got}; it must be an EnvState")
+        raise WorldError(f"{at}: returned {got}; it must be an EnvState")
     size = jnp.size(state.obs) if _is_array(state.obs) else 0
     flag = "write a comparison, or jnp.zeros((), bool)"
     for name, shape, kind, remedy in (
@@ -173,10 +173,10 @@ def _check_state(world: _World, method: str, state: Any) -> None:
         wanted = "bool" if kind is jnp.bool_ else "float32"
         has = f", as spec.obs is {o}" if name == "obs" else ""
         must = f"it must be {wanted}{list(shape)}{has}"
-        raise UsageError(f"{at}: returned {name} {_described(value)}; {must}: {remedy}")
+        raise WorldError(f"{at}: returned {name} {_described(value)}; {must}: {remedy}")
     for name in ("metrics", "info"):
         if not isinstance(value := getattr(state, name), Mapping):
-            raise UsageError(f"{at}: returned {name} {_described(value)}; it must be a dict")
+            raise WorldError(f"{at}: returned {name} {_described(value)}; it must be a dict")
 
 
 def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
@@ -190,18 +190,18 @@ def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
         return
     at, kind = world.at("step"), type(world.env).__name__
     if one == two:  # a list for a tuple, or None for nothing
-        raise UsageError(f"{at}: returned a state of another structure than {kind}.reset")
+        raise WorldError(f"{at}: returned a state of another structure than {kind}.reset")
     if isinstance(first.data, PhysicsState) and one.get("data.ctrl") != two.get("data.ctrl"):
         have, given = (
             0 if each is None else len(each) for each in (first.data.ctrl, after.data.ctrl)
         )
-        raise UsageError(
+        raise WorldError(
             f"{at}: gives the physics {given} controls, and its model has {have} actuators; "
             f"spec.act is {world.env.spec.act}"
         )
     name = next(name for name in (*one, *two) if one.get(name) != two.get(name))
     gives = [f"{name} {each[name]}" if name in each else f"no {name}" for each in (two, one)]
-    raise UsageError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be equal")
+    raise WorldError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be equal")
 
 
 def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
@@ -213,7 +213,7 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
     rng, keys = np.random.default_rng(0), jax.random.split(jax.random.key(0), decisions + 1)
     state, ended = world.blamed("reset", resetting, keys[0]), 0
     if not np.isfinite(state.obs).all():
-        raise UsageError(f"{world.at('reset')}: returned obs {state.obs}; it must be finite")
+        raise WorldError(f"{world.at('reset')}: returned obs {state.obs}; it must be finite")
     for i in range(1, decisions + 1):
         action = rng.uniform(-1, 1, world.env.spec.act).astype(np.float32)
         after = world.blamed("step", stepping, state, action)
@@ -222,7 +222,7 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
             if not np.isfinite(value).all():
                 seen = f"after obs {_numbers(state.obs)} and action {_numbers(action)}"
                 at = world.at("step")
-                raise UsageError(f"{at}: {name} is {_numbers(value)} at decision {i}, {seen}")
+                raise WorldError(f"{at}: {name} is {_numbers(value)} at decision {i}, {seen}")
         ended += bool(after.terminated)
         kept = after.replace(info={**state.info, **after.info})
         state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept

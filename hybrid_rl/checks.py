@@ -45,6 +45,7 @@ def check(config: DictConfig) -> None:
             raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
     if "_target_" not in config.env:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
+    _check_parts(config)
     check_names(config)
     for key in ("task", "algo"):
         if not NAME.fullmatch(str(config[key])):
@@ -75,6 +76,20 @@ def check(config: DictConfig) -> None:
             raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
     check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
     check_kinds(config)
+
+
+def _check_parts(config: DictConfig) -> None:
+    """Raise UsageError for a controller, a learner or a memory that is no part; null: none."""
+    named = {"replay": config.replay}
+    for section in ("controllers", "learners"):
+        named |= {f"{section}.{name}": node for name, node in config[section].items()}
+    for key, node in named.items():
+        if node is not None and not (isinstance(node, DictConfig) and "_target_" in node):
+            raise UsageError(f"{key}={node}: must be a part, a group of keys with _target_")
+    if config.controllers.get("full") is None:
+        raise UsageError(
+            "controllers.full=null: must be a part, as it acts in training"
+        )
 
 
 def countable(config: DictConfig) -> None:

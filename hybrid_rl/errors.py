@@ -23,6 +23,10 @@ class UsageError(ValueError):
     """The request is invalid; the message says what to change. Exit code 2."""
 
 
+class WorldError(UsageError):
+    """An environment of the user's is wrong; the message begins with its file. Exit code 2."""
+
+
 class DivergenceError(ArithmeticError):
     """A learner reached NaN or infinity; names seed, step and quantity. Exit code 1."""
 

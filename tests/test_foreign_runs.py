@@ -35,7 +35,7 @@ COMMANDS = {
 @pytest.fixture(scope="module")
 def written() -> str:
     """config.yaml as training writes it."""
-    return run_folder.as_yaml(run_folder.pruned(config.load([*SMALL, "algo=sac"])))
+    return run_folder.described(config.load([*SMALL, "algo=sac"]))
 
 
 @pytest.fixture
@@ -70,6 +70,21 @@ def changed(folder: Path, **keys: object) -> None:
     """Give keys of config.yaml other values."""
     file = folder / "config.yaml"
     file.write_text(yaml.safe_dump(yaml.safe_load(file.read_text()) | keys))
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"controllers": {"full": 5}}, "controllers.full=5: must be a part"),
+        ({"controllers": {}}, "controllers.full=null: must be a part"),
+        ({"learners": {"policy": {"tau": 1}}}, "learners.policy={'tau': 1}: must be a part"),
+        ({"replay": {"capacity": 9}}, "must be a part, a group of keys with _target_"),
+    ],
+)
+def test_a_section_that_holds_no_part_is_refused(folder, keys, words):
+    changed(folder, **keys)
+    line = refused(folder, lambda folder: config.build(run_folder.read(folder, "run")))
+    assert words in line
 
 
 @pytest.mark.parametrize(
@@ -175,7 +190,7 @@ def test_a_class_of_the_user_is_a_part_and_a_function_is_none(folder):
     assert run_folder.read(folder, "run").env._target_ == "zz_mine.World"
     assert not Path("ran").exists()
     changed(folder, env={"_target_": "zz_mine.made"})
-    assert "zz_mine.py defines no class made" in refused(folder)
+    assert "zz_mine.py has no class made" in refused(folder)
     changed(folder, env={"_target_": "theirs.zz_evil.World"})
     assert f"move {folder} out of {folder.parent}" in refused(folder)
 

@@ -27,7 +27,7 @@ FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
     **dict.fromkeys(("--hydra-help", "-sc", "--shell-completion"), 0),
     **dict.fromkeys(("-c", "--cfg", "-p", "--package", "-cd", "--config-dir"), 1),
-    **dict.fromkeys(("-cp", "--config-path", "-cn", "--config-name", "--experimental-rerun"), 1),
+    **dict.fromkeys(("-cp", "--config-path", "-cn", "--config-name"), 1),
     **dict.fromkeys(("-i", "--info"), 1),
 }
 NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml

@@ -27,6 +27,7 @@ import jax
 
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import integrity, leaves
+from hybrid_rl.run.reading import from_json
 from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints
@@ -59,7 +60,7 @@ def meta(folder: Path) -> dict[str, Any]:
     """meta.json of the newest readable checkpoint; {} if there is none."""
     for _, path in sorted(_finished(folder).items(), reverse=True):
         with contextlib.suppress(OSError, ValueError):
-            return json.loads((path / "meta.json").read_text(encoding="utf-8"))
+            return from_json((path / "meta.json").read_text(encoding="utf-8"))
     return {}
 
 

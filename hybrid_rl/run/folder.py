@@ -24,7 +24,7 @@ from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBase
 from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
-from hybrid_rl.errors import MisfitError, UsageError
+from hybrid_rl.errors import MisfitError, UsageError, WorldError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.lock import locked
@@ -110,11 +110,15 @@ def writable(folder: Path, key: str) -> Path:
 
 def write(folder: Path, config: DictConfig) -> None:
     """Write config.yaml of a run with the resolved configuration `config`."""
+    write_text(folder / "config.yaml", described(config))
+
+
+def described(config: DictConfig) -> str:
+    """What config.yaml of a run with the resolved configuration `config` holds."""
     single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
     order = dict.fromkeys(["task", "algo", *single, *SECTIONS, *config])
     values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
-    made: Any = OmegaConf.create({"version": __version__} | values | {"resume": None})
-    write_text(folder / "config.yaml", as_yaml(made))
+    return as_yaml(OmegaConf.create({"version": __version__} | values | {"resume": None}))
 
 
 def as_yaml(config: DictConfig) -> str:
@@ -244,6 +248,8 @@ def blamed(folder: Path) -> Iterator[None]:
     path = folder / "config.yaml"
     try:
         yield
+    except WorldError:  # a file of the user's own
+        raise
     except (ConfigKeyError, ConfigAttributeError) as error:
         raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:

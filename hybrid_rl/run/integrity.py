@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from hybrid_rl.run.reading import from_json
+
 MANIFEST = "manifest.json"
 
 
@@ -36,7 +38,7 @@ def verify(folder: Path, contents: bool = True) -> str | None:
     contents: read every byte, not only sizes.
     """
     try:
-        listed = json.loads((folder / MANIFEST).read_text(encoding="ascii"))["files"]
+        listed = from_json((folder / MANIFEST).read_text(encoding="ascii"))["files"]
         files = [(name, entry["bytes"], entry["sha256"]) for name, entry in listed.items()]
     except FileNotFoundError:
         return f"it has no {MANIFEST}, so its writing was cut off"

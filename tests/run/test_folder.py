@@ -17,7 +17,7 @@ from tiny import TINY, call, call_train, contents, only_line, run
 from hybrid_rl import evaluate, render
 from hybrid_rl.cli import command
 from hybrid_rl.config import load
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run import integrity
 from hybrid_rl.run.lock import locked
@@ -256,6 +256,11 @@ def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd)
     (row,) = [line.split("\u2502")[1:-1] for line in lines if " all " in line]
     wanted = (returns.mean(), returns.std(), returns.min(), returns.max())
     assert [cell.strip() for cell in row] == ["all", *(f"{value:,.1f}" for value in wanted)]
+
+
+def test_a_broken_world_is_not_blamed_on_the_file(tmp_path):
+    with pytest.raises(WorldError, match=r"^w\.py:3: "), run_folder.blamed(tmp_path):
+        raise WorldError("w.py:3: W.step: returned None")
 
 
 def test_a_value_of_the_user_is_not_blamed_on_the_file(copied, capfd):
