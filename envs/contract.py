@@ -22,12 +22,11 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code, relative
+from hybrid_rl.errors import GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
 SIGNATURES = {"reset": ("key",), "step": ("state", "action")}
-GYMNASIUM = "A Gymnasium environment in docs/howto.md makes a world of it, by jax.pure_callback"
 
 
 def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
@@ -122,9 +121,7 @@ def _check_members(world: _World) -> None:
             at = f"env: {type(inner.env).__name__}"
         else:
             at = inner.at()
-        raise WorldError(
-            f"{at} is a gymnasium.Env, and environments are JAX functions; {GYMNASIUM}"
-        )
+        raise WorldError(f"{at} is {GYMNASIUM}")
     spec = world.blamed("spec", getattr, env, "spec", None)
     if not isinstance(spec, Spec):
         has = "has no spec" if spec is None else f"has a spec that is a {type(spec).__name__}"

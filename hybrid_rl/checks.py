@@ -87,9 +87,7 @@ def _check_parts(config: DictConfig) -> None:
         if node is not None and not (isinstance(node, DictConfig) and "_target_" in node):
             raise UsageError(f"{key}={node}: must be a part, a group of keys with _target_")
     if config.controllers.get("full") is None:
-        raise UsageError(
-            "controllers.full=null: must be a part, as it acts in training"
-        )
+        raise UsageError("controllers.full=null: must be a part, as it acts in training")
 
 
 def countable(config: DictConfig) -> None:

@@ -18,6 +18,11 @@ HINTS = {  # kind of error -> what to write instead
     "FrozenInstanceError": "what changes belongs in the EnvState that step returns, as in info",
 }
 
+GYMNASIUM = (  # what an environment of Gymnasium is here
+    "a gymnasium.Env, and environments are JAX functions; A Gymnasium environment in "
+    "docs/howto.md makes a world of it, by jax.pure_callback"
+)
+
 
 class UsageError(ValueError):
     """The request is invalid; the message says what to change. Exit code 2."""

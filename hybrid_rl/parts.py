@@ -21,7 +21,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.errors import in_user_code, relative, shown
+from hybrid_rl.errors import GYMNASIUM, in_user_code, relative, shown
 
 TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
@@ -150,6 +150,8 @@ def _ours(names: list[str]) -> Path:
 
 def _theirs(names: list[str], near: Path | None) -> Path:
     """The file of a module of the user; ValueError if there is none."""
+    if names[0] == "gymnasium":
+        raise ValueError(f"makes {GYMNASIUM}")
     try:
         spec = find_spec(names[0])  # of the first name alone, so that nothing is imported
     except (ImportError, ValueError, AttributeError):

@@ -264,9 +264,7 @@ class W(gymnasium.Env):
 
     def step(self, action): ...
 """
-HOWTO = (
-    r"is a gymnasium\.Env, and environments are JAX functions; A Gymnasium environment in docs/.*"
-)
+HOWTO = r"a gymnasium\.Env, and environments are JAX functions; A Gymnasium environment in docs/.*"
 FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the whole line
     (
         "a plain class",
@@ -282,13 +280,13 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "gian:",
         r"env\.gian: W in w\.py has gain; did you mean gain\?",
     ),
-    ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: w\.py has no V"),
+    ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: w\.py has no class V"),
     (
         "no such module",
         "yaml",
         "w.W",
         "theirs.W",
-        r"env\._target_=theirs\.W: there is no module theirs; put its folder on PYTHONPATH",
+        r"env\._target_=theirs\.W: is no part of hybrid_rl; put its folder on PYTHONPATH .*",
     ),
     (
         "a syntax error",
@@ -359,9 +357,9 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "yaml",
         "_target_: w.W, gain: 2.0",
         "_target_: gymnasium.make, id: Pendulum-v1",
-        "env: PendulumEnv " + HOWTO,
+        r"env\._target_=gymnasium\.make: makes " + HOWTO,
     ),
-    ("a class of Gymnasium", "py", WORLD, GYMNASIUM, r"w\.py:4: W " + HOWTO),
+    ("a class of Gymnasium", "py", WORLD, GYMNASIUM, r"w\.py:4: W is " + HOWTO),
 ]
 
 
