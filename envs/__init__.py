@@ -3,6 +3,18 @@
 `check(env)` checks one of your own, in half a second.
 """
 
-from hybrid_rl.envs.contract import check
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hybrid_rl.envs.contract import check
 
 __all__ = ["check"]
+
+
+def __getattr__(name: str) -> Any:
+    """`check`, imported with JAX when it is first needed: ids of Gymnasium need no JAX."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from hybrid_rl.envs.contract import check
+
+    return check

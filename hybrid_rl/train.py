@@ -82,7 +82,7 @@ def _job(config: DictConfig) -> dict[str, Any]:
 def _curve(run_dir: Path) -> None:
     """Print and draw the evaluations of a run, if there are at least CURVE of them."""
     from hybrid_rl.figures import save
-    from hybrid_rl.studies import learning_curves
+    from hybrid_rl.studies import curves_picture, learning_curves
 
     try:
         (line,) = learning_curves.curves(run_dir, EVALUATION)
@@ -99,7 +99,7 @@ def _curve(run_dir: Path) -> None:
         save(*learning_curves.figure(run_dir, EVALUATION), drawn)
     except OSError as error:
         say(f"{drawn}: not written ({error.strerror or error})")
-    title = f"{learning_curves.LABELS[EVALUATION]} ({drawn})"
+    title = f"{curves_picture.LABELS[EVALUATION]} ({drawn})"
     say(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))
 
 

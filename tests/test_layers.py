@@ -39,7 +39,7 @@ ALLOWED = {
     "data": {*SHARED, "parts"},
     "overrides": {"errors"},
     "checks": {"types", "errors", "overrides", "parts", "envs"},
-    "composition": {"errors", "checks", "overrides", "training"},
+    "composition": {"errors", "checks", "overrides", "parts", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share

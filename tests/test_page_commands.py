@@ -52,6 +52,8 @@ def folder(tmp_path_factory):
     """The folder in which the commands run, with the run."""
     folder = tmp_path_factory.mktemp("pages")
     size = ["policy.hidden=[256,256]", "episode.steps=20", "total_steps=100", "eval_every=50"]
+    for name in ("docs/results", "policies"):  # in which the commands of the pages write
+        (folder / name).mkdir(parents=True)
     run(folder / "run", "algo=hybrid_stochastic", *size, "eval_modes=[full,policy]")
     return folder
 

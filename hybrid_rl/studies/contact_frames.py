@@ -85,7 +85,8 @@ def _part(view: Any, row: int, rows: int) -> Any:
 
 def _of_map(run: contacts.Trials, trial: int, views: list[Any], marks: list[int]) -> dict[str, Any]:
     """The quality of a map at each time."""
-    alone = run._replace(s=run.s[trial : trial + 1], y=run.y[trial : trial + 1])
+    here = slice(trial, trial + 1)
+    alone = run._replace(s=run.s[here], y=run.y[here], touch=run.touch[here])
     p = np.stack([view.values for view in views])[None]
     measured = contacts.quality(alone, p - 0.5, marks)
     return {name: values[0] for name, values in measured.items()}

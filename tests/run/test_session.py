@@ -300,7 +300,7 @@ def test_a_run_of_random_actions_or_without_evaluations_ends_with_a_line(
     tmp_path, monkeypatch, capsys
 ):
     done = {"signal": None, "run_dir": str(tmp_path), "wall_s": 1.0, "seeds": [0]}
-    monkeypatch.setattr(train, "train", lambda *_: done)
+    monkeypatch.setattr(train.launch, "train", lambda *_: done)
     assert call_train("task=pendulum", "algo=sac", "total_steps=1000", "eval_modes=[]") == 0
     first, *rest = capsys.readouterr().out.splitlines()
     assert first.startswith("evaluation none yet; training return none yet")
