@@ -118,7 +118,8 @@ def described(config: DictConfig) -> str:
     single = [k for k, value in config.items() if not isinstance(value, DictConfig)]
     order = dict.fromkeys(["task", "algo", *single, *SECTIONS, *config])
     values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
-    return as_yaml(OmegaConf.create({"version": __version__} | values | {"resume": None}))
+    made: Any = OmegaConf.create({"version": __version__} | values | {"resume": None})
+    return as_yaml(made)
 
 
 def as_yaml(config: DictConfig) -> str:

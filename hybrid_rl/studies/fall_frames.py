@@ -20,7 +20,7 @@ def frames(pattern: str) -> tuple[Any, dict[str, Any]]:
 
     each = falls(pattern, "frames")
     figure = Figure(figsize=(9, 1.5 * len(each)), layout="constrained")
-    parts: Any = np.ravel(figure.subfigures(len(each), 1))
+    parts: Any = np.ravel(np.asarray(figure.subfigures(len(each), 1)))
     heights = {fall.label: _strip(part, fall) for part, fall in zip(parts, each, strict=True)}
     return figure, {"time": list(TILES), "height": heights}
 

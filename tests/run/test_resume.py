@@ -127,7 +127,8 @@ def test_seeds_side_by_side_are_the_seeds_alone(interrupt, halves, tmp_path):
     """To rounding, which grows with every decision: 2e-5 after 100, 2e-4 to 5e-4 after 300.
 
     The agreement signal is a small difference of predicted returns: in units of those. The means of
-    observations and actions are small sums of entries of about 1: in units of 1.
+    observations and actions are small sums of entries of about 1: in units of 1. An evaluation with
+    the planner is a whole episode more, from parameters that differ already: by 1e-2, not compared.
     """
     run(tmp_path / "run", *HYBRID, "total_steps=300", "num_seeds=3")
     together = interrupt.rows(tmp_path / "run")
@@ -138,6 +139,8 @@ def test_seeds_side_by_side_are_the_seeds_alone(interrupt, halves, tmp_path):
             tolerance = 1e-4 if one["step"] <= 100 else 1e-2
             of_signal = abs(two.get("planner/planned_return", 0.0))
             for key, wanted in two.items():
+                if key == "eval/return":
+                    continue
                 of_world = 1.0 if key in ("world/obs", "world/action") else 1e-3
                 atol = tolerance * (of_signal if "insertion" in key else of_world)
                 np.testing.assert_allclose(one[key], wanted, rtol=tolerance, atol=atol, err_msg=key)
