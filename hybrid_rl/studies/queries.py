@@ -24,7 +24,8 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.run.folder import parsed
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.studies.curves import band, curves, improvement, iqm
-from hybrid_rl.studies.recorded import labels, learned, matching
+from hybrid_rl.studies.recorded import labels, matching
+from hybrid_rl.trained import restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params
@@ -173,7 +174,7 @@ def refitted(row: Row, steps: int, at: Sequence[int], score: str) -> np.ndarray:
     """
     run, first = built(row.config), int(row.config.learners.policy.first)
     learner: Any = run.agent.learners["policy"]
-    state = learned(run, row.folder)[1]["policy"]
+    state = restore(row.folder, run)[1].learners["policy"]
     counts = first * (np.array(at) + 1)
     least = min(int(np.asarray(state.labels.count).min()), learner.capacity)
     if counts.max() > least:
