@@ -16,16 +16,15 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from omegaconf import OmegaConf
 
-from hybrid_rl.config import Run, build
+from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.folder import parsed
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.studies.curves import band, curves, improvement, iqm
 from hybrid_rl.studies.recorded import labels, matching
-from hybrid_rl.trained import restore
+from hybrid_rl.trained import built, restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params
@@ -130,12 +129,6 @@ def _row(label: str, folder: Path, config: Any, metric: str) -> Row:
     curve = curves([folder], metric)[0]
     first = config.learners.policy.first
     return Row(label, folder, config, curve.x / first - 1, curve.each)
-
-
-def built(config: Any) -> Run:
-    """The run of a configuration from its folder."""
-    made: Any = OmegaConf.merge(config, {"resume": None})
-    return build(made)
 
 
 @partial(jax.jit, static_argnums=(0, 1))
