@@ -35,7 +35,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run import memory
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.trained import Trained, chosen
-from hybrid_rl.trained import load as load
+from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 
 GROUPS = {name: f"another value of a key of its {name}" for name in ("env", "episode")}
