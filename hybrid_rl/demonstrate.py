@@ -27,15 +27,21 @@ from typing import Any
 
 import jax
 import numpy as np
+from omegaconf import OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
-from hybrid_rl.data import trained
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.demonstrations import save
+from hybrid_rl.data.trained import save as save_policy
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.reading import json_file
+from hybrid_rl.run.results import RunFolder
+from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Transition
@@ -105,13 +111,8 @@ def _expert(
     if given["task"]:
         changes = {"expert": given["expert"], **changes} if given["expert"] else changes
         return given["task"], *scripted(given["task"], changes)
-    from hybrid_rl.evaluate import load
-
-    run, mode = load(Path(given["run"])), given["mode"]
-    if mode not in run.controllers:
-        raise UsageError(f"mode={mode}: the run has {', '.join(run.controllers)}")
-    params: Any = jax.tree.map(lambda leaf: leaf[0], run.params)
-    return run.task, run.episode, run.controllers[mode], params
+    run = load(Path(given["run"]))
+    return run.task, run.episode, *run.learner(mode=given["mode"], world=True)
 
 
 def _check(given: dict[str, Any], changes: dict[str, str]) -> None:
@@ -128,20 +129,55 @@ def _write_policy(given: dict[str, Any], changes: dict[str, str]) -> None:
         raise UsageError(f"policy={given['policy']}: writes a trained policy; give run=DIR")
     file = output("policy", given["policy"], (".npz",))
     _check(given, changes)
-    from hybrid_rl import evaluate, pretrained
-
     folder = Path(given["run"])
-    run = evaluate.load(folder)
+    run = load(folder)
     params: Any = jax.tree.map(lambda leaf: leaf[0], run.params)
     if not jax.tree.leaves(params.policy):
         raise UsageError(f"run={folder}: has no policy with parameters")
     try:
-        about = pretrained.description(folder, run, given["command"])
-        trained.save(file, run.task, run.episode.spec, params.policy, about)
+        about = description(folder, run, given["command"])
+        save_policy(file, run.task, run.episode.spec, params.policy, about)
     except ValueError as error:
         raise UsageError(str(error)) from error
     count = sum(leaf.size for leaf in jax.tree.leaves(params.policy))
     print(f"{file}: the policy of {given['run']}, {count:,} parameters, task {run.task}")
+
+
+def description(folder: Path, trained: Trained, command: str) -> dict[str, Any] | None:
+    """`about` of the policy of the first seed of the run in `folder`.
+
+    None if its controller `policy` is not a policy of observations alone.
+    """
+    config: Any = trained.config
+    node = config.controllers.get("policy")
+    controller: Any = trained.controllers.get("policy")
+    if not isinstance(controller, PolicyController):
+        return None
+    model = trained.learner(mode="policy")[1].model
+    if not is_identity(controller.model, model, trained.episode.spec.obs):
+        return None
+    parts: Any = {
+        "env": OmegaConf.to_container(config.env),
+        "episode": OmegaConf.to_container(config.episode),
+        "policy": OmegaConf.to_container(node.policy),
+    }
+    if isinstance(parts["env"].get("physics"), str):
+        parts["env"]["physics"] = "auto"
+    about = {**parts, "algo": config.algo, "seed": trained.seeds[0], "step": trained.step}
+    summary = RunFolder(folder).summary
+    made = {key: summary.get(key) for key in ("device", "versions", "git_commit")}
+    return {**about, "command": command, "evaluation": _evaluation(folder, trained.step), **made}
+
+
+def _evaluation(folder: Path, step: int) -> dict[str, Any] | None:
+    """Mean and returns of the first seed in evaluation_policy.json of this step, if there are."""
+    file = folder / "evaluation_policy.json"
+    if not file.exists() or (values := json_file(file)).get("step") != step:
+        return None
+    try:
+        return {"mean": float(values["mean"][0]), "returns": list(map(float, values["returns"][0]))}
+    except (TypeError, ValueError, LookupError) as error:
+        raise UsageError(f"{file}: is no evaluation that `evaluate` wrote") from error
 
 
 def main() -> None:

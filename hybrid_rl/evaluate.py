@@ -7,13 +7,8 @@
 With env.KEY=VALUE or episode.KEY=VALUE the world differs from that of the training, and the
 controller does not; the file is then DIR/evaluation_<mode>_<changes>.json.
 
-Without exploration, with the learners as they were at the newest checkpoint. From Python, `load`
-reads a run back, `evaluate` gives its returns, and `Trained.policy` its actions, in any loop that
-has observations:
-
-    policy = load("runs/hopper/sac/TIME").policy(seed=0)
-    policy.reset()  # at the start of every episode
-    action = policy(obs)  # [m] in [-1, 1]
+Without exploration, with the learners as they were at the newest checkpoint. From Python,
+`hybrid_rl.trained.load` reads a run back, and `evaluate` gives its returns.
 """
 
 if __name__ == "__main__":
@@ -22,7 +17,7 @@ if __name__ == "__main__":
     interrupt.install()
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -30,25 +25,18 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
-from omegaconf import DictConfig
 from rich.console import Console
 from rich.table import Table
 
 from hybrid_rl import config as configuration
-from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
 from hybrid_rl.errors import UsageError
-from hybrid_rl.protocols import Controller
-from hybrid_rl.run import checkpoint, memory
-from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run import memory
 from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.trained import Trained, chosen
+from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
-from hybrid_rl.types import Params, Spec
 
 GROUPS = {name: f"another value of a key of its {name}" for name in ("env", "episode")}
 ARGUMENTS = (
@@ -57,150 +45,6 @@ ARGUMENTS = (
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )
-
-
-@dataclass(frozen=True)
-class Trained:
-    """A run, read back."""
-
-    task: str
-    episode: Episode
-    controllers: dict[str, Controller]  # mode -> controller without exploration
-    params: Params  # [S, ...]
-    seeds: tuple[int, ...]
-    step: int  # decisions of each learner
-    notes: tuple[str, ...]  # one for each checkpoint that was skipped
-    config: DictConfig | None = None  # of the run; env and episode at least
-
-    def policy(self, seed: int | None = None, mode: str = "full", key: int = 0) -> "TrainedPolicy":
-        """Observations to actions, as the learner of `seed` acts; None is the first.
-
-        key: seed of the planner's random numbers.
-
-        Raises:
-            UsageError: for a seed or a mode that the run does not have.
-        """
-        return TrainedPolicy(self.episode.spec, *self.learner(seed, mode), key)
-
-    def learner(self, seed: int | None = None, mode: str = "full") -> tuple[Controller, Params]:
-        """The controller of `mode` and the parameters of the learner of `seed`; None: the first.
-
-        Raises:
-            UsageError: for a seed or a mode that the run does not have, or a mode that does not
-                act by observations.
-        """
-        seed = self.seeds[0] if seed is None else seed
-        if seed not in self.seeds:
-            raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
-        if mode not in self.controllers:
-            raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
-        if getattr(self.controllers[mode], "needs_world", False):
-            raise UsageError(
-                f"mode={mode}: plans from the state of the world (model=world), which observations "
-                "do not give; use evaluate or render"
-            )
-        params: Any = jax.tree.map(lambda leaf: leaf[self.seeds.index(seed)], self.params)
-        return self.controllers[mode], params
-
-
-class TrainedPolicy:
-    """action = policy(obs): a trained controller without exploration, for one world or N.
-
-    obs is [o], or [N, o] of N worlds side by side; the action is [m] or [N, m], in [-1, 1]. A
-    planner keeps its plan from one call to the next, so call `reset` when an episode begins.
-    """
-
-    def __init__(self, spec: Spec, controller: Controller, params: Params, key: int = 0) -> None:
-        self.spec, self._key = spec, jax.random.key(key)
-        self._begin = partial(controller.init, spec)
-        self._state: Any = None  # [N, ...]; None: an episode begins
-        self._worlds = 0  # N
-
-        def act(state: Any, obs: Array, key: Array) -> tuple[Array, Any, Array]:
-            key, *keys = jax.random.split(key, 1 + len(obs))
-            each = jax.vmap(controller.act, (None, 0, 0, 0))
-            u, state, _ = each(params, state, obs, jnp.stack(keys))
-            return u, state, key
-
-        self._act = jax.jit(act)
-
-    def reset(self, where: np.ndarray | None = None) -> None:
-        """Begin an episode; where: [N] bool, only in these worlds."""
-        if where is None:
-            self._state = None
-        elif self._state is not None:
-            self._state = jax.tree.map(
-                lambda first, now: jnp.where(_wide(jnp.asarray(where), now), first, now),
-                self._begin(),
-                self._state,
-            )
-
-    def __call__(self, obs: np.ndarray) -> np.ndarray:
-        """The action [m] at obs [o], or actions [N, m] at [N, o].
-
-        Raises:
-            ValueError: for observations of another size, or another N than since the reset.
-        """
-        obs = np.asarray(obs, np.float32)
-        o = self.spec.obs
-        if obs.ndim not in (1, 2) or obs.shape[-1] != o:
-            raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
-        rows = np.atleast_2d(obs)
-        if self._state is None:
-            self._worlds = len(rows)
-            self._state = jax.tree.map(
-                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *leaf.shape)), self._begin()
-            )
-        if len(rows) != self._worlds:
-            raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
-        u, self._state, self._key = self._act(self._state, rows, self._key)
-        return np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
-
-
-def _wide(mask: Array, like: Array) -> Array:
-    """Mask [N] with as many dimensions as `like` [N, ...]."""
-    return mask.reshape(mask.shape + (1,) * (like.ndim - 1))
-
-
-def load(folder: Path | str) -> Trained:
-    """The learners of the run in `folder`, at its newest sound checkpoint.
-
-    Raises:
-        UsageError: if `folder` holds no run, a damaged configuration, or no checkpoint.
-        CheckpointError: if none of its checkpoints is sound.
-    """
-    folder = Path(folder)
-    config = run_folder.read(folder, "run")
-    if not checkpoint.steps(folder / "checkpoints"):
-        raise UsageError(f"run={folder}: holds no checkpoint yet; train it further first")
-    with run_folder.blamed(folder):
-        check(config)
-        prepare(config)
-        run = configuration.build(_without_demonstrations(config))
-        like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-        like = like.replace(env=None, control=None, memory=None, key=None)
-        step, state, _, notes = checkpoint.restore(folder / "checkpoints", like, part=True)
-    params = jax.vmap(run.agent.params, axis_size=len(run.seeds))(state)  # state may be empty
-    return Trained(
-        config.task,
-        run.agent.episode,
-        run.controllers,
-        params,
-        run.seeds,
-        step,
-        tuple(notes),
-        config,
-    )
-
-
-def _without_demonstrations(config: Any) -> Any:
-    """The configuration without files of demonstrations, which evaluation does not need."""
-    config = config.copy()
-    config.pretrain = 0
-    for part in (config.replay, *config.learners.values()):
-        if part is not None and "demonstrations" in part:
-            part.demonstrations = None
-    return config
 
 
 def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[str, np.ndarray]:
@@ -242,11 +86,9 @@ def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str,
 
 def main() -> None:
     """The command."""
-    from hybrid_rl import pretrained
-
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
     episodes, name = given["episodes"], given["run"] or given["policy"]
-    trained = pretrained.chosen(given)
+    trained = chosen(given)
     if changes:
         assert trained.config is not None
         trained = replace(trained, episode=configuration.disturbed(trained.config, changes))

@@ -30,15 +30,15 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl import pretrained
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, whole
 from hybrid_rl.controllers.policy import PolicyController
-from hybrid_rl.core import archive
 from hybrid_rl.core.lifting import is_identity
+from hybrid_rl.data import archive
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.protocols import Controller
+from hybrid_rl.trained import chosen
 from hybrid_rl.types import Params, Spec
 
 SUFFIXES = (".stablehlo", ".npz")
@@ -186,7 +186,7 @@ def main() -> None:
     given, _ = read(__doc__, ARGUMENTS)
     others = (".py",) if given["out"].endswith(".npz") else ()
     out = output("out", given["out"], SUFFIXES, *others)
-    trained = pretrained.chosen(given)
+    trained = chosen(given)
     controller, params = trained.learner(given["seed"], given["mode"])
     spec = trained.episode.spec
     if out.suffix == ".npz":

@@ -66,22 +66,16 @@ def episode(
 ) -> Film:
     """One episode of a loaded run.
 
-    trained: what `hybrid_rl.evaluate.load` returns. seed: of one of its learners; None is
+    trained: what `hybrid_rl.trained.load` returns. seed: of one of its learners; None is
     the first. steps: at most this many decisions; 0 is the task's own limit. number: of the
     evaluation's episode, from 0.
     """
-    import jax
-
     from hybrid_rl.training.rollout import evaluation_keys
 
     seed = int(trained.seeds[0]) if seed is None else seed
-    if seed not in trained.seeds:
-        raise UsageError(f"seed={seed}: the run has {', '.join(map(str, trained.seeds))}")
-    if mode not in trained.controllers:
-        raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
     world = replace(trained.episode, steps=steps or trained.episode.steps)
-    params = jax.tree.map(lambda leaf: leaf[trained.seeds.index(seed)], trained.params)
-    return film(world, trained.controllers[mode], params, evaluation_keys(seed, number + 1)[-1])
+    controller, params = trained.learner(seed, mode, world=True)
+    return film(world, controller, params, evaluation_keys(seed, number + 1)[-1])
 
 
 def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
@@ -140,7 +134,7 @@ def _shown(given: dict[str, Any], changes: dict[str, str], out: Path) -> tuple[A
         begun = replace(world, steps=_steps(world, asked, out))
         key = evaluation_keys(seed or 0, number + 1)[-1]
         return world, "scripted expert", film(begun, controller, params, key)
-    from hybrid_rl.pretrained import chosen
+    from hybrid_rl.trained import chosen
 
     trained = chosen(given)
     _check(check_drawable, trained.episode.env)

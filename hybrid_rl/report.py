@@ -143,11 +143,12 @@ def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:
 
 def _drawn(folder: Path) -> dict[str, bytes]:
     """The beginning of the first evaluation episode of a run, with its caption."""
-    from hybrid_rl import evaluate, render
+    from hybrid_rl import render
     from hybrid_rl.envs.mujoco import offscreen, scenery
+    from hybrid_rl.trained import load
 
     offscreen.backend()
-    trained = evaluate.load(folder)
+    trained = load(folder)
     scenery.check_drawable(trained.episode.env)
     film = render.episode(trained, steps=min(SHOWN, trained.episode.steps))
     with TemporaryDirectory() as parent:

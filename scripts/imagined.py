@@ -20,10 +20,8 @@ import jax
 import numpy as np
 from jax import Array
 
-from hybrid_rl import config
 from hybrid_rl.errors import CheckpointError, UsageError
-from hybrid_rl.evaluate import load
-from hybrid_rl.run import folder as run_folder
+from hybrid_rl.trained import load
 
 COUNTS = (5, 10, 25)  # decisions ahead
 
@@ -34,8 +32,8 @@ def futures(run: Path, afters: Sequence[int], worlds: int) -> dict[int, dict[str
     Raises:
         UsageError: unless the policy of the run learns from a model, and episodes last so long.
     """
-    trained = load(run)
-    learner: Any = config.build(run_folder.read(run, "run")).agent.learners.get("policy")
+    trained: Any = load(run)
+    learner = trained.agent.learners.get("policy")
     if not hasattr(learner, "reward"):
         raise UsageError(f"{run}: its policy learns without a model; choose algo=hybrid_stochastic")
     policy, model, reward, episode = learner.policy, learner.model, learner.reward, trained.episode

@@ -13,6 +13,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.sawyer_push import SawyerPush
+from hybrid_rl.studies import held_out
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
@@ -91,7 +92,7 @@ def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
 
 
 def test_a_regulator_of_recordings_outlives_them(tmp_path):
-    """The model that it learned from them is in the checkpoint."""
+    """The model that it learned from them is in the checkpoint, where studies find it, too."""
     task, file = "task=van_der_pol", tmp_path / "babble.npz"
     given = [task, "expert=babble", "episodes=2", "episode.steps=30", f"out={file}"]
     assert call(lambda: command.guarded(demonstrate.main), *given) == 0
@@ -101,7 +102,7 @@ def test_a_regulator_of_recordings_outlives_them(tmp_path):
     train.train(config.load(given))
     before = evaluate.evaluate(evaluate.load(folder), "full", 2)["return"]
     file.unlink()
-    after = evaluate.evaluate(evaluate.load(folder), "full", 2)["return"]
+    after = evaluate.evaluate(held_out.restored(folder), "full", 2)["return"]
     np.testing.assert_array_equal(after, before)
 
 

@@ -4,9 +4,9 @@ types, errors, parts
       ^
 core, networks
       ^
-models objectives controllers ... data <- training <- config <- run <- studies <- commands
-                                                                 cli
-parts never import each other: YAML files combine them
+models controllers ... data <- training <- config <- run <- trained <- studies <- commands
+                                                      cli
+parts never import each other: YAML files combine them; some read files by data/archive
 
 envs -> types, protocols, errors; benchmark -> all but parts
 """
@@ -14,6 +14,7 @@ envs -> types, protocols, errors; benchmark -> all but parts
 import ast
 import subprocess
 import sys
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -21,7 +22,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
 LAYER_FILES = {"types", "networks", "errors", "checks", "composition", "config", "overrides"}
-LAYER_FILES |= {"parts"}
+LAYER_FILES |= {"parts", "trained"}
 SHARED = {"types", "protocols", "core", "networks"}
 CONFIG = {
     *("types", "protocols", "errors", "parts", "envs", "training"),
@@ -36,17 +37,22 @@ ALLOWED = {
     "networks": {"types", "core"},
     "envs": {"types", "protocols", "errors", "envs"},
     "training": {*SHARED, "envs", "data", "training"},
-    "data": {*SHARED, "parts"},
+    "archive": {"types", "protocols"},
+    "data": {*SHARED, "parts", "archive"},
+    "maps": {*SHARED, "archive"},
+    "policies": {*SHARED, "archive"},
     "overrides": {"errors"},
     "checks": {"types", "errors", "overrides", "parts", "envs"},
     "composition": {"errors", "checks", "overrides", "parts", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
-    "studies": {*SHARED, *CONFIG, "data", "maps", "run", "cli", "studies"},
-    "benchmark": {*CONFIG, "run", "cli", "studies", "benchmark"},
+    "trained": {*SHARED, *CONFIG, "archive", "data", "controllers", "run"},
+    "studies": {*SHARED, *CONFIG, "data", "maps", "run", "cli", "trained", "studies"},
+    "benchmark": {*CONFIG, "run", "cli", "trained", "studies", "benchmark"},
 }
-HYDRA = {"command", "checks", "composition", "config", "overrides", "run", "cli", "studies"}
+HYDRA = {"command", "checks", "composition", "config", "overrides", "run", "trained", "cli"}
+HYDRA |= {"studies"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
 over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))
@@ -61,6 +67,8 @@ def module_of(file):
 
 def layer_of(module):
     """The folder of a module, or the name of its file; "command" for a command."""
+    if module.startswith("hybrid_rl.data.archive"):  # no part
+        return "archive"
     parts = module.split(".")
     if len(parts) < 2 or parts[1].startswith("__"):
         return "package"
@@ -90,6 +98,17 @@ def test_imports_point_inward(file):
     ours = {name for name in imports_of(file) if name.split(".")[0] == "hybrid_rl"}
     outward = {name for name in ours if layer_of(name) not in allowed}
     assert not outward, f"{layer} may import only {sorted(allowed)}"
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    """Nor do commands, and wherever in a file the import stands; the package only names others."""
+    modules = {module_of(file).removesuffix(".__init__"): file for file in FILES}
+    graph = {}
+    for module, file in modules.items():
+        names = imports_of(file) if layer_of(module) != "package" else set()
+        graph[module] = {known for name in names for known in (name, name.rpartition(".")[0])}
+        graph[module] &= {*modules} - {module}
+    TopologicalSorter(graph).prepare()  # raises CycleError, which shows the circle
 
 
 @over_files

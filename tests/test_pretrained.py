@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import config, evaluate, pretrained
+from hybrid_rl import config, evaluate
 from hybrid_rl.cli import command
-from hybrid_rl.core import archive
+from hybrid_rl.data import archive
 from hybrid_rl.errors import UsageError
+from hybrid_rl.trained import names, read
 
-NAMES = pretrained.names()
+NAMES = names()
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -27,7 +28,7 @@ def test_a_policy_of_the_package_is_small_and_has_its_origin(name):
     assert (trained_as.task, trained_as.algo) == (name, about["algo"])
     assert np.mean(about["evaluation"]["returns"]) == pytest.approx(about["evaluation"]["mean"])
     assert len(about["evaluation"]["returns"]) >= 10
-    trained = pretrained.read(name)
+    trained = read(name)
     assert (trained.task, trained.seeds) == (name, (about["seed"],))
     action = trained.policy()(np.zeros(trained.episode.spec.obs))
     assert np.abs(action).max() <= 1
@@ -72,7 +73,7 @@ def test_a_description_calls_nothing_but_parts(tmp_path, change, words):
     about = {key: value for key, value in about.items() if value is not None}
     np.savez(tmp_path / "a.npz", **arrays | {"about": np.array(json.dumps(about))})
     with pytest.raises(UsageError, match=words):
-        pretrained.read(f"{tmp_path / 'a.npz'}")
+        read(f"{tmp_path / 'a.npz'}")
 
 
 def test_a_file_without_a_description_is_one_line(tmp_path, capfd):

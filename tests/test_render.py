@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import dataclass
+from functools import partial
 from types import SimpleNamespace
 
 import imageio.v3 as iio
@@ -14,6 +15,7 @@ from hybrid_rl import render
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.run import drawing
+from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Spec
 
@@ -64,8 +66,8 @@ def trained(monkeypatch):
         seeds=(3, 4),
         step=7000,
     )
-    module = SimpleNamespace(chosen=lambda given: run)
-    monkeypatch.setitem(sys.modules, "hybrid_rl.pretrained", module)
+    run.learner = partial(Trained.learner, run)
+    monkeypatch.setattr("hybrid_rl.trained.chosen", lambda given: run)
     return run
 
 

@@ -81,7 +81,7 @@ def dist_of(wheel):
 def test_the_demonstrations_are_found_from_any_folder(python, tmp_path):
     """The ant's, which an experiment reads; a file of the user's comes first."""
     code = (
-        "from hybrid_rl.core.archive import find\n"
+        "from hybrid_rl.data.archive import find\n"
         "from hybrid_rl.data.demonstrations import load\n"
         "print(len(load('demonstrations/ant.npz')['reward']), find('demonstrations/ant.npz'))"
     )

@@ -6,7 +6,7 @@ episode after episode:
     obs [N, o]   action [N, m] in [-1, 1]   reward [N]   next_obs [N, o], also at an end
     terminated [N]   truncated [N]   episode [N]: 0, 0, ..., 1, 1, ...
 
-with the header of core/archive. An episode whose last decision has neither flag counts as
+with the header of data/archive. An episode whose last decision has neither flag counts as
 truncated.
 """
 
@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.core import archive
+from hybrid_rl.data import archive
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import Spec, Transition
 

@@ -1,6 +1,6 @@
 """A trained policy from a file: a teacher, or a fixed controller.
 
-The file is a NumPy .npz without pickles, with the header of core/archive and every array of the
+The file is a NumPy .npz without pickles, with the header of data/archive and every array of the
 policy's parameters by its path, such as policy/trunk/params/Dense_0/kernel. `about` describes it.
 `python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes it.
 """
@@ -16,11 +16,11 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl import parts
-from hybrid_rl.core import archive
+from hybrid_rl.data import archive
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import PyTree, Spec
 
-ITSELF = "hybrid_rl.data.trained.TrainedPolicy"
+ITSELF = "hybrid_rl.data.trained.SavedPolicy"
 
 
 def save(
@@ -77,7 +77,7 @@ def part(prefix: str, file: str, node: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class TrainedPolicy:
+class SavedPolicy:
     """`policy` with the parameters in `file`, which must be of `task` in `world`.
 
     policy: None is the one that the file describes.

@@ -17,7 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core import archive
+from hybrid_rl.data import archive
 
 FIELDS = ("f", "low", "high", "slope")
 WRITE = "`python -m hybrid_rl.figures study=contact_maps view=map` writes one"

@@ -18,8 +18,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import archive, statistics
+from hybrid_rl.core import statistics
 from hybrid_rl.core.squashing import log_density
+from hybrid_rl.data import archive
 from hybrid_rl.networks import MLP, Perceptron, check, outputs, perceptron
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import Spec

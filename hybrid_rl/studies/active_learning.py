@@ -30,14 +30,13 @@ from jax import Array
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import checkpoint
 from hybrid_rl.studies import unseen
 from hybrid_rl.studies.curves import band, iqm
 from hybrid_rl.studies.recorded import Recorded, matching, read
 from hybrid_rl.studies.significant import rounded
 from hybrid_rl.studies.style import STYLE, legend_outside, line_styles, plain_log, words
 from hybrid_rl.studies.unseen import Unseen
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.trained import restore
 from hybrid_rl.types import Batch
 
 TASK, EXPERIMENT = "cart_swing_up", "thesis/fig_4_1"
@@ -165,10 +164,7 @@ def history(recorded: Recorded, count: int) -> Any:
     kept: Any = run.agent.learners.get("history")
     if kept is None or kept.every != recorded.config.episode.steps or kept.copies < count:
         raise UsageError(f"runs={path}: needs copies of its models; experiment={EXPERIMENT}")
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    few = {name: like.learners[name] for name in ("model", "history")}
-    like = like.replace(env=None, control=None, memory=None, key=None, learners=few)
-    learners = checkpoint.restore(path / "checkpoints", like, part=True)[1].learners
+    learners = restore(path, run)[1].learners
     return jax.tree.map(
         lambda copies, last: jnp.concatenate([copies[:, 1:count], last[:, None]], axis=1),
         learners["history"].models,

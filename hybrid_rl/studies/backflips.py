@@ -29,7 +29,8 @@ from hybrid_rl.core import labels
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.folder import parsed
-from hybrid_rl.studies.recorded import learned, matching, read
+from hybrid_rl.studies.recorded import matching, read
+from hybrid_rl.trained import restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import (
     advance,
@@ -108,7 +109,7 @@ def of(folder: Path) -> Explored:
         raise UsageError(f"runs={folder}: needs a run of experiment=thesis/fig_6_9")
     recorded = read(folder, "lander")
     learner: Any = recorded.run.agent.learners["policy"]
-    state = learned(recorded.run, folder)[1]["policy"]
+    state = restore(folder, recorded.run)[1].learners["policy"]
     asked = np.asarray(state.queries)
     done = np.arange(learner.most)[None] < asked[:, None]  # [S, Q]
     traced = learner.target is not None and learner.target.criterion == "trace"

@@ -18,15 +18,12 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.cli.arguments import whole
-from hybrid_rl.config import Run, build
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import checkpoint
-from hybrid_rl.run import folder as run_folder
 from hybrid_rl.studies import rows
 from hybrid_rl.studies.curves import band, iqm
 from hybrid_rl.studies.recorded import labels, matching
 from hybrid_rl.studies.style import STYLE, words
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Spec
 
@@ -53,16 +50,13 @@ def figure(
     """Errors of each run on both kinds of decisions."""
     folders = matching(runs, "held_out")
     trained = [restored(folder) for folder in folders]
-    if len({run.config.task for run, _, _ in trained}) > 1:
+    if len({run.task for run in trained}) > 1:
         raise UsageError(f"runs={runs}: the runs are of several tasks")
     data = held_out(trained, decisions)
-    names = [
-        f"{label}, {step:,}" for label, (_, _, step) in zip(labels(folders), trained, strict=True)
-    ]
     numbers: dict[str, Any] = {"decisions": decisions, "runs": {}}
-    for name, (run, params, step) in zip(names, trained, strict=True):
-        each = {kind: errors(run, params, *data[kind]) for kind in SETS}
-        numbers["runs"][name] = {"step": step, "seeds": list(run.seeds)} | {
+    for label, run in zip(labels(folders), trained, strict=True):
+        each = {kind: errors(run, *data[kind]) for kind in SETS}
+        numbers["runs"][f"{label}, {run.step:,}"] = {"step": run.step, "seeds": list(run.seeds)} | {
             kind: {"iqm": iqm(e), "band": band(e), "each": e} for kind, e in each.items()
         }
     return draw(numbers), numbers
@@ -80,32 +74,27 @@ def summary(numbers: dict[str, Any]) -> list[str]:
     return lines
 
 
-def restored(folder: Path) -> tuple[Run, Params, int]:
-    """The run in `folder`, its parameters [S, ...] and its decisions.
+def restored(folder: Path) -> Trained:
+    """The run in `folder`.
 
     Raises:
         UsageError: if it has no learned model.
     """
-    run = build(run_folder.read(folder, "runs"))
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, memory=None, key=None)
-    step, state, _, _ = checkpoint.restore(folder / "checkpoints", like, part=True)
-    params = jax.vmap(run.agent.params)(state)
-    if params.model is None:
+    run = load(folder, "runs")
+    if run.params.model is None:
         raise UsageError(f"runs={folder}: has no learned model")
-    return run, params, step
+    return run
 
 
-def held_out(trained: list[Any], decisions: int) -> dict[str, tuple[Array, Array, Array]]:
+def held_out(trained: list[Trained], decisions: int) -> dict[str, tuple[Array, Array, Array]]:
     """Kind -> observations [N, o], actions [N, m] and next observations [N, o]."""
-    most = max(step for _, _, step in trained)
+    most = max(run.step for run in trained)
     rng, parts = np.random.default_rng(0), {kind: [] for kind in SETS}
-    for run, params, step in trained:
-        if step == most:
+    for run in trained:
+        if run.step == most:
             controller = run.controllers.get("policy", run.controllers["full"])
-            parts[SETS[0]].append(episodes(run, controller, params))
-    run, params, _ = trained[0]
-    parts[SETS[1]].append(episodes(run, RandomActions(), params))
+            parts[SETS[0]].append(episodes(run, controller))
+    parts[SETS[1]].append(episodes(trained[0], RandomActions()))
     result = {}
     for kind, each in parts.items():
         share = decisions // len(each)
@@ -117,29 +106,29 @@ def held_out(trained: list[Any], decisions: int) -> dict[str, tuple[Array, Array
     return result
 
 
-def episodes(run: Run, controller: Any, params: Params) -> tuple[np.ndarray, ...]:
+def episodes(run: Trained, controller: Any) -> tuple[np.ndarray, ...]:
     """obs [N, o], action [N, m], next_obs [N, o] of one episode of each seed."""
     keys = jax.vmap(jax.random.key)(START + jnp.array(run.seeds))
-    world = run.agent.episode
+    world = run.episode
 
     def one(params: Params, key: Array) -> Any:
         return rollout_with_actions(world, controller, params, key, world.steps)
 
-    actions, states = jax.tree.map(np.asarray, jax.jit(jax.vmap(one))(params, keys))
+    actions, states = jax.tree.map(np.asarray, jax.jit(jax.vmap(one))(run.params, keys))
     lived = ~states.done[:, :-1]
     return states.obs[:, :-1][lived], actions[lived], states.obs[:, 1:][lived]
 
 
-def errors(run: Run, params: Params, obs: Array, action: Array, after: Array) -> np.ndarray:
-    """The error [S] of the model of each seed."""
-    model: Any = run.agent.learners["model"]
+def errors(run: Any, obs: Array, action: Array, after: Array) -> np.ndarray:
+    """The error [S] of the model of each seed; run: a Trained one."""
+    model = run.agent.learners["model"]
     scale = jnp.var(after - obs, 0)
 
     def one(params: Any) -> Array:
         predicted = jax.vmap(model.model.step, (None, 0, 0))(params, obs, action)
         return jnp.sqrt(jnp.mean(jnp.mean((predicted - after) ** 2, 0) / scale))
 
-    return np.asarray(jax.jit(lambda params: jax.lax.map(one, params))(params.model))
+    return np.asarray(jax.jit(lambda params: jax.lax.map(one, params))(run.params.model))
 
 
 def draw(numbers: dict[str, Any]) -> Any:

@@ -16,15 +16,15 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from omegaconf import OmegaConf
 
-from hybrid_rl.config import Run, build
+from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.folder import parsed
 from hybrid_rl.run.results import RunFolder
 from hybrid_rl.studies.curves import band, curves, improvement, iqm
-from hybrid_rl.studies.recorded import labels, learned, matching
+from hybrid_rl.studies.recorded import labels, matching
+from hybrid_rl.trained import built, restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params
@@ -131,12 +131,6 @@ def _row(label: str, folder: Path, config: Any, metric: str) -> Row:
     return Row(label, folder, config, curve.x / first - 1, curve.each)
 
 
-def built(config: Any) -> Run:
-    """The run of a configuration from its folder."""
-    made: Any = OmegaConf.merge(config, {"resume": None})
-    return build(made)
-
-
 @partial(jax.jit, static_argnums=(0, 1))
 def _evaluated(episode: Episode, controller: Controller, params: Any, keys: Any) -> Any:
     """The scores [..., S, M] of policies with parameters [..., S, ...], for keys [S, M]."""
@@ -173,7 +167,7 @@ def refitted(row: Row, steps: int, at: Sequence[int], score: str) -> np.ndarray:
     """
     run, first = built(row.config), int(row.config.learners.policy.first)
     learner: Any = run.agent.learners["policy"]
-    state = learned(run, row.folder)[1]["policy"]
+    state = restore(row.folder, run)[1].learners["policy"]
     counts = first * (np.array(at) + 1)
     least = min(int(np.asarray(state.labels.count).min()), learner.capacity)
     if counts.max() > least:

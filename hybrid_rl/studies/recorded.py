@@ -7,13 +7,12 @@ from typing import Any, NamedTuple
 import jax
 import numpy as np
 
-from hybrid_rl.config import Run, build
+from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run.folder import parsed
 from hybrid_rl.run.results import RunFolder, differences, short
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.trained import built, restore
 
 
 class Recorded(NamedTuple):
@@ -58,23 +57,10 @@ def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
     if not fits or config.num_envs != 1 or not config.checkpoint_replay:
         words = f"{' or '.join(tasks)}, " if tasks else ""
         raise UsageError(f"{key}={folder}: needs {words}num_envs=1, checkpoint_replay=true")
-    for learner in config.learners.values():
-        if learner is not None and "demonstrations" in learner:
-            learner.demonstrations = None  # its file is not needed
-    run = build(config)
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, learners=None, key=None)
-    memory = checkpoint.restore(folder / "checkpoints", like, part=True)[1].memory
+    run = built(config, "memory")
+    memory = restore(folder, run, "memory")[1].memory
     decisions = min(int(np.asarray(memory.count).min()), memory.rows.shape[1])
     return Recorded(RunFolder(folder), config, run, memory, decisions)
-
-
-def learned(run: Run, folder: Path) -> tuple[int, dict[str, Any]]:
-    """Decisions of the run in `folder`, and the states [S, ...] of its learners, by name."""
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    like = like.replace(env=None, control=None, memory=None, key=None)
-    step, state, _, _ = checkpoint.restore(folder / "checkpoints", like, part=True)
-    return step, state.learners
 
 
 def one_episode(recorded: Recorded) -> Any:

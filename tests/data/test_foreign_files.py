@@ -14,10 +14,9 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import evaluate, export, pretrained
+from hybrid_rl import evaluate, export, trained
 from hybrid_rl.cli import command
-from hybrid_rl.core import archive
-from hybrid_rl.data import demonstrations
+from hybrid_rl.data import archive, demonstrations
 from hybrid_rl.errors import UsageError
 from hybrid_rl.maps import learned
 from hybrid_rl.types import Spec, Transition
@@ -46,7 +45,7 @@ def recorded(tmp_path_factory) -> bytes:
 
 def refused(file: Path) -> None:
     """The file is refused by one line, whoever reads it."""
-    for read in (pretrained.read, demonstrations.load):
+    for read in (trained.read, demonstrations.load):
         with pytest.raises(ValueError, match=r"policy=|demonstrations=") as caught:
             read(str(file))
         assert str(caught.value).isprintable()
@@ -118,7 +117,7 @@ def test_names_of_members_are_no_paths_and_occur_once(tmp_path, policy, name):
         warnings.simplefilter("ignore")
         data.writestr(name, npy("(4,)"))
     with pytest.raises(UsageError, match=r"which this policy lacks|is damaged, cut short"):
-        pretrained.read(str(file))
+        trained.read(str(file))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.npz"]
 
 
@@ -151,7 +150,7 @@ def test_a_task_is_a_plain_name(tmp_path, policy, task):
     """It is written into programs and shown on terminals."""
     np.savez(tmp_path / "a.npz", **policy | {"task": np.array(task)})
     with pytest.raises(UsageError, match=r"task=.*: must be letters, digits"):
-        pretrained.read(str(tmp_path / "a.npz"))
+        trained.read(str(tmp_path / "a.npz"))
     with pytest.raises(ValueError, match="a file needs a name of letters"):
         archive.write(tmp_path / "b.npz", task, Spec(3, 1, 0.05), {})
     assert not (tmp_path / "b.npz").exists()
@@ -175,7 +174,7 @@ def test_a_description_that_fits_nothing_is_one_line(tmp_path, policy, name):
     changes, words = ABOUT[name]
     np.savez(tmp_path / "a.npz", **described(policy, **changes))
     with pytest.raises(UsageError, match=words) as caught:
-        pretrained.read(str(tmp_path / "a.npz"))
+        trained.read(str(tmp_path / "a.npz"))
     assert str(caught.value).startswith("policy")
     assert not Path("ran").exists()
 
@@ -185,11 +184,11 @@ def test_a_description_may_not_nest_without_end_or_name_its_own_file(tmp_path, p
     for text in ("[" * 100_000, '{"env":' * 100_000, "7", "null", ""):
         np.savez(file, **policy | {"about": np.array(text)})
         with pytest.raises(UsageError, match="its description"):
-            pretrained.read(str(file))
+            trained.read(str(file))
     nested: Any = 0
     for _ in range(900):
         nested = {"a": nested}
-    itself = {"_target_": "hybrid_rl.data.trained.TrainedPolicy", "policy": None}
+    itself = {"_target_": "hybrid_rl.data.trained.SavedPolicy", "policy": None}
     itself |= {"file": str(file), "task": "lander", "world": None}
     for node, words in (
         (nested, "is nested too deeply"),
@@ -197,7 +196,7 @@ def test_a_description_may_not_nest_without_end_or_name_its_own_file(tmp_path, p
     ):
         np.savez(file, **described(policy, policy=node))
         with pytest.raises(UsageError, match=words):
-            pretrained.read(str(file))
+            trained.read(str(file))
 
 
 def test_numbers_that_become_infinite_are_refused(tmp_path, policy, recorded):
@@ -206,7 +205,7 @@ def test_numbers_that_become_infinite_are_refused(tmp_path, policy, recorded):
     large[0, 0] = 1e300
     np.savez(tmp_path / "a.npz", **policy | {WEIGHTS: large})
     with pytest.raises(UsageError, match="is not finite"):
-        pretrained.read(str(tmp_path / "a.npz"))
+        trained.read(str(tmp_path / "a.npz"))
     rows = dict(np.load(io.BytesIO(recorded)))
     np.savez(tmp_path / "b.npz", **rows | {"obs": np.full((12, 3), 1e300)})
     with pytest.raises(ValueError, match="obs is not finite in row 0"):
@@ -223,8 +222,8 @@ def test_words_of_a_file_are_printed_on_one_line(tmp_path, policy, capfd):
 def test_an_exported_program_holds_no_words_of_the_file_but_its_task(tmp_path, policy):
     """Its code is that of the same policy with another description, but for the name."""
     np.savez(tmp_path / "a.npz", **described(policy, command='"""\nopen("ran", "w")'))
-    trained = pretrained.read(str(tmp_path / "a.npz"))
-    spec, net = trained.episode.spec, export.layers(trained.episode.spec, *trained.learner())
+    run = trained.read(str(tmp_path / "a.npz"))
+    spec, net = run.episode.spec, export.layers(run.episode.spec, *run.learner())
     script = export.save_layers(tmp_path / "b.npz", "x.y-z_1", spec, net)
     tree = ast.parse(script.read_text())
     assert (ast.get_docstring(tree) or "").startswith("The policy of 'x.y-z_1': observation")
@@ -251,7 +250,7 @@ def test_mutated_files_are_read_whole_or_refused(tmp_path, policy, recorded):
     np.savez(file, **policy)
     learned.save(tmp_path / "map.npz", np.eye(4) - 0.5, np.zeros(2), np.ones(2), 1.0)
     readers = {
-        "policy": (file.read_bytes(), lambda: pretrained.read(str(file)).params),
+        "policy": (file.read_bytes(), lambda: trained.read(str(file)).params),
         "demonstrations": (recorded, lambda: demonstrations.load(file)),
         "map": ((tmp_path / "map.npz").read_bytes(), lambda: learned._load.__wrapped__(str(file))),
     }

@@ -10,14 +10,16 @@ import numpy as np
 import pytest
 from tiny import call, only_line, run
 
-from hybrid_rl import config, demonstrate, evaluate, pretrained
+from hybrid_rl import config, demonstrate
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
-from hybrid_rl.data.trained import TrainedPolicy, save
+from hybrid_rl.data.trained import SavedPolicy, save
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.policies.tanh_gaussian import StartedGaussian, TanhGaussian
+from hybrid_rl.trained import load, read
+from hybrid_rl.types import Params
 
 POLICY = TanhGaussian((8, 4), "sin", normalise=True)
 KEY = jax.random.key(4)
@@ -32,10 +34,10 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "deep" / "policy.npz"
 
 
-def opened(file: Path, /, **fields: Any) -> TrainedPolicy:
+def opened(file: Path, /, **fields: Any) -> SavedPolicy:
     """The policy that the pendulum reads from the file."""
     given = {"policy": POLICY, "file": str(file), "task": "pendulum", "world": Pendulum()}
-    return TrainedPolicy(**(given | fields))
+    return SavedPolicy(**(given | fields))
 
 
 def test_parameters_come_back_bit_for_bit(file: Path) -> None:
@@ -158,22 +160,22 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     run(tmp_path / "run", "algo=sac", "num_seeds=2")
     write = [f"run={tmp_path / 'run'}", "policy=policy.npz", "command=as above"]
     assert call(lambda: command.guarded(demonstrate.main), *write) == 0
-    given = evaluate.load(tmp_path / "run")
+    given = load(tmp_path / "run")
     line = ["task=pendulum", "algo=sac", "expert=trained"]
     expert = config.expert(config.load([*line, "expert.policy.file=policy.npz"]))
     assert isinstance(expert, PolicyController)
     x = jnp.array([1.0, 0.0, 0.4])
-    got = expert.act(evaluate.Params(), (), x, jax.random.key(0))[0]
+    got = expert.act(Params(), (), x, jax.random.key(0))[0]
     first = jax.tree.map(lambda leaf: leaf[0], given.params)
     want = given.controllers["policy"].act(first, (), x, jax.random.key(0))[0]
     np.testing.assert_array_equal(got, want)
-    read = pretrained.read("policy.npz")
-    assert (read.task, read.seeds, read.step, read.notes) == (
+    again = read("policy.npz")
+    assert (again.task, again.seeds, again.step, again.notes) == (
         *("pendulum", (0,), given.step),
         ("trained by: as above",),
     )
-    assert read.episode == given.episode
-    np.testing.assert_allclose(read.policy()(x), want, atol=1e-6)
+    assert again.episode == given.episode
+    np.testing.assert_allclose(again.policy()(x), want, atol=1e-6)
     capfd.readouterr()
     for words, wrong in (
         ("give run=DIR", ["task=pendulum", "policy=policy.npz"]),

@@ -16,7 +16,8 @@ from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import THREE
 from hybrid_rl.studies import belief_frames, belief_video, contacts
 from hybrid_rl.studies.belief_panel import Panel, View, level
-from hybrid_rl.studies.recorded import learned, read
+from hybrid_rl.studies.recorded import read
+from hybrid_rl.trained import restore
 
 pytestmark = pytest.mark.xdist_group("contact_runs")  # their fixture is expensive
 
@@ -29,7 +30,8 @@ def test_the_last_belief_is_that_of_the_checkpoint(contact_runs: Runs, name: str
     """Of the second learner, in several parts."""
     recorded = read(contact_runs[name])
     trial = belief_frames.trial_of(recorded, SEED)
-    kept = jax.tree.map(lambda a: a[SEED], learned(recorded.run, contact_runs[name])[1]["belief"])
+    learned = restore(contact_runs[name], recorded.run)[1].learners["belief"]
+    kept = jax.tree.map(lambda a: a[SEED], learned)
     *_, last = belief_frames.beliefs(trial, [0, 5, STEPS])
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, atol=1e-5), last, kept)
 

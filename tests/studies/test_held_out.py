@@ -3,7 +3,6 @@
 import json
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -30,11 +29,10 @@ def test_the_error_is_that_of_numpy_for_linear_models() -> None:
     layer = params["weights"]["net"]["params"]["Dense_0"]
     layer["kernel"] = layer["kernel"].at[1].set(0)
     layer["bias"] = layer["bias"].at[1].set((after - obs).mean(0))
-    run: Any = SimpleNamespace(
-        agent=SimpleNamespace(learners={"model": SimpleNamespace(model=model)})
-    )
+    agent = SimpleNamespace(learners={"model": SimpleNamespace(model=model)})
+    run = SimpleNamespace(agent=agent, params=Params(model=params))
     data = (jnp.asarray(each, jnp.float32) for each in (obs, action, after))
-    errors = held_out.errors(run, Params(model=params), *data)
+    errors = held_out.errors(run, *data)
     change = np.concatenate([obs, action], 1) @ np.asarray(layer["kernel"][0])
     change += np.asarray(layer["bias"][0])
     first = np.sqrt((((obs + change - after) ** 2).mean(0) / (after - obs).var(0)).mean())

@@ -10,7 +10,7 @@ import pytest
 from jax import Array
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.evaluate import Trained
+from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, rollout
 from hybrid_rl.types import EnvState, Params, Spec

@@ -1,0 +1,293 @@
+"""A trained run or policy, read back.
+
+    policy = load("runs/hopper/sac/TIME").policy(seed=0)
+    policy.reset()  # at the start of every episode
+    action = policy(obs)  # [m] in [-1, 1]
+
+`load` reads the folder of a run, `read` a file of hybrid_rl.data.trained: one of policies/, which
+come with the package, or the user's. The `about` of a file is JSON with the world, the episode and
+the policy as in config.yaml of the run, and with the command, the seed and the evaluation.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from omegaconf import DictConfig, OmegaConf
+
+from hybrid_rl import config as configuration
+from hybrid_rl.checks import check
+from hybrid_rl.config import Run
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.data import archive
+from hybrid_rl.data.trained import SavedPolicy, part
+from hybrid_rl.envs.mujoco.physics import resolve
+from hybrid_rl.errors import UsageError, shown
+from hybrid_rl.protocols import Controller
+from hybrid_rl.run import checkpoint
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.reading import from_json
+from hybrid_rl.training.agent import Agent, AgentState
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import Params, Spec
+
+PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
+UNFIT = (TypeError, AttributeError, LookupError, ArithmeticError, AssertionError, RecursionError)
+
+
+@dataclass(frozen=True)
+class Trained:
+    """A run, read back."""
+
+    task: str
+    episode: Episode
+    controllers: dict[str, Controller]  # mode -> controller without exploration
+    params: Params  # [S, ...]
+    seeds: tuple[int, ...]
+    step: int  # decisions of each learner
+    notes: tuple[str, ...]  # one for each checkpoint that was skipped
+    config: DictConfig | None = None  # of the run; env and episode at least
+    agent: Agent | None = None  # of the run; None: of a policy's file
+
+    def policy(self, seed: int | None = None, mode: str = "full", key: int = 0) -> "TrainedPolicy":
+        """Observations to actions, as the learner of `seed` acts; None is the first.
+
+        key: seed of the planner's random numbers.
+
+        Raises:
+            UsageError: for a seed or a mode that the run does not have.
+        """
+        return TrainedPolicy(self.episode.spec, *self.learner(seed, mode), key)
+
+    def learner(
+        self, seed: int | None = None, mode: str = "full", world: bool = False
+    ) -> tuple[Controller, Params]:
+        """The controller of `mode` and the parameters of the learner of `seed`; None: the first.
+
+        world: whether the caller can give it the state of the world, and not only observations.
+
+        Raises:
+            UsageError: for a seed or a mode that the run does not have, or a mode that needs more
+                than observations.
+        """
+        seed = self.seeds[0] if seed is None else seed
+        if seed not in self.seeds:
+            raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
+        if mode not in self.controllers:
+            raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
+        if not world and getattr(self.controllers[mode], "needs_world", False):
+            raise UsageError(
+                f"mode={mode}: plans from the state of the world (model=world), which observations "
+                "do not give; use evaluate or render"
+            )
+        params: Any = jax.tree.map(lambda leaf: leaf[self.seeds.index(seed)], self.params)
+        return self.controllers[mode], params
+
+
+class TrainedPolicy:
+    """action = policy(obs): a trained controller without exploration, for one world or N.
+
+    obs is [o], or [N, o] of N worlds side by side; the action is [m] or [N, m], in [-1, 1]. A
+    planner keeps its plan from one call to the next, so call `reset` when an episode begins.
+    """
+
+    def __init__(self, spec: Spec, controller: Controller, params: Params, key: int = 0) -> None:
+        self.spec, self._key = spec, jax.random.key(key)
+        self._begin = partial(controller.init, spec)
+        self._state: Any = None  # [N, ...]; None: an episode begins
+        self._worlds = 0  # N
+
+        def act(state: Any, obs: Array, key: Array) -> tuple[Array, Any, Array]:
+            key, *keys = jax.random.split(key, 1 + len(obs))
+            each = jax.vmap(controller.act, (None, 0, 0, 0))
+            u, state, _ = each(params, state, obs, jnp.stack(keys))
+            return u, state, key
+
+        self._act = jax.jit(act)
+
+    def reset(self, where: np.ndarray | None = None) -> None:
+        """Begin an episode; where: [N] bool, only in these worlds."""
+        if where is None:
+            self._state = None
+        elif self._state is not None:
+            first = self._begin()
+            each = jax.vmap(lambda new, now: jax.tree.map(partial(jnp.where, new), first, now))
+            self._state = each(jnp.asarray(where), self._state)
+
+    def __call__(self, obs: np.ndarray) -> np.ndarray:
+        """The action [m] at obs [o], or actions [N, m] at [N, o].
+
+        Raises:
+            ValueError: for observations of another size, or another N than since the reset.
+        """
+        obs = np.asarray(obs, np.float32)
+        o = self.spec.obs
+        if obs.ndim not in (1, 2) or obs.shape[-1] != o:
+            raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
+        rows = np.atleast_2d(obs)
+        if self._state is None:
+            self._worlds = len(rows)
+            self._state = jax.tree.map(
+                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *leaf.shape)), self._begin()
+            )
+        if len(rows) != self._worlds:
+            raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
+        u, self._state, self._key = self._act(self._state, rows, self._key)
+        return np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
+
+
+def load(folder: Path | str, key: str = "run") -> Trained:
+    """The learners of the run in `folder`, at its newest sound checkpoint.
+
+    key: the argument that named the folder.
+
+    Raises:
+        UsageError: if `folder` holds no run, a damaged configuration, or no checkpoint.
+        CheckpointError: if none of its checkpoints is sound.
+    """
+    folder = Path(folder)
+    config = run_folder.read(folder, key)
+    if not checkpoint.steps(folder / "checkpoints"):
+        raise UsageError(f"{key}={folder}: holds no checkpoint yet; train it further first")
+    with run_folder.blamed(folder):
+        check(config)
+        prepare(config)
+        run = built(config)
+        step, state, notes = restore(folder, run)
+    agent, seeds = run.agent, run.seeds
+    params = jax.vmap(agent.params, axis_size=len(seeds))(state)  # state may be empty
+    return Trained(
+        config.task, agent.episode, run.controllers, params, seeds, step, notes, config, agent
+    )
+
+
+def built(config: DictConfig, part: str = "learners") -> Run:
+    """The run of `config`, without files of demonstrations that `restore` of `part` does not need.
+
+    Raises:
+        UsageError: if a value is out of range.
+    """
+    config = config.copy()
+    holders = list(config.learners.values())
+    if part != "memory":
+        config.pretrain = 0
+        holders.append(config.replay)
+    for holder in holders:
+        if holder is not None and "demonstrations" in holder:
+            holder.demonstrations = None
+    return configuration.build(config)
+
+
+def restore(
+    folder: Path, run: Run, part: str = "learners"
+) -> tuple[int, AgentState, tuple[str, ...]]:
+    """(step, state [S, ...], notes) of the newest sound checkpoint of `run` in `folder`.
+
+    part: the field of the state that is read; the others are None.
+
+    Raises:
+        CheckpointError: if none is sound.
+        MisfitError: if it is of another run.
+    """
+    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+    others = {field.name: None for field in fields(like) if field.name != part}
+    path = folder / "checkpoints"
+    step, state, _, notes = checkpoint.restore(path, like.replace(**others), part=True)
+    return step, state, tuple(notes)
+
+
+def names() -> list[str]:
+    """The policies that come with the package."""
+    return sorted(path.stem for each in archive.PARENTS for path in each.glob("policies/*.npz"))
+
+
+def chosen(given: Mapping[str, Any]) -> Trained:
+    """What the arguments run=DIR or policy=NAME name.
+
+    Raises:
+        UsageError: if both or none are given, or what they name is unusable.
+    """
+    if bool(given["run"]) == bool(given["policy"]):
+        raise UsageError(
+            "run, policy: give one of them; run=DIR is a folder that training wrote, "
+            f"policy=NAME one of {', '.join(names())} or a file"
+        )
+    return read(given["policy"]) if given["policy"] else load(Path(given["run"]))
+
+
+def read(name: str) -> Trained:
+    """The policy NAME of the package, or that in a file whose name ends in .npz.
+
+    Raises:
+        UsageError: if there is none, or it is unusable.
+    """
+    file = Path(name) if name.endswith(".npz") else Path("policies", f"{name}.npz")
+    prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
+    try:
+        arrays = archive.read(prefix, file, hint=known)
+        if archive.ABOUT not in arrays:
+            raise UsageError(f"{prefix} has no description; write it again with `demonstrate`")
+        about = _described(prefix, str(arrays[archive.ABOUT]))
+        prepare(configuration.load([]))
+        return _trained(prefix, str(file), str(arrays["task"]), about)
+    except UsageError:
+        raise
+    except ValueError as error:
+        raise UsageError(str(error)) from error
+    except UNFIT as error:
+        raise UsageError(f"{prefix} its description fits no policy ({shown(error)})") from error
+
+
+def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Trained:
+    """The policy that a description names, with the parameters in `file`."""
+    env = about["env"]
+    if isinstance(env.get("physics"), str):
+        env = env | {"physics": resolve(env["physics"], 1)}  # of this machine
+    env = part(prefix, file, env)
+    world = {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
+    trained = SavedPolicy(None, file, task, env, about["episode"])
+    controller = PolicyController(trained.policy, explore=False)
+    return Trained(
+        task,
+        Episode(env, **about["episode"]),
+        {"full": controller, "policy": controller},
+        Params(policy=jax.tree.map(lambda leaf: leaf[None], trained.load())),
+        (about["seed"],),
+        about["step"],
+        tuple(_origin(about)),
+        OmegaConf.create(world | {"episode": about["episode"]}),
+    )
+
+
+def _described(prefix: str, text: str) -> dict[str, Any]:
+    """`about` of a file."""
+    try:
+        about = from_json(text)
+    except ValueError as error:
+        raise UsageError(f"{prefix} its description is damaged") from error
+    kinds = {**dict.fromkeys(PARTS, dict), **dict.fromkeys(COUNTS, int)}
+    missing = [key for key in kinds if not isinstance(about, dict) or key not in about]
+    if missing:
+        raise UsageError(f"{prefix} its description lacks {', '.join(missing)}")
+    if wrong := [key for key, kind in kinds.items() if type(about[key]) is not kind]:
+        raise UsageError(f"{prefix} {wrong[0]} of its description is of a wrong kind")
+    return about
+
+
+def _origin(about: Mapping[str, Any]) -> list[str]:
+    """Lines about how a policy was made."""
+    lines = []
+    if about.get("command"):
+        lines.append(f"trained by: {shown(about['command'])}")
+    match about.get("evaluation"):
+        case {"mean": int() | float() as mean, "returns": list() as returns}:
+            lines.append(f"evaluated then: {mean:,.1f} (mean of {len(returns)} episodes)")
+    return lines
