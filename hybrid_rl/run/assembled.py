@@ -1,0 +1,101 @@
+"""A run of an agent that was built in Python, without YAML, in a folder of the usual form.
+
+The folder has metrics.jsonl, tensorboard/, checkpoints and summary.json. Its config.yaml holds the
+schedule and the agent as text, of which no command can build the agent again: `evaluate`, `render`
+and `resume=` refuse it, and figures draw it.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jax
+from omegaconf import OmegaConf
+
+from hybrid_rl.checks import SECTIONS
+from hybrid_rl.composition import CONF
+from hybrid_rl.config import Run
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import checkpoint
+from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.types import Params
+
+DEFAULTS = ("log_every", "compile_cache", "matmul_precision")  # those of conf/train.yaml
+
+
+def run_of(
+    agent: Agent,
+    *,
+    total_steps: int,
+    seed: int = 0,
+    num_seeds: int = 1,
+    run_dir: str | Path | None = None,
+    name: str | None = None,
+    log_every: int | None = None,
+    eval_every: int | None = None,
+    eval_episodes: int = 10,
+    checkpoint_every: int | None = None,
+) -> Run:
+    """The run of `agent` with these values of the configuration; None is explained below.
+
+    run_dir: None is runs/ENV/NAME/TIME, by the class of the environment; a folder that holds
+    checkpoints is continued. name: of the method, in figures; None is the classes of the learners.
+    log_every: None is the default. eval_every: None evaluates nothing; checkpoint_every: None saves
+    at the end alone.
+
+    Raises:
+        UsageError: for counts out of range, or a folder that holds another run.
+        ValueError: if a part refuses a run of this length.
+    """
+    counts = {"total_steps": total_steps, "num_seeds": num_seeds, "eval_episodes": eval_episodes}
+    every = {"eval_every": eval_every, "checkpoint_every": checkpoint_every}
+    every = {key: total_steps if value is None else value for key, value in every.items()}
+    defaults: Any = OmegaConf.load(CONF / "train.yaml")
+    values = {key: defaults[key] for key in DEFAULTS} | counts | every
+    values |= {} if log_every is None else {"log_every": log_every}
+    for key in (*counts, *every, "log_every"):
+        if type(values[key]) is not int or values[key] < 1:
+            raise UsageError(f"{key}={values[key]}: must be a whole number, 1 or more")
+    rounds = -(-total_steps // agent.num_envs)
+    agent.check(rounds * agent.num_envs)
+    classes = [type(part).__name__ for part in agent.learners.values() or [agent.controller]]
+    task = type(agent.episode.env).__name__
+    config = OmegaConf.create(
+        values
+        | {"task": task.lower(), "algo": name or "_".join(classes).lower(), "agent": repr(agent)}
+        | {"seed": seed, "num_envs": agent.num_envs, "random_steps": agent.random_steps}
+        | {"eval_modes": [] if eval_every is None else ["full"], "checkpoint_replay": True}
+        | {"run_dir": None if run_dir is None else str(run_dir), "resume": None, "logger": None}
+        | {"physics": None, **{section: {} for section in SECTIONS}}
+        | {"controllers": {"full": None}}
+    )
+    sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
+    run = Run(config, sized, {"full": agent.controller.greedy()})
+    if run_dir is not None and checkpoint.steps(Path(run_dir) / "checkpoints"):
+        _check_same(run, Path(run_dir))
+        config.resume = str(run_dir)
+    return run
+
+
+def params_of(run: Run, folder: Path) -> tuple[int, Params]:
+    """Decisions of each learner at the newest checkpoint, and their parameters [S, ...]."""
+    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
+    like = like.replace(env=None, control=None, memory=None, key=None)
+    step, state, _, _ = checkpoint.restore(folder / "checkpoints", like, part=True)
+    return step, jax.vmap(run.agent.params, axis_size=len(run.seeds))(state)
+
+
+def _check_same(run: Run, folder: Path) -> None:
+    """Raise UsageError if the folder holds a run of a configuration, or of other seeds."""
+    config = OmegaConf.load(folder / "config.yaml") if (folder / "config.yaml").exists() else {}
+    if "agent" not in config:
+        line = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
+        raise UsageError(f"run_dir={folder}: {line}")
+    saved = tuple(checkpoint.meta(folder / "checkpoints").get("seeds", ()))
+    if saved != run.seeds:
+        listed = ", ".join(map(str, saved))
+        raise UsageError(
+            f"seed={run.seeds[0]} num_seeds={len(run.seeds)}: run_dir={folder} holds the learners "
+            f"of seed {listed}"
+        )
