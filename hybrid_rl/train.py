@@ -130,9 +130,9 @@ def train(
             agent whose run_dir holds its checkpoints continues there: give the same agent.
         given: the overrides of the user, key -> value, where a configuration has `resume`, of
             which only total_steps may differ from the run. Those of a list are known.
-        on_row: called with each new row of metrics.jsonl, a dictionary. Where it returns False,
-            the run ends after a checkpoint, with "finished": False in the result; where it raises,
-            also, and the exception follows.
+        on_row: called with each new row of metrics.jsonl, a dictionary. Once it has returned False,
+            the run ends within seconds, with a checkpoint and "finished": False in the result;
+            where it raises, also, and the exception follows.
         progress: False prints nothing.
         settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
             run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.

@@ -87,11 +87,15 @@ def params_of(run: Run, folder: Path) -> tuple[int, Params]:
 
 
 def _check_same(run: Run, folder: Path) -> None:
-    """Raise UsageError if the folder holds a run of a configuration, or of other seeds."""
+    """Raise UsageError if the folder holds a run of a configuration, other seeds, more steps."""
     config = OmegaConf.load(folder / "config.yaml") if (folder / "config.yaml").exists() else {}
     if "agent" not in config:
         line = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
         raise UsageError(f"run_dir={folder}: {line}")
+    made = max(checkpoint.steps(folder / "checkpoints"))
+    if run.config.total_steps < made:
+        line = f"total_steps={run.config.total_steps}: run_dir={folder} has {made}"
+        raise UsageError(f"{line}; it can be raised, not lowered")
     saved = tuple(checkpoint.meta(folder / "checkpoints").get("seeds", ()))
     if saved != run.seeds:
         listed = ", ".join(map(str, saved))

@@ -136,12 +136,12 @@ class WandB:
 class Function:
     """A function of the user's, which is called with every new row, a dictionary.
 
-    Where it returns False, `ask` is called with 0; where it raises, also, and `problem` is what it
-    raised. It gets no row after that.
+    Where it returns False, `ask` is called with 0, and it gets the rows up to the end. Where it
+    raises, also; `problem` is what it raised, and it is not called again.
     """
 
     def __init__(self, function: Callable[[Row], Any]) -> None:
-        self._function, self._ended = function, False
+        self._function = function
         self.ask: Callable[[int], None] = lambda number: None
         self.problem: Exception | None = None
 
@@ -150,13 +150,13 @@ class Function:
 
     def write(self, row: Row) -> None:
         """Call the function."""
-        if self._ended:
+        if self.problem is not None:
             return
         try:
-            self._ended = self._function(dict(row)) is False
+            ends = self._function(dict(row)) is False
         except Exception as problem:
-            self.problem, self._ended = problem, True
-        if self._ended:
+            self.problem, ends = problem, True
+        if ends:
             self.ask(0)
 
     def flush(self) -> None:
