@@ -116,23 +116,20 @@ def train(
     progress: bool = True,
     **settings: Any,
 ) -> Result:
-    """Train `method` to its end, or to a signal; returns what summary.json holds.
+    """Train `method` to its end; returns what summary.json holds.
 
         train(["task=pendulum", "algo=sac", "num_seeds=2"], on_row=print)
         train(["resume=runs/pendulum/sac/TIME", "total_steps=20000"])
         train(Agent(...), total_steps=10_000, num_seeds=5, run_dir="runs/mine")
 
-    A signal, such as SIGTERM, has the effect that it has in the calling program once the
-    checkpoint is written.
+    A signal, such as SIGTERM, ends it with a checkpoint, and then has its effect on the program.
 
     Args:
-        method: what follows the command, as a list; a configuration of `compose`; or an agent. An
-            agent whose run_dir holds its checkpoints continues there: give the same agent.
-        given: the overrides of the user, key -> value, where a configuration has `resume`, of
-            which only total_steps may differ from the run. Those of a list are known.
-        on_row: called with each new row of metrics.jsonl, a dictionary. Once it has returned False,
-            the run ends within seconds, with a checkpoint and "finished": False in the result;
-            where it raises, also, and the exception follows.
+        method: what follows the command, as a list; a configuration of `compose`; or an agent,
+            which continues where run_dir holds its checkpoints.
+        given: the overrides of the user, key -> value, for a configuration with `resume`.
+        on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
+            raises, the run ends with a checkpoint, and "finished" of the result is False.
         progress: False prints nothing.
         settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
             run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.

@@ -1,8 +1,8 @@
 """The public names: their list, their types and docstrings, and the page that shows them."""
 
 import json
-import signal
 import re
+import signal
 import sys
 from functools import partial
 from inspect import getdoc, signature

@@ -21,7 +21,7 @@ from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
-DEFAULTS = ("log_every", "compile_cache", "matmul_precision")  # those of conf/train.yaml
+DEFAULTS = ("compile_cache", "matmul_precision")  # those of conf/train.yaml
 
 
 def run_of(
@@ -39,36 +39,30 @@ def run_of(
 ) -> Run:
     """The run of `agent` with these values of the configuration; None is explained below.
 
-    run_dir: None is runs/ENV/NAME/TIME, by the class of the environment; a folder that holds
-    checkpoints is continued. name: of the method, in figures; None is the classes of the learners.
-    log_every: None is the default. eval_every: None evaluates nothing; checkpoint_every: None saves
-    at the end alone.
+    run_dir: None is runs/ENV/NAME/TIME; a folder that holds checkpoints is continued. name: of the
+    method, in figures; None is the classes of the learners. log_every: None is the default.
+    eval_every: None evaluates nothing. checkpoint_every: None saves at the end alone.
 
     Raises:
         UsageError: for counts out of range, or a folder that holds another run.
         ValueError: if a part refuses a run of this length.
     """
-    counts = {"total_steps": total_steps, "num_seeds": num_seeds, "eval_episodes": eval_episodes}
-    every = {"eval_every": eval_every, "checkpoint_every": checkpoint_every}
-    every = {key: total_steps if value is None else value for key, value in every.items()}
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
-    values = {key: defaults[key] for key in DEFAULTS} | counts | every
-    values |= {} if log_every is None else {"log_every": log_every}
-    for key in (*counts, *every, "log_every"):
-        if type(values[key]) is not int or values[key] < 1:
-            raise UsageError(f"{key}={values[key]}: must be a whole number, 1 or more")
+    counts = {"total_steps": total_steps, "num_seeds": num_seeds, "eval_episodes": eval_episodes}
+    counts["log_every"] = defaults.log_every if log_every is None else log_every
+    every = {"eval_every": eval_every, "checkpoint_every": checkpoint_every}
+    counts |= {key: total_steps if value is None else value for key, value in every.items()}
+    for key, value in counts.items():
+        if type(value) is not int or value < 1:
+            raise UsageError(f"{key}={value}: must be a whole number, 1 or more")
     rounds = -(-total_steps // agent.num_envs)
     agent.check(rounds * agent.num_envs)
-    classes = [type(part).__name__ for part in agent.learners.values() or [agent.controller]]
-    task = type(agent.episode.env).__name__
     config = OmegaConf.create(
-        values
-        | {"task": task.lower(), "algo": name or "_".join(classes).lower(), "agent": repr(agent)}
-        | {"seed": seed, "num_envs": agent.num_envs, "random_steps": agent.random_steps}
-        | {"eval_modes": [] if eval_every is None else ["full"], "checkpoint_replay": True}
+        _described(agent, name)
+        | counts
+        | {key: defaults[key] for key in DEFAULTS}
+        | {"seed": seed, "eval_modes": [] if eval_every is None else ["full"]}
         | {"run_dir": None if run_dir is None else str(run_dir), "resume": None, "logger": None}
-        | {"physics": None, **{section: {} for section in SECTIONS}}
-        | {"controllers": {"full": None}}
     )
     sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
     run = Run(config, sized, {"full": agent.controller.greedy()})
@@ -76,6 +70,26 @@ def run_of(
         _check_same(run, Path(run_dir))
         config.resume = str(run_dir)
     return run
+
+
+def _described(agent: Agent, name: str | None) -> dict[str, Any]:
+    """The keys of a configuration that follow from an agent."""
+    env = agent.episode.env
+    classes = [type(part).__name__ for part in agent.learners.values() or [agent.controller]]
+    physics = getattr(env, "physics", None)
+    physics = physics if isinstance(physics, str) else None
+    return {
+        "task": type(env).__name__.lower(),
+        "algo": name or "_".join(classes).lower(),
+        "agent": repr(agent),
+        "num_envs": agent.num_envs,
+        "random_steps": agent.random_steps,
+        "checkpoint_replay": True,
+        "physics": physics,
+        **{section: {} for section in SECTIONS},
+        "env": {"physics": physics},
+        "controllers": {"full": None},
+    }
 
 
 def params_of(run: Run, folder: Path) -> tuple[int, Params]:

@@ -141,7 +141,7 @@ class Function:
     """
 
     def __init__(self, function: Callable[[Row], Any]) -> None:
-        self._function = function
+        self._function, self._asked = function, False
         self.ask: Callable[[int], None] = lambda number: None
         self.problem: Exception | None = None
 
@@ -156,7 +156,8 @@ class Function:
             ends = self._function(dict(row)) is False
         except Exception as problem:
             self.problem, ends = problem, True
-        if ends:
+        if ends and not self._asked:
+            self._asked = True
             self.ask(0)
 
     def flush(self) -> None:
