@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -125,21 +125,28 @@ def build(config: DictConfig) -> Run:
         parts = _on_this_machine(config)
         episode, notes = _episode(parts)
         controllers = {mode: _instantiate(node) for mode, node in parts.controllers.items()}
-        replay = _instantiate(parts.replay)
-        longest = (rounds + replay.num_demonstrated(config.num_envs)) * config.num_envs
         agent = Agent(
             episode,
             controllers["full"],
             {name: _instantiate(node) for name, node in parts.learners.items() if node},
-            replace(
-                replay, capacity=min(replay.capacity, max(longest, replay.num_demonstrated(1)))
-            ),
+            _instantiate(parts.replay).within(rounds, config.num_envs),
             config.num_envs,
             config.random_steps,
             config.pretrain,
         )
         agent.check(rounds * config.num_envs)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
+
+
+def episodes(config: DictConfig) -> Episode:
+    """The episodes of `config`, without its method.
+
+    Raises:
+        UsageError: for a value out of range.
+    """
+    with _usage(config):
+        check_kinds(OmegaConf.create({"env": config.env}))
+        return _episode(_on_this_machine(config))[0]
 
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
@@ -159,9 +166,7 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
             raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
         with open_dict(changed):
             changed[section][name] = OmegaConf.from_dotlist([f"value={value}"]).value
-    with _usage(changed):
-        check_kinds(OmegaConf.create({"env": changed.env}))
-        return _episode(_on_this_machine(changed))[0]
+    return episodes(changed)
 
 
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:

@@ -9,6 +9,8 @@ their curve, on the console and in DIR/curve.png. The jobs of a sweep are checke
 one starts; a job that fails does not end the others; jobs that share run_dir=DIR write to DIR/0,
 DIR/1, ... An override that the method does not use is refused; in a sweep, one that none of its
 methods uses.
+
+From Python `hybrid_rl.train(...)` calls `train` of this module.
 """
 
 if __name__ == "__main__":
@@ -16,34 +18,119 @@ if __name__ == "__main__":
 
     interrupt.install()
 
+import inspect
 import shlex
 import signal
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig
 
+import hybrid_rl
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
+from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import curve, divergence, launch
+from hybrid_rl.run import assembled, curve, divergence, launch, loggers
 from hybrid_rl.run.progress import say
+from hybrid_rl.training.agent import Agent
+
+if TYPE_CHECKING:
+    from hybrid_rl.studies.curves import Curve
+    from hybrid_rl.trained import Trained
+
+OnRow = Callable[[dict[str, Any]], Any]
 
 EVALUATION = "eval/return"
 CURVE = 3  # evaluations
 
 
-def train(config: DictConfig, given: Mapping[str, str] = launch.NOTHING) -> dict[str, Any]:
-    """Run `config` to its end, or to a signal; returns what summary.json holds.
+class Result(dict[str, Any]):
+    """What summary.json holds; its folder, its curves and its learners."""
 
-    given: the overrides of the user, key -> value; of a run that `config.resume` names only
-    total_steps may differ from its settings. A signal, such as SIGTERM, has the effect that it has
-    in the calling program once the checkpoint is written.
+    def __init__(self, summary: Mapping[str, Any], run: Run | None = None) -> None:
+        super().__init__(summary)
+        self._run = run  # of an agent; None: config.yaml has the parts
+
+    @property
+    def folder(self) -> Path:
+        """The run folder."""
+        return Path(self["run_dir"])
+
+    def curves(self, metric: str = EVALUATION) -> "list[Curve]":
+        """The curve of a metric, with arrays; see hybrid_rl.curves."""
+        from hybrid_rl.studies.curves import curves
+
+        return curves(self.folder, metric)
+
+    def load(self) -> "Trained":
+        """The learners at the newest checkpoint; `.policy(seed)` maps observations to actions."""
+        if self._run is None:
+            return hybrid_rl.load(self.folder)
+        from hybrid_rl import trained
+
+        return trained.of(self._run, self.folder)
+
+
+@overload
+def train(
+    method: Sequence[str] | DictConfig = (),
+    given: Mapping[str, str] = launch.NOTHING,
+    *,
+    on_row: OnRow | None = None,
+    progress: bool = True,
+) -> Result: ...
+
+
+@overload
+def train(
+    method: Agent,
+    *,
+    total_steps: int,
+    seed: int = 0,
+    num_seeds: int = 1,
+    run_dir: str | Path | None = None,
+    name: str | None = None,
+    log_every: int | None = None,
+    eval_every: int | None = None,
+    eval_episodes: int = 10,
+    checkpoint_every: int | None = None,
+    on_row: OnRow | None = None,
+    progress: bool = True,
+) -> Result: ...
+
+
+def train(
+    method: Sequence[str] | DictConfig | Agent = (),
+    given: Mapping[str, str] = launch.NOTHING,
+    *,
+    on_row: OnRow | None = None,
+    progress: bool = True,
+    **settings: Any,
+) -> Result:
+    """Train `method` to its end; returns what summary.json holds.
+
+        train(["task=pendulum", "algo=sac", "num_seeds=2"], on_row=print)
+        train(["resume=runs/pendulum/sac/TIME", "total_steps=20000"])
+        train(Agent(...), total_steps=10_000, num_seeds=5, run_dir="runs/mine")
+
+    A signal, such as SIGTERM, ends it with a checkpoint, and then has its effect on the program.
+
+    Args:
+        method: what follows the command, as a list; a configuration of `compose`; or an agent,
+            which continues where run_dir holds its checkpoints.
+        given: the overrides of the user, key -> value, for a configuration with `resume`.
+        on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
+            raises, the run ends with a checkpoint, and "finished" of the result is False.
+        progress: False prints nothing.
+        settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
+            run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.
 
     Raises:
         KeyboardInterrupt: after Ctrl-C and a checkpoint.
@@ -51,10 +138,24 @@ def train(config: DictConfig, given: Mapping[str, str] = launch.NOTHING) -> dict
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    summary = launch.train(config, given, interrupt.answered)
-    if summary["signal"] is not None:
-        signal.raise_signal(summary["signal"])
-    return summary
+    caller = None if on_row is None else loggers.Function(on_row)
+    output = launch.Output(caller, progress)
+    if isinstance(method, Agent):
+        run = assembled.run_of(method, **settings)
+        go = launch.begin if run.config.resume is None else launch.proceed
+        result = Result(go(run, interrupt.answered, output), run)
+    else:
+        if settings:
+            texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
+            raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
+        if not isinstance(method, DictConfig):
+            method, given = configuration.load(method), overrides.given(method)
+        result = Result(launch.train(method, given, interrupt.answered, output))
+    if result["signal"] is not None:
+        signal.raise_signal(result["signal"])
+    if caller is not None and caller.problem is not None:
+        raise caller.problem
+    return result
 
 
 def _job(config: DictConfig) -> dict[str, Any]:
@@ -116,6 +217,15 @@ def _result(summary: Mapping[str, Any]) -> str:
         parts.append(f"{name} {text}")
     return "; ".join(parts)
 
+
+class _Train(ModuleType):
+    """This module, which can be called: hybrid_rl.train(...) is hybrid_rl.train.train(...)."""
+
+    __call__ = staticmethod(train)
+    __signature__ = inspect.signature(train)
+
+
+sys.modules[__name__].__class__ = _Train
 
 if __name__ == "__main__":
     command.hydra_main(_job)

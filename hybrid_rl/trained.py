@@ -160,9 +160,13 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     with run_folder.blamed(folder):
         check(config)
         prepare(config)
-        run = built(config)
-        step, state, notes = restore(folder, run)
-    agent, seeds = run.agent, run.seeds
+        return of(built(config), folder)
+
+
+def of(run: Run, folder: Path) -> Trained:
+    """The learners of a run that is built, at its newest sound checkpoint; errors as `restore`."""
+    config, agent, seeds = run.config, run.agent, run.seeds
+    step, state, notes = restore(folder, run)
     params = jax.vmap(agent.params, axis_size=len(seeds))(state)  # state may be empty
     return Trained(
         config.task, agent.episode, run.controllers, params, seeds, step, notes, config, agent

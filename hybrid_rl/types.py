@@ -113,3 +113,4 @@ class Params(NamedTuple):
 
 Return = Callable[[Path], Array]  # path -> J []
 Step = Callable[[Array, Array], Array]  # x [n], u [m] -> the next x [n]
+Reward = Callable[[Array, Array, Array], Array]  # x [n], u [m], the next x [n] -> r []

@@ -45,7 +45,7 @@ PACKAGES = {  # page of the reference -> folders and modules
         "report",
         "list",
     ),
-    "Configuration": ("config", "overrides"),
+    "Configuration": ("config", "overrides", "named"),
     "Data structures": ("types", "errors"),
     "Protocols": ("protocols",),
     "Core mathematics": ("core",),
@@ -70,8 +70,8 @@ PAGES
 NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
 PAGES = {
     "Start": [
-        *("Getting started <self>", "docs/concepts", "docs/howto", "docs/faq", "docs/files"),
-        "CONTRIBUTING",
+        *("Getting started <self>", "docs/concepts", "docs/howto", "docs/python", "docs/faq"),
+        *("docs/files", "CONTRIBUTING"),
     ],
     "Notebooks": NOTEBOOKS,
     "Methods": ["docs/methods", "All methods <methods/index>"],

@@ -15,7 +15,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Path, Return, Step
+from hybrid_rl.types import Path, Return, Reward, Step
 
 
 class Adjoint(NamedTuple):
@@ -134,3 +134,38 @@ def insertion_ahead(
 
     value, slope, path = jax.jvp(returned, (after,), (step(x, u) - after,), has_aux=True)
     return objective(path._replace(u=path.u.at[0].set(u))) - value + slope
+
+
+def plan(
+    step: Step,
+    reward: Reward,
+    x: Array,
+    before: Array,
+    *,
+    iterations: int = 10,
+    gain: float = 0.2,
+) -> Array:
+    """The plan [T, m] from x [n]: gradient ascent on the sum of rewards from `before` [T, m].
+
+    An iteration moves the plan by gain * g / rms(g), and clips it to [-1, 1]; gain [u] falls to
+    zero over the iterations. `step` and `reward` need derivatives. Execute the first action and
+    shift the rest:
+
+        a = jnp.zeros((20, 1))  # 20 decisions
+        for _ in range(60):
+            a = plan(step, reward, x, a)
+            x, a = step(x, a[0]), sampling.shift(a)
+    """
+
+    def policy(x: Array) -> Array:
+        return jnp.zeros_like(before[0])
+
+    def objective(path: Path) -> Array:
+        return jax.vmap(reward)(path.x[:-1], path.u, path.x[1:]).sum()
+
+    def improve(a: Array, gain: Array) -> tuple[Array, None]:
+        g = adjoint(step, policy, objective, roll(step, policy, x, a)).gradient
+        return jnp.clip(a + gain * g / (jnp.sqrt(jnp.mean(g**2)) + 1e-6), -1, 1), None
+
+    gains = gain * (1 - jnp.arange(iterations) / iterations)
+    return jax.lax.scan(improve, before, gains)[0]

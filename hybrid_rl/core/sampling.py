@@ -19,8 +19,9 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import returns
 from hybrid_rl.core.adjoint import scan_unroll
-from hybrid_rl.types import EnvState, Path
+from hybrid_rl.types import EnvState, Path, Reward, Step
 
 
 class Samples(NamedTuple):
@@ -107,3 +108,39 @@ def effective_samples(w: Array) -> Array:
 def shift(plan: Array, rest: float = 0.0) -> Array:
     """The plan [T, m] one decision later: without its first action, with `rest` at the end."""
     return jnp.concatenate([plan[1:], jnp.full_like(plan[:1], rest)])
+
+
+def plan(
+    step: Step,
+    reward: Reward,
+    x: Array,
+    before: Array,
+    key: Array,
+    *,
+    samples: int = 100,
+    std: float = 0.5,
+    temperature: float = 0.1,
+) -> Array:
+    """The plan [T, m] from x [n]: the weighted mean of candidates around `before` [T, m] (MPPI).
+
+    Candidates are clip(before + std N(0, I)) to [-1, 1]. Their returns are normalised over the
+    candidates, so that `temperature` is a pure number. The key is consumed. Execute the first
+    action and `shift` the rest:
+
+        a = jnp.zeros((20, 1))  # 20 decisions
+        for key in jax.random.split(jax.random.key(0), 60):
+            a = plan(step, reward, x, a, key)
+            x, a = step(x, a[0]), shift(a)
+    """
+
+    def propose(carry: Array, x: Array, a: Array, noise: Array) -> tuple[Array, Array, Array]:
+        return jnp.clip(a + std * noise, -1, 1), jnp.zeros(()), carry
+
+    def to_go(path: Path) -> Array:
+        rewards = jax.vmap(reward)(path.x[:-1], path.u, path.x[1:])
+        return returns.to_go(rewards, jnp.ones_like(rewards), jnp.zeros_like(rewards[0]))
+
+    noise = jax.random.normal(key, (samples, *before.shape))
+    path = imagine(step, propose, jnp.zeros(samples), x, before, noise).path
+    w = weights(jax.vmap(to_go)(path)[:, :-1], temperature, normalise=True)
+    return jnp.einsum("kt,ktm->tm", w, path.u)

@@ -5,7 +5,7 @@ environment one decision later, and is not stored twice. The memory starts with 
 demonstrations, if there are any.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax
 import jax.numpy as jnp
@@ -51,6 +51,12 @@ class Replay:
         if self.demonstrations is None:
             return 0
         return len(self.demonstrations.load().reward) // num_envs
+
+    def within(self, rounds: int, num_envs: int) -> "Replay":
+        """This memory, no larger than what `rounds` decisions of each environment fill."""
+        demonstrated = self.num_demonstrated(num_envs)
+        longest = max((rounds + demonstrated) * num_envs, self.num_demonstrated(1))
+        return replace(self, capacity=min(self.capacity, longest))
 
     @staticmethod
     def width(spec: Spec) -> int:

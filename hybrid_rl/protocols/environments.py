@@ -17,13 +17,19 @@ class Simulator(Protocol):
 class Env(Protocol):
     """An environment. Frozen and hashable; everything that changes is in EnvState."""
 
-    spec: Spec
+    @property
+    def spec(self) -> Spec:
+        """Its sizes, and the time between decisions."""
 
     def reset(self, key: Array) -> EnvState:
         """The first state of an episode."""
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state one decision later. action: [m] in [-1, 1]."""
+
+
+class DrawnEnv(Env, Protocol):
+    """An environment that can be drawn."""
 
     def scene(self) -> str:
         """MJCF text, for drawing."""

@@ -189,6 +189,11 @@ def read(folder: Path, key: str) -> DictConfig:
     path = folder / "config.yaml"
     config: Any = parsed(folder, key)
     _check_version(folder, key, config)
+    if "agent" in config:
+        raise UsageError(
+            f"{key}={folder}: trained from parts in Python, which its config.yaml cannot build; "
+            "hybrid_rl.train(agent, run_dir=DIR, total_steps=N) reads it back and continues it"
+        )
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
         raise UsageError(f"{path}: lacks {', '.join(missing)}")

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -18,7 +19,7 @@ from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.progress import Progress, Silent
 from hybrid_rl.run.records import summary_of
 from hybrid_rl.run.results import flat
 from hybrid_rl.run.schedule import Schedule
@@ -33,7 +34,20 @@ OF_A_SESSION += ("compile_cache",)
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 
 
-def train(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Output:
+    """Where a run reports, besides its folder."""
+
+    on_row: loggers.Function | None = None  # gets every row
+    shown: bool = True  # on the console
+
+
+CONSOLE = Output()
+
+
+def train(
+    config: DictConfig, given: Mapping[str, str], handled: Handler, output: Output = CONSOLE
+) -> dict[str, Any]:
     """Run `config` to its end, or to a signal; returns what summary.json holds.
 
     given: the overrides of the user, key -> value; of a resumed run, whose settings come from its
@@ -51,20 +65,36 @@ def train(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dic
         config = distributed.share(config)
         given = {key: value for key, value in given.items() if key != "distributed"}
     if config.resume is not None:
-        return _resume(config, given, handled)
-    run = configuration.build(config)
-    prepare(config)
+        return _resume(config, given, handled, output)
+    return begin(configuration.build(config), handled, output)
+
+
+def begin(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
+    """The same for a run that is built, in a new folder."""
+    prepare(run.config)
     size = _fits(run)
-    loggers.check(config.get("logger"))
-    with folder.fresh(config) as run_dir:
-        return _run(run, run_dir, size, handled)
+    loggers.check(run.config.get("logger"))
+    with folder.fresh(run.config) as run_dir:
+        return _run(run, run_dir, size, handled, output)
 
 
-def _resume(config: DictConfig, given: Mapping[str, str], handled: Handler) -> dict[str, Any]:
+def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
+    """The same from the newest checkpoint in the folder `config.resume`."""
+    run_dir = Path(str(run.config.resume))
+    with locked(folder.writable(run_dir, "run_dir"), "run_dir"):
+        prepare(run.config)
+        return _run(run, run_dir, _fits(run), handled, output)
+
+
+def _resume(
+    config: DictConfig, given: Mapping[str, str], handled: Handler, output: Output
+) -> dict[str, Any]:
     """The same for the run in the folder `config.resume`."""
     run_dir = Path(str(config.resume))
     if done := _done(_settings(config, given), run_dir):
-        print(f"{run_dir}: finished already at {done['total_steps']:,}; raise total_steps to go on")
+        if output.shown:
+            line = f"finished already at {done['total_steps']:,}; raise total_steps to go on"
+            print(f"{run_dir}: {line}")
         return done | {"signal": None}
     with locked(folder.writable(run_dir, "resume"), "resume"):
         config = _settings(config, given)  # again, as another process may have continued the run
@@ -72,7 +102,7 @@ def _resume(config: DictConfig, given: Mapping[str, str], handled: Handler) -> d
             run = configuration.build(config)
             prepare(config)
         _refuse_edits(config, run_dir)
-        return _run(run, run_dir, _fits(run), handled)
+        return _run(run, run_dir, _fits(run), handled, output)
 
 
 def _fits(run: Run) -> str:
@@ -82,16 +112,19 @@ def _fits(run: Run) -> str:
     return memory.replay(run)
 
 
-def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]:
+def _run(run: Run, run_dir: Path, size: str, handled: Handler, output: Output) -> dict[str, Any]:
     """Run a session in `run_dir`; size: a line about the replay memory."""
     config = run.config
     label = f"{config.task} {config.algo}"
     names = loggers.check(config.get("logger"))
     settings: Any = OmegaConf.to_container(config)
+    copies = loggers.made(names, run_dir, run.seeds, settings)
+    if output.on_row is not None:
+        copies.append(output.on_row)
     with (
         integrity.naming(run_dir),
-        RunLog(run_dir, run.seeds, loggers.made(names, run_dir, run.seeds, settings)) as log,
-        _progress(run, label) as progress,
+        RunLog(run_dir, run.seeds, copies) as log,
+        _progress(run, label, output.shown) as progress,
     ):
         progress.note("\n".join([f"{label}: run folder {run_dir}", size, *run.notes]))
         loop = Loop(run.agent, run.seeds, -(-config.log_every // config.num_envs))
@@ -105,6 +138,8 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler) -> dict[str, Any]
                 session.resume()
         folder.write(run_dir, config)  # also of a resumed run, which may be longer now
         session.compile()
+        if output.on_row is not None:
+            output.on_row.ask = session.ask
         with handled(session.ask):
             try:
                 session.run()
@@ -186,12 +221,13 @@ def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     return summary if done and integrity.verify(newest) is None else None
 
 
-def _progress(run: Run, label: str) -> Progress:
+def _progress(run: Run, label: str, shown: bool) -> Progress:
     """The display of a run, whose last round may end beyond total_steps."""
     config = run.config
     rounds = -(-config.total_steps // config.num_envs)
     steady = max(run.agent.changes())
-    return Progress(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
+    kind = Progress if shown else Silent
+    return kind(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
 
 
 def _schedule(config: DictConfig) -> Schedule:
@@ -221,5 +257,5 @@ def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
         "versions": provenance.versions(),
         "git_commit": provenance.git_commit(),
         "run_dir": str(session.log.run_dir),
-        "signal": session.stop,
+        "signal": session.stop or None,
     }

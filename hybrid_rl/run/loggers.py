@@ -9,7 +9,7 @@ A resumed run continues the runs of W&B, which drop steps that they have already
 
 import csv
 import uuid
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
@@ -131,6 +131,40 @@ class WandB:
         for run in self._runs.values():
             run.finish()
         self._runs.clear()
+
+
+class Function:
+    """A function of the user's, which is called with every new row, a dictionary.
+
+    Where it returns False, `ask` is called with 0, and it gets the rows up to the end. Where it
+    raises, also; `problem` is what it raised, and it is not called again.
+    """
+
+    def __init__(self, function: Callable[[Row], Any]) -> None:
+        self._function, self._asked = function, False
+        self.ask: Callable[[int], None] = lambda number: None
+        self.problem: Exception | None = None
+
+    def rewind(self, rows: Iterable[Row]) -> None:
+        """Nothing: it had them before the run was stopped."""
+
+    def write(self, row: Row) -> None:
+        """Call the function."""
+        if self.problem is not None:
+            return
+        try:
+            ends = self._function(dict(row)) is False
+        except Exception as problem:
+            self.problem, ends = problem, True
+        if ends and not self._asked:
+            self._asked = True
+            self.ask(0)
+
+    def flush(self) -> None:
+        """Nothing: it has each row when it is written."""
+
+    def close(self) -> None:
+        """Nothing."""
 
 
 def check(given: Any) -> tuple[str, ...]:

@@ -196,6 +196,20 @@ class Progress:
         return Group(self._bar, *lines)
 
 
+class Silent(Progress):
+    """No display, and no line."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def update(self, step: int, scalars: dict[str, float], say: bool | None = None) -> None:
+        """Nothing but the step."""
+        self.step = step
+
+    def note(self, text: str) -> None:
+        """Nothing."""
+
+
 class _Count(TextColumn):
     """The steps: 1,000/2,000."""
 

@@ -51,7 +51,7 @@ class Session:
     returns: list[list[tuple[int, float]]] = field(default_factory=list)  # per seed: (step, return)
     final_eval: list[float | None] = field(default_factory=list)  # per seed: the latest
     learning: Speed = field(default_factory=Speed)  # over all sessions of the run
-    stop: int | None = None  # the signal that asked for an end
+    stop: int | None = None  # the signal that asked for an end; 0: the program did
     unevaluated: bool = False  # an evaluation is due at this step
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
     gathered: rows.Gathered = field(default_factory=rows.Gathered)  # since the last row of means
@@ -136,8 +136,8 @@ class Session:
         self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
 
     def ask(self, number: int) -> None:
-        """End the run after the current call, with a checkpoint; number: of the signal."""
-        self.stop = number
+        """End the run after the current call, with a checkpoint; number: of the signal, or 0."""
+        self.stop = self.stop or number
         self.progress.note("stopping, with a checkpoint ...")
 
     def run(self) -> None:

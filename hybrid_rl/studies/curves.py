@@ -12,7 +12,9 @@ A seed that diverged or had an infinite or NaN return is a failure (hybrid_rl.st
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -45,6 +47,22 @@ class Curve:
     def shared(self) -> np.ndarray:
         """[G] whether all learners have a value there."""
         return np.isfinite(self.each).all(0)
+
+    def frame(self) -> Any:
+        """A pandas.DataFrame: a row per value, columns task, label, seed, metric, x, value.
+
+        Raises:
+            ImportError: without pandas, which is not a dependency.
+        """
+        try:
+            pandas: Any = import_module("pandas")
+        except ImportError as error:
+            line = "frame: needs pandas, which is not installed; pip install pandas"
+            raise ImportError(line) from error
+        s, g = np.nonzero(np.isfinite(self.each))
+        values = {"seed": np.array(self.seeds)[s], "metric": self.metric}
+        values |= {"x": self.x[g], "value": self.each[s, g]}
+        return pandas.DataFrame({"task": self.task, "label": self.label} | values)
 
 
 def curves(

@@ -43,7 +43,7 @@ class Agent:
 
     episode: Episode
     controller: Controller
-    learners: Mapping[str, Learner]
+    learners: Mapping[str, Any]  # a Learner each; no protocol has both its fields and ClassVars
     replay: Replay
     num_envs: int = 1
     random_steps: int = 0

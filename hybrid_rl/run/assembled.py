@@ -1,0 +1,108 @@
+"""A run of an agent that was built in Python, without YAML, in a folder of the usual form.
+
+The folder has metrics.jsonl, tensorboard/, checkpoints and summary.json. Its config.yaml holds the
+schedule and the agent as text, of which no command can build the agent again: `evaluate`, `render`
+and `resume=` refuse it, and figures draw it.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from omegaconf import OmegaConf
+
+from hybrid_rl.checks import SECTIONS
+from hybrid_rl.composition import CONF
+from hybrid_rl.config import Run
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import checkpoint
+from hybrid_rl.training.agent import Agent
+
+DEFAULTS = ("compile_cache", "matmul_precision")  # those of conf/train.yaml
+
+
+def run_of(
+    agent: Agent,
+    *,
+    total_steps: int,
+    seed: int = 0,
+    num_seeds: int = 1,
+    run_dir: str | Path | None = None,
+    name: str | None = None,
+    log_every: int | None = None,
+    eval_every: int | None = None,
+    eval_episodes: int = 10,
+    checkpoint_every: int | None = None,
+) -> Run:
+    """The run of `agent` with these values of the configuration; None is explained below.
+
+    run_dir: None is runs/ENV/NAME/TIME; a folder that holds checkpoints is continued. name: of the
+    method, in figures; None is the classes of the learners. log_every: None is the default.
+    eval_every: None evaluates nothing. checkpoint_every: None saves at the end alone.
+
+    Raises:
+        UsageError: for counts out of range, or a folder that holds another run.
+        ValueError: if a part refuses a run of this length.
+    """
+    defaults: Any = OmegaConf.load(CONF / "train.yaml")
+    counts = {"total_steps": total_steps, "num_seeds": num_seeds, "eval_episodes": eval_episodes}
+    counts["log_every"] = defaults.log_every if log_every is None else log_every
+    every = {"eval_every": eval_every, "checkpoint_every": checkpoint_every}
+    counts |= {key: total_steps if value is None else value for key, value in every.items()}
+    for key, value in counts.items():
+        if type(value) is not int or value < 1:
+            raise UsageError(f"{key}={value}: must be a whole number, 1 or more")
+    rounds = -(-total_steps // agent.num_envs)
+    agent.check(rounds * agent.num_envs)
+    config = OmegaConf.create(
+        _described(agent, name)
+        | counts
+        | {key: defaults[key] for key in DEFAULTS}
+        | {"seed": seed, "eval_modes": [] if eval_every is None else ["full"]}
+        | {"run_dir": None if run_dir is None else str(run_dir), "resume": None, "logger": None}
+    )
+    sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
+    run = Run(config, sized, {"full": agent.controller.greedy()})
+    if run_dir is not None and checkpoint.steps(Path(run_dir) / "checkpoints"):
+        _check_same(run, Path(run_dir))
+        config.resume = str(run_dir)
+    return run
+
+
+def _described(agent: Agent, name: str | None) -> dict[str, Any]:
+    """The keys of a configuration that follow from an agent."""
+    env = agent.episode.env
+    classes = [type(part).__name__ for part in agent.learners.values() or [agent.controller]]
+    physics = getattr(env, "physics", None)
+    physics = physics if isinstance(physics, str) else None
+    return {
+        "task": type(env).__name__.lower(),
+        "algo": name or "_".join(classes).lower(),
+        "agent": repr(agent),
+        "num_envs": agent.num_envs,
+        "random_steps": agent.random_steps,
+        "checkpoint_replay": True,
+        "physics": physics,
+        **{section: {} for section in SECTIONS},
+        "env": {"physics": physics},
+        "controllers": {"full": None},
+    }
+
+
+def _check_same(run: Run, folder: Path) -> None:
+    """Raise UsageError if the folder holds a run of a configuration, other seeds, more steps."""
+    config = OmegaConf.load(folder / "config.yaml") if (folder / "config.yaml").exists() else {}
+    if "agent" not in config:
+        line = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
+        raise UsageError(f"run_dir={folder}: {line}")
+    made = max(checkpoint.steps(folder / "checkpoints"))
+    if run.config.total_steps < made:
+        line = f"total_steps={run.config.total_steps}: run_dir={folder} has {made}"
+        raise UsageError(f"{line}; it can be raised, not lowered")
+    saved = tuple(checkpoint.meta(folder / "checkpoints").get("seeds", ()))
+    if saved != run.seeds:
+        listed = ", ".join(map(str, saved))
+        raise UsageError(
+            f"seed={run.seeds[0]} num_seeds={len(run.seeds)}: run_dir={folder} holds the learners "
+            f"of seed {listed}"
+        )

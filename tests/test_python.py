@@ -1,0 +1,228 @@
+"""The public names: their list, their types and docstrings, and the page that shows them."""
+
+import json
+import re
+import signal
+import sys
+from functools import partial
+from inspect import getdoc, signature
+from pathlib import Path
+from types import ModuleType
+from unittest.mock import Mock
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from programs import shared
+from tiny import TINY, contents
+
+import hybrid_rl as hr
+from hybrid_rl.run.loggers import Function
+from hybrid_rl.run.session import Session
+from hybrid_rl.studies.curves import Curve
+
+PAGE = (Path(__file__).resolve().parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
+SIZES = {"total_steps": 200, "random_steps": 20, "eval_every": 100}
+
+
+def test_the_page_lists_the_public_names():
+    table = PAGE.partition("|---|---|")[2].partition("\n\n")[0]
+    cells = (line.split("|")[1] for line in table.strip().splitlines())
+    listed = [name for cell in cells for name in re.findall(r"`(\w+)`", cell)]
+    assert sorted(listed) == sorted(hr.__all__)
+    assert dir(hr) == sorted([*hr.__all__, "__version__"])
+
+
+@pytest.mark.parametrize("name", hr.__all__)
+def test_a_public_name_has_a_docstring_and_types(name):
+    value = getattr(hr, name)
+    assert getdoc(value)
+    if callable(value) and not isinstance(value, type):
+        found = signature(value)
+        annotations = [found.return_annotation, *(p.annotation for p in found.parameters.values())]
+        assert found.empty not in annotations
+
+
+def test_another_name_is_no_attribute():
+    with pytest.raises(AttributeError, match=r"'hybrid_rl' has no attribute 'trian'"):
+        hr.trian  # noqa: B018
+
+
+def test_train_is_a_module_that_can_be_called():
+    from hybrid_rl import train
+
+    assert isinstance(train, ModuleType)
+    assert train is hr.train
+    assert signature(train) == signature(train.train)
+
+
+def test_the_page_runs(tmp_path, monkeypatch):
+    """With its sizes reduced. The planners reach their goal; the function ends the first run."""
+    monkeypatch.chdir(tmp_path)
+    code = "\n".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL))
+    for key, size in SIZES.items():
+        code = re.sub(rf"({key}=)\d+", rf"\g<1>{size}", code)
+    code = code.replace("< 2000", "< 100").replace("(64, 64)", "(8, 8)").replace("print(x)", "end")
+    code = re.sub(r"^end.*", "ends.append(x)", code, flags=re.MULTILINE)
+    names = {"ends": []}
+    with shared():
+        exec(code, names)
+    np.testing.assert_allclose(names["ends"], [[1, 0], [1, 0]], atol=0.1)
+    assert (tmp_path / "runs/rail/summary.json").exists()
+    assert names["result"]["seeds"] == [0, 1, 2, 3, 4]
+
+
+def run(folder, *more, **options):
+    with shared():
+        return hr.train([*TINY, "algo=sac", f"run_dir={folder}", *more], **options)
+
+
+def test_a_function_gets_the_rows_of_the_file_and_ends_a_run_that_can_be_resumed(tmp_path, capfd):
+    rows, folder = [], tmp_path / "run"
+
+    def until(row):
+        rows.append(row)
+        return row["step"] < 200
+
+    half = run(folder, on_row=until, progress=False)
+    assert (half["finished"], half["total_steps"], half["signal"]) == (False, 200, None)
+    with shared():
+        whole = hr.train([f"resume={folder}"], on_row=rows.append, progress=False)
+    assert (whole["finished"], whole["total_steps"]) == (True, 600)
+    lines = (folder / "metrics.jsonl").read_text().splitlines()
+    steps = [(row["step"], row["seed"]) for row in map(json.loads, lines)]
+    assert [(row["step"], row["seed"]) for row in rows] == steps
+    assert capfd.readouterr().out == ""
+    assert whole.folder == folder
+    assert whole.curves("train/return")[0].x.tolist() == [200, 400, 600]
+    assert whole.load().step == 600
+
+
+def test_an_exception_of_the_function_follows_the_checkpoint(tmp_path):
+    def broken(row):
+        raise ZeroDivisionError(row["step"])
+
+    with pytest.raises(ZeroDivisionError):
+        run(tmp_path / "run", on_row=broken, progress=False)
+    saved = int(max((tmp_path / "run" / "checkpoints").iterdir()).name)
+    assert json.loads((tmp_path / "run" / "summary.json").read_text())["total_steps"] == saved < 600
+
+
+def test_a_function_that_raised_is_not_called_again():
+    asked, called = [], []
+
+    def broken(row):
+        called.append(row)
+        raise ValueError
+
+    function = Function(broken)
+    function.ask = asked.append
+    function.write({"step": 1})
+    function.write({"step": 2})
+    assert (asked, called) == ([0], [{"step": 1}])
+
+
+def test_a_signal_stays_the_cause_of_the_end_where_the_function_asks_as_well():
+    session = Mock(stop=None)
+    for number in (0, signal.SIGINT, 0):
+        Session.ask(session, number)
+    assert session.stop == signal.SIGINT
+
+
+@pytest.mark.parametrize(
+    ("ask", "line"),
+    [
+        (lambda: hr.train(task="pendulum"), r'train\(\["task=pendulum", \.\.\.\]\)'),
+        (lambda: hr.train("task=pendulum"), r'load\(\["task=pendulum"\]\)'),
+        (lambda: hr.make("pendulum", "env.a=1"), r'give a list, \["env\.a=1"\]'),
+        (lambda: hr.load("pendulm"), r"load\('pendulm'\): no run folder, .* pendulum"),
+    ],
+)
+def test_a_wrong_call_is_answered_in_one_line(ask, line):
+    with pytest.raises(hr.UsageError, match=line) as caught:
+        ask()
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_trained_from_parts_continues_and_is_read_back_by_the_same_agent_alone(tmp_path):
+    agent = parts()
+    folder = tmp_path / "mine"
+    short = {"num_seeds": 2, "run_dir": folder, "progress": False}
+    hr.train(agent, total_steps=60, **short)
+    longer = hr.train(agent, total_steps=120, name="mine", **short)
+    assert (longer["total_steps"], longer["finished"]) == (120, True)
+    (curve,) = longer.curves("train/return")
+    assert (curve.label, curve.seeds, curve.x.tolist()) == ("mine", (0, 1), [50, 100])
+    assert longer.load().policy(seed=1)([1.0, 0.0, 0.0]).shape == (1,)
+    before = contents(folder)
+    for ask, line in (
+        (lambda: hr.train(agent, total_steps=120, run_dir=folder), "num_seeds=1: .* seed 0, 1"),
+        (lambda: hr.train(agent, total_steps=60, **short), "total_steps=60: .* has 120"),
+        (lambda: hr.train(agent, total_steps=0), "total_steps=0: must be a whole number"),
+        (lambda: hr.load(folder), "trained from parts in Python"),
+        (lambda: hr.train([f"resume={folder}"]), "trained from parts in Python"),
+    ):
+        with pytest.raises(hr.UsageError, match=line):
+            ask()
+    assert contents(folder) == before
+
+
+def parts():
+    """SAC on the pendulum, in small."""
+    from hybrid_rl.controllers.policy import PolicyController
+    from hybrid_rl.critics.ensemble_q import EnsembleQ
+    from hybrid_rl.data.replay import Replay
+    from hybrid_rl.learners.sac import SAC
+    from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+
+    policy, critic = TanhGaussian(hidden=(8,)), EnsembleQ(hidden=(8,))
+    learners = {"policy": SAC(policy, critic, batch_size=4)}
+    episode = hr.make("pendulum", ["episode.steps=50"])
+    return hr.Agent(episode, PolicyController(policy), learners, Replay())
+
+
+def test_both_plans_agree_under_vmap():
+    """On the direction of the first action, from a state on either side of the goal."""
+
+    def step(x, u):
+        return x + 0.1 * u
+
+    def reward(x, u, after):
+        return -((after - 0.25) ** 2).sum()
+
+    states, before = jnp.array([[0.0], [0.5]]), jnp.zeros((4, 1))
+    keys = jax.random.split(jax.random.key(0), 2)
+    for plan, more in ((hr.adjoint.plan, ()), (hr.sampling.plan, (keys,))):
+        planned = jax.jit(jax.vmap(partial(plan, step, reward), (0, None, *(0 for _ in more))))
+        actions = planned(states, before, *more)
+        assert actions.shape == (2, 4, 1)
+        assert (actions[0, 0] > 0.2).all()
+        assert (actions[1, 0] < -0.2).all()
+
+
+def curve():
+    """Two seeds, one of which has a value less."""
+    each = np.array([[1.0, 2.0], [3.0, np.nan]])
+    return Curve(
+        "t", "m", "l", (4, 5), ("a", "a"), np.array([10.0, 20.0]), each, *each[[0, 0, 0]], ()
+    )
+
+
+def test_a_curve_is_a_table_of_its_values(monkeypatch):
+    pandas = ModuleType("pandas")
+    pandas.DataFrame = dict
+    monkeypatch.setitem(sys.modules, "pandas", pandas)
+    table = curve().frame()
+    assert [table[name] for name in ("task", "label", "metric")] == ["t", "l", "m"]
+    assert [table[name].tolist() for name in ("seed", "x", "value")] == [
+        [4, 4, 5],
+        [10.0, 20.0, 10.0],
+        [1.0, 2.0, 3.0],
+    ]
+
+
+def test_without_pandas_the_error_names_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(ImportError, match="pip install pandas"):
+        curve().frame()
