@@ -39,6 +39,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
+from hybrid_rl.core import branching
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import checkpoint, memory
@@ -129,11 +130,7 @@ class TrainedPolicy:
         if where is None:
             self._state = None
         elif self._state is not None:
-            self._state = jax.tree.map(
-                lambda first, now: jnp.where(_wide(jnp.asarray(where), now), first, now),
-                self._begin(),
-                self._state,
-            )
+            self._state = branching.where(jnp.asarray(where), self._begin(), self._state)
 
     def __call__(self, obs: np.ndarray) -> np.ndarray:
         """The action [m] at obs [o], or actions [N, m] at [N, o].
@@ -155,11 +152,6 @@ class TrainedPolicy:
             raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
         u, self._state, self._key = self._act(self._state, rows, self._key)
         return np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
-
-
-def _wide(mask: Array, like: Array) -> Array:
-    """Mask [N] with as many dimensions as `like` [N, ...]."""
-    return mask.reshape(mask.shape + (1,) * (like.ndim - 1))
 
 
 def load(folder: Path | str) -> Trained:
