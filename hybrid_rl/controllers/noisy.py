@@ -5,7 +5,7 @@
     ou       e' = (1 - theta dt) e + level sqrt(dt) N(0, I)       Ornstein-Uhlenbeck
     held     e ~ level N(0, I), drawn every `hold` decisions
 
-share = decay^k max(1 - k / until, 0) after k decisions of the run; a share that falls is 0 after it.
+share = decay^k max(1 - k / until, 0) after k decisions of the run; if it falls, 0 after training.
 The baselines of ergodic exploration (thesis section 6.3.2), the exploration of deep deterministic
 policy gradients (Lillicrap et al. 2016), and the executed noise of thesis Algorithm 2.
 """

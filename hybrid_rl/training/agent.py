@@ -166,9 +166,9 @@ class Agent:
 
         The model's own learner and those of `latest` data get observations.
         """
-        owner: Any = next((each for each in self.learners.values() if "model" in each.owns), None)
-        observes = owner is None or owner is learner or learner.data == "latest"
-        return None if observes else owner.model
+        owners: list[Any] = [each for each in self.learners.values() if "model" in each.owns]
+        observes = not owners or owners[0] is learner or learner.data == "latest"
+        return None if observes else owners[0].model
 
     def _first(self, learner: Learner, key: Array) -> Any:
         """The initial state of a learner. The key is consumed."""
