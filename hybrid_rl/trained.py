@@ -10,7 +10,7 @@ the policy as in config.yaml of the run, and with the command, the seed and the 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -160,17 +160,15 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     with run_folder.blamed(folder):
         check(config)
         prepare(config)
-        return of(built(config), folder)
+        return replace(of(built(config), folder), config=config)
 
 
 def of(run: Run, folder: Path) -> Trained:
     """The learners of a run that is built, at its newest sound checkpoint; errors as `restore`."""
-    config, agent, seeds = run.config, run.agent, run.seeds
+    name, agent, seeds = run.config.task, run.agent, run.seeds
     step, state, notes = restore(folder, run)
     params = jax.vmap(agent.params, axis_size=len(seeds))(state)  # state may be empty
-    return Trained(
-        config.task, agent.episode, run.controllers, params, seeds, step, notes, config, agent
-    )
+    return Trained(name, agent.episode, run.controllers, params, seeds, step, notes, agent=agent)
 
 
 def built(config: DictConfig, part: str = "learners") -> Run:

@@ -105,8 +105,8 @@ RETURN = PredictedReturn(REWARD, 0.9, CRITIC, POLICY)
 PLANNER = SamplingController(MODEL, RETURN, PolicyProposal(POLICY), POLICY, horizon=2, samples=3)
 LEARNERS = {
     "model": ModelLearner(MODEL, REWARD, batch_size=2),
-    "sac": SAC(POLICY, CRITIC, MODEL, batch_size=2),
-    "ddpg": DDPG(POLICY, CRITIC, MODEL, batch_size=2),
+    "sac": SAC(POLICY, CRITIC, batch_size=2),
+    "ddpg": DDPG(POLICY, CRITIC, batch_size=2),
     "bc": BehaviourCloning(POLICY, RandomDemonstrations(), MODEL, batch_size=2, updates=1),
     "mbpo": MBPO(SAC(POLICY, CRITIC, batch_size=2), MODEL, REWARD, POLICY, steps=2),
 }

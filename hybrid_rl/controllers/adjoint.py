@@ -20,7 +20,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, lyapunov, sampling
+from hybrid_rl.core import adjoint, decay, lyapunov, sampling
 from hybrid_rl.protocols import Model, Objective, Policy, StabilizingPolicy
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -89,7 +89,7 @@ class AdjointController:
         prepare_key = jax.random.split(key)[0]  # keeps the random numbers of version 0.1
         x = self.model.lift(params.model, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, prepare_key)
-        factor = self.gain_decay**state.count * self._share(params)
+        factor = self.gain_decay**state.count * decay.of_run(self.run_decay, params.decisions)
         plan = _Plan(self, params, value, x, state.v.shape[1], factor)
         due = (self.apply == "first") | (state.count % self.horizon == 0)
         rest = sampling.shift(state.v)
@@ -100,13 +100,6 @@ class AdjointController:
             v = jax.lax.cond(due, lambda v: plan.window(plan.improve(v)), lambda v: v, held)
         u = jnp.clip(plan.mean(x) + v[0], -1, 1)
         return u, AdjointState(v, u, state.count + 1, memory), plan.metrics(v)
-
-    def _share(self, params: Params) -> Any:
-        """The factor [] on W at this decision of the run."""
-        decisions: Any = params.decisions
-        if self.run_decay == 1:
-            return 1.0
-        return 0.0 if decisions is None else self.run_decay**decisions
 
     def greedy(self) -> "AdjointController":
         """The same controller: it has no exploration noise."""

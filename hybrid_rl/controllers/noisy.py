@@ -5,9 +5,9 @@
     ou       e' = (1 - theta dt) e + level sqrt(dt) N(0, I)       Ornstein-Uhlenbeck
     held     e ~ level N(0, I), drawn every `hold` decisions
 
-share = decay^k max(1 - k / until, 0) after k decisions of the run. The baselines of ergodic
-exploration (thesis section 6.3.2), the exploration of deep deterministic policy gradients
-(Lillicrap et al. 2016), and the executed noise of thesis Algorithm 2.
+share = decay^k max(1 - k / until, 0) after k decisions of the run; if it falls, 0 after training.
+The baselines of ergodic exploration (thesis section 6.3.2), the exploration of deep deterministic
+policy gradients (Lillicrap et al. 2016), and the executed noise of thesis Algorithm 2.
 """
 
 from dataclasses import dataclass
@@ -17,6 +17,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import decay
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
@@ -89,9 +90,10 @@ class NoisyController:
 
     def _share(self, params: Params) -> Any:
         """The factor [] on the noise at this decision of the run."""
-        decisions: Any = params.decisions
-        share: Any = 1.0 if self.decay == 1 else self.decay**decisions
-        return share if self.until is None else share * jnp.maximum(1 - decisions / self.until, 0)
+        k, share = params.decisions, decay.of_run(self.decay, params.decisions)
+        if self.until is None:
+            return share
+        return 0.0 if k is None else share * jnp.maximum(1 - k / self.until, 0)
 
     def greedy(self) -> Controller:
         """The inner controller without exploration."""

@@ -1,4 +1,4 @@
-"""One branch for a batch: compute a costly change only if some member needs it."""
+"""Choices for each member of a batch; a costly change only if some member needs it."""
 
 from collections.abc import Callable
 from typing import Any
@@ -9,6 +9,15 @@ from jax import Array
 from jax.custom_batching import custom_vmap
 
 Change = Callable[[Any, Any], Any]
+
+
+def where(flags: Array, a: Any, b: Any) -> Any:
+    """The members of a tree a [..., *x] where flags [...] are true, else those of b [..., *x]."""
+
+    def one(a: Array, b: Array) -> Array:
+        return jnp.where(flags.reshape(flags.shape + (1,) * (b.ndim - flags.ndim)), a, b)
+
+    return jax.tree.map(one, a, b)
 
 
 def when_any(needs: Callable[[Any], Array], change: Change) -> Change:

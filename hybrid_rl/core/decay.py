@@ -1,9 +1,17 @@
-"""Adam whose decay of weights spares all but the matrices of layers."""
+"""Decay: of exploration along a run, and of the weights of layers in Adam."""
 
 from typing import Any
 
 import jax
 import optax
+from jax import Array
+
+
+def of_run(rate: float, decisions: Array | None) -> Array | float:
+    """rate^k [] after k `decisions` [] of the run; 0 after training, where they are not counted."""
+    if rate == 1:
+        return 1.0
+    return 0.0 if decisions is None else rate**decisions
 
 
 def adamw(learning_rate: float, weight_decay: float) -> optax.GradientTransformation:

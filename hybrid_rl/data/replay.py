@@ -90,6 +90,11 @@ class Replay:
         rows = jax.lax.dynamic_update_index_in_dim(memory.rows, _packed(new), slot, 0)
         return Memory(rows, memory.count + 1)
 
+    def newest(self, memory: Memory, spec: Spec) -> Transition:
+        """The last decision [E, ...] of every environment; flags are 0 or 1."""
+        slot = (memory.count - 1) % memory.rows.shape[0]
+        return unpack(jax.lax.dynamic_index_in_dim(memory.rows, slot, keepdims=False), spec)
+
     def recent(self, memory: Memory, spec: Spec, ago: int) -> Transition | None:
         """The decisions [E] made `ago` rounds before the newest; None if they are not kept."""
         length, count = memory.rows.shape[0], int(memory.count)

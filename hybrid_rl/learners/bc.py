@@ -22,7 +22,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.decay import adamw
-from hybrid_rl.core.lifting import lift, lifted_spec
+from hybrid_rl.core.lifting import lift
 from hybrid_rl.core.ranges import edge_and_saturation
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
@@ -50,7 +50,7 @@ class BehaviourCloning:
 
     policy: LearnedPolicy
     demonstrations: Demonstrations | None
-    model: Model | None = None  # lifts observations to planning states; None: they are the same
+    model: Model | None = None  # lifts the demonstrations to planning states; None: as they are
     learning_rate: float = 3e-3
     edge: float = 0.99  # bound of the imitated actions
     batch_size: int = 128
@@ -77,7 +77,7 @@ class BehaviourCloning:
 
     def init(self, key: Array, spec: Spec) -> CloningState:
         """Initial parameters and optimiser. The key is consumed."""
-        policy = self.policy.init(key, lifted_spec(self.model, spec))
+        policy = self.policy.init(key, spec)
         if self.demonstrations is not None:
             model = None if self.model is None else self.model.init(key, spec)
             x = self._states(model, self.demonstrations.load().obs)

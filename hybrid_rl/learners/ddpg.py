@@ -18,9 +18,8 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.core.ranges import above_zero, discount_and_tau
-from hybrid_rl.protocols import Critic, LearnedPolicy, Model
+from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Params, Spec
 
 
@@ -46,7 +45,6 @@ class DDPG:
 
     policy: LearnedPolicy
     critic: Critic
-    model: Model | None = None  # lifts observations to planning states; None: they are the same
     policy_learning_rate: float = 1e-4
     critic_learning_rate: float = 1e-3
     discount: float = 0.99
@@ -67,7 +65,6 @@ class DDPG:
     def init(self, key: Array, spec: Spec) -> DDPGState:
         """Initial parameters, optimisers and targets. The key is consumed."""
         for_policy, for_critic = jax.random.split(key)
-        spec = lifted_spec(self.model, spec)
         policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
         return DDPGState(
             policy,
@@ -86,7 +83,6 @@ class DDPG:
         self, state: DDPGState, params: Params, batch: Batch, key: Array
     ) -> tuple[DDPGState, dict[str, Array]]:
         """One step of critic, policy and targets."""
-        batch = lifted_batch(self.model, params.model, batch)
         state = state.replace(
             policy=self.policy.observe(state.policy, batch.obs),
             critic=self.critic.observe(state.critic, batch.obs, batch.reward / (1 - self.discount)),

@@ -23,7 +23,7 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.core.branching import where
 from hybrid_rl.protocols import Policy, Reward, Trainable, UniformLearner
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -49,8 +49,6 @@ class MBPOState:
 @dataclass(frozen=True)
 class MBPO:
     """`learner` with a `share` of its data imagined by `model`, `reward` and `policy`.
-
-    It lifts the observations: the learner gets planning states and needs no model itself.
 
     Raises:
         ValueError: for a share, a number of steps or a memory out of range.
@@ -105,7 +103,6 @@ class MBPO:
 
     def init(self, key: Array, spec: Spec) -> MBPOState:
         """The initial state of `learner`, without branches. The key is consumed."""
-        spec = lifted_spec(self.model, spec)
         learner = self.learner.init(key, spec)
         if not self.memory:
             return MBPOState(learner, None)
@@ -126,7 +123,6 @@ class MBPO:
         self, state: MBPOState, params: Params, batch: Batch, key: Array
     ) -> tuple[MBPOState, dict[str, Array]]:
         """One update of `learner` on the mixed batch. The key is consumed."""
-        batch = lifted_batch(self.model, params.model, batch)
         count, branches = round(self.share * self.batch_size), state.branches
         if count:
             imagine_key, key = jax.random.split(key)
@@ -154,7 +150,7 @@ class MBPO:
         first = jax.random.randint(aging, age.shape, 0, self.steps)
         fresh = state.age >= self.steps
         age = jnp.where(fresh, jnp.where(state.count == 0, first, age), state.age)
-        x = _where(fresh, x, state.x)
+        x = where(fresh, x, state.x)
         for_policy = jax.random.normal(acting, batch.action.shape)
         for_model = jax.random.normal(moving, x.shape)
         new = self._transitions(params, x, for_policy, for_model, choosing)
@@ -195,9 +191,9 @@ class MBPO:
             x, last_one = carry
             *random, t = at
             new = self._transitions(params, x, *random)
-            last_one = jax.tree.map(lambda a, b: _where(t == last, a, b), new, last_one)
+            last_one = where(t == last, new, last_one)
             ended = new.terminated > 0.5  # an ended branch restarts at its first state
-            return (_where(ended, start, new.next_obs), last_one), None
+            return (where(ended, start, new.next_obs), last_one), None
 
         start = x
         empty = jax.tree.map(
@@ -215,8 +211,3 @@ class MBPO:
         outcome = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
         reward, end = outcome(params.reward, x, u, after)
         return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(len(x)), after)
-
-
-def _where(flags: Array, a: Array, b: Array) -> Array:
-    """Entries of a [b, ...] where flags [b] are true, else of b."""
-    return jnp.where(flags.reshape(flags.shape + (1,) * (a.ndim - 1)), a, b)

@@ -21,9 +21,8 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import soft_return, statistics
-from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.core.ranges import above_zero, discount_and_tau
-from hybrid_rl.protocols import Critic, Imagination, LearnedPolicy, Model
+from hybrid_rl.protocols import Critic, Imagination, LearnedPolicy
 from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 
@@ -50,7 +49,6 @@ class SAC:
 
     policy: LearnedPolicy
     critic: Critic
-    model: Model | None = None  # lifts observations to planning states; None: they are the same
     policy_learning_rate: float = 3e-4
     critic_learning_rate: float = 3e-4
     alpha_learning_rate: float = 3e-4
@@ -85,7 +83,6 @@ class SAC:
     def init(self, key: Array, spec: Spec) -> SACState:
         """Initial parameters, optimisers and target. The key is consumed."""
         for_policy, for_critic = jax.random.split(key)
-        spec = lifted_spec(self.model, spec)
         policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
         log_alpha = jnp.log(jnp.float32(self.alpha))
         return SACState(
@@ -106,7 +103,6 @@ class SAC:
         self, state: SACState, params: Params, batch: Batch, key: Array
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
-        batch = lifted_batch(self.model, params.model, batch)
         alpha = jnp.exp(state.log_alpha)
         state = state.replace(
             policy=self.policy.observe(state.policy, batch.obs),

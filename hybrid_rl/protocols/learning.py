@@ -27,7 +27,9 @@ class Imagination(Protocol):
 class _Learner(Protocol):
     """What both kinds of learners have."""
 
-    owns: tuple[str, ...]  # the fields of `Params` that it learns
+    owns: tuple[
+        str, ...
+    ]  # fields of `Params` that it learns; an owner of "model" has it as `model`
 
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial state: parameters, optimisers, targets."""
@@ -42,7 +44,11 @@ class _Learner(Protocol):
 
 
 class UniformLearner(_Learner, Protocol):
-    """A learner whose updates get batches [batches * batch_size] of the replay memory."""
+    """A learner whose updates get batches [batches * batch_size] of the replay memory.
+
+    `obs` and `next_obs` are planning states [B, n] if a model is learned by another learner, and
+    `init` gets their size; the agent lifts them.
+    """
 
     data: Literal["uniform"]
     batch_size: int  # transitions of a batch

@@ -73,7 +73,8 @@ def beliefs(trial: Trial, marks: list[int]) -> Iterator[Any]:
     def learn(state: Any, begin: Array, end: Array) -> Any:
         def one(i: Array, state: Any) -> Any:
             new = jax.tree.map(lambda a: a[i][None], rows)
-            return agent.learn(state, new._replace(terminated=new.terminated > 0), i)
+            seen = state.replace(memory=agent.replay.add(state.memory, new))
+            return agent.learn(seen, i)[0]
 
         return jax.lax.fori_loop(begin, end, one, state)
 

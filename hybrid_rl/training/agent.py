@@ -2,16 +2,20 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core.branching import where
+from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
-from hybrid_rl.protocols import Controller, Learner, UniformLearner
+from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.metrics import masked_mean, outcome
 from hybrid_rl.training.rollout import act
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
@@ -27,6 +31,16 @@ class AgentState:
     key: Array  # []
 
 
+class _Keys(NamedTuple):
+    """The random numbers of one decision."""
+
+    next: Array  # [] of the next decision
+    at_random: Array  # []
+    learning: Array  # []
+    deciding: Array  # [E]
+    resetting: Array  # [E]
+
+
 @dataclass(frozen=True)
 class Agent:
     """A method that trains in `num_envs` environments.
@@ -34,7 +48,8 @@ class Agent:
     A learner of `latest` data uses each decision once, from the first one on. A learner of
     `uniform` data makes `pretrain` gradient steps before the first decision, on the demonstrations
     in the memory; then `updates` per decision, as soon as the memory holds a batch and, unless the
-    learner is `early`, the `random_steps` are over.
+    learner is `early`, the `random_steps` are over. Where a model is learned, they get its planning
+    states in place of observations, but for the model's own learner.
 
     Raises:
         ValueError: for counts out of range, updates that do not divide into decisions, or two
@@ -83,7 +98,7 @@ class Agent:
         for part in self.learners.values():
             if (check := getattr(part, "check", None)) is not None:
                 check(longest)
-            jax.eval_shape(lambda init=part.init: init(jax.random.key(0), self.spec))
+            jax.eval_shape(partial(self._first, part), jax.random.key(0))
         jax.eval_shape(lambda: self.controller.init(self.spec))
 
     def starts(self) -> dict[str, int]:
@@ -109,43 +124,55 @@ class Agent:
         env = jax.vmap(self.episode.reset)(jax.random.split(resetting, self.num_envs))
         memory = self.replay.init(self.spec, self.num_envs)
         learners = {
-            name: learner.init(k, self.spec)
+            name: self._first(learner, k)
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
-        if self.pretrain:
-            learners = self._pretrain(learners, memory, pretraining)
-        return AgentState(env, self._initial_control(), memory, learners, run)
+        state = AgentState(env, self._initial_control(), memory, learners, run)
+        return self._pretrained(state, pretraining) if self.pretrain else state
 
     def params(self, state: AgentState) -> Params:
         """The parameters of all learners."""
-        return self._joined(state.learners)
-
-    def _joined(self, states: dict[str, Any]) -> Params:
-        """The parameters of all learners, in these states."""
         fields: dict[str, Any] = {}
         for name, learner in self.learners.items():
-            fields |= learner.params(states[name])
+            fields |= learner.params(state.learners[name])
         return Params(**fields)
 
-    def _pretrain(self, states: dict[str, Any], memory: Memory, key: Array) -> dict[str, Any]:
-        """The learners' states after pretraining. The key is consumed."""
+    def _pretrained(self, state: AgentState, key: Array) -> AgentState:
+        """`state` after the gradient steps before the first decision. The key is consumed."""
 
-        def one(states: dict[str, Any], key: Array) -> tuple[dict[str, Any], None]:
-            params, learned = self._joined(states), dict(states)
-            keys = jax.random.split(key, (len(states), 2))
+        def one(state: AgentState, key: Array) -> tuple[AgentState, None]:
+            params, learned = self.params(state), dict(state.learners)
+            keys = jax.random.split(key, (len(learned), 2))
             for (drawing, updating), (name, learner) in zip(
                 keys, self.learners.items(), strict=True
             ):
                 if learner.data == "uniform":
-                    batch = self._sample(memory, learner, drawing)
-                    learned[name] = learner.update(states[name], params, batch, updating)[0]
-            return learned, None
+                    batch = self._batch(state.memory, learner, params, drawing)
+                    learned[name] = learner.update(learned[name], params, batch, updating)[0]
+            return state.replace(learners=learned), None
 
-        return jax.lax.scan(one, states, jax.random.split(key, self.pretrain))[0]
+        return jax.lax.scan(one, state, jax.random.split(key, self.pretrain))[0]
 
-    def _sample(self, memory: Memory, learner: UniformLearner, key: Array) -> Batch:
-        """The batch of one update of a `uniform` learner. The key is consumed."""
-        return self.replay.sample(memory, self.spec, learner.batches * learner.batch_size, key)
+    def _batch(self, memory: Memory, learner: Learner, params: Params, key: Array) -> Batch:
+        """The batch of one update. The key is consumed by that of a `uniform` learner."""
+        if learner.data == "latest":
+            return as_batch(self.replay.newest(memory, self.spec))
+        size = learner.batches * learner.batch_size
+        batch = self.replay.sample(memory, self.spec, size, key)
+        return lifted_batch(self._lifting(learner), params.model, batch)
+
+    def _lifting(self, learner: Learner) -> Model | None:
+        """The learned model in whose planning states a learner gets batches; None: observations.
+
+        The model's own learner and those of `latest` data get observations.
+        """
+        owners: list[Any] = [each for each in self.learners.values() if "model" in each.owns]
+        observes = not owners or owners[0] is learner or learner.data == "latest"
+        return None if observes else owners[0].model
+
+    def _first(self, learner: Learner, key: Array) -> Any:
+        """The initial state of a learner. The key is consumed."""
+        return learner.init(key, lifted_spec(self._lifting(learner), self.spec))
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """One decision in every environment, `step` [] decisions into the run; metrics name -> [].
@@ -153,96 +180,88 @@ class Agent:
         A metric is NaN if it does not apply, infinite if it is not finite. `episode/...` are per
         environment [E].
         """
-        keys = jax.random.split(state.key, 3 + 2 * self.num_envs)
-        key, at_random, learning = keys[:3]
-        deciding, resetting = jnp.split(keys[3:], 2)
-        params = self.params(state)._replace(decisions=step)
-        u, control, metrics = self._decide(params, state, step, at_random, deciding)
+        u, state, planned = self.decide(state, step)
         now = jax.vmap(self.episode.step)(state.env, u)
-        new = Transition(state.env.obs, u, now.reward, now.terminated, now.truncated, now.obs)
-        memory = self.replay.add(state.memory, new)
-        env = jax.vmap(self.episode.auto_reset)(now, resetting)
-        control = jax.tree.map(
-            lambda first, held: jnp.where(_expanded(now.done, held), first, held),
-            self._initial_control(),
-            control,
-        )
-        learners, learned = self._learn(state.learners, params, memory, new, step, learning)
-        world = {"reward": now.reward, "obs": now.obs, "action": u, **now.metrics}
-        metrics = {
-            **masked_mean(metrics, step >= self.random_steps, sparse=True),
-            **learned,
-            **masked_mean({f"world/{name}": value for name, value in world.items()}, True),
-            "episode/done": now.done,
-            "episode/return": now.info["return"],
-            "episode/length": now.info["decision"],
-        }
-        return AgentState(env, control, memory, learners, key), metrics
+        state, learned = self.learn(self.observe(state, u, now), step)
+        return state, {**planned, **learned, **outcome(u, now)}
 
-    def learn(self, state: AgentState, new: Transition, step: Array) -> AgentState:
-        """`state` after learning from a recorded decision `new` [E, ...], as `step` learns."""
-        keys = jax.random.split(state.key, 3 + 2 * self.num_envs)
-        params, memory = self.params(state), self.replay.add(state.memory, new)
-        learners, _ = self._learn(state.learners, params, memory, new, step, keys[2])
-        return state.replace(memory=memory, learners=learners, key=keys[0])
+    def decide(self, state: AgentState, step: Array) -> tuple[Array, AgentState, dict[str, Array]]:
+        """Actions [E, m] at `state.env`, `step` [] decisions into the run; metrics name -> [].
+
+        They are random for `random_steps` decisions. The controllers' states [E, ...] change.
+        """
+        keys, params = self._keys(state.key), self.params(state)._replace(decisions=step)
+
+        def plan() -> tuple[Array, Any, dict[str, Array]]:
+            return act(self.controller, params, state.control, state.env, keys.deciding)
+
+        if self.random_steps:
+            plan = trace_once(plan)
+            shapes = jax.eval_shape(plan)
+            draw = jax.random.uniform(keys.at_random, shapes[0].shape, minval=-1, maxval=1)
+            first = draw, state.control, _zeros(shapes[2])
+            u, control, metrics = jax.lax.cond(step < self.random_steps, lambda: first, plan)
+        else:
+            u, control, metrics = plan()
+        metrics = masked_mean(metrics, step >= self.random_steps, sparse=True)
+        return u, state.replace(control=control), metrics
+
+    def observe(
+        self, state: AgentState, action: Array, now: EnvState, after: EnvState | None = None
+    ) -> AgentState:
+        """`state` after action [E, m] led from `state.env` to `now` [E, ...].
+
+        The memory gets the decision, and where an episode is done, another one begins. A world that
+        resets itself gives `after` [E, ...]: `now`, or the first state of the next episode.
+        """
+        new = Transition(state.env.obs, action, now.reward, now.terminated, now.truncated, now.obs)
+        if after is None:
+            after = jax.vmap(self.episode.auto_reset)(now, self._keys(state.key).resetting)
+        return state.replace(
+            env=after,
+            control=where(now.done, self._initial_control(), state.control),
+            memory=self.replay.add(state.memory, new),
+        )
+
+    def learn(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
+        """`state` after learning from the memory, and the metrics of the last updates, name -> [].
+
+        The newest decision in the memory is that of `step` []. The next one gets other keys.
+        """
+        keys, params = self._keys(state.key), self.params(state)._replace(decisions=step)
+        learned, metrics, starts = {}, {}, self.starts()
+        each = jax.random.split(keys.learning, len(starts)) if starts else []
+        for k, (name, learner) in zip(each, self.learners.items(), strict=True):
+            count, every = update_schedule(name, learner, self.num_envs)
+
+            def one(of: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
+                drawing, updating = keys
+                batch = self._batch(state.memory, learner, params, drawing)
+                return learner.update(of, params, batch, updating)
+
+            @trace_once
+            def update(of: Any, k: Array, count: int = count, one: Any = one) -> Any:
+                of, rows = jax.lax.scan(one, of, jax.random.split(k, (count, 2)))
+                return of, jax.tree.map(lambda m: m[-1], rows)
+
+            before = state.learners[name]
+            nothing = _zeros(jax.eval_shape(update, before, k)[1])
+            due = (step >= starts[name]) & ((step // self.num_envs) % every == 0)
+            learned[name], latest = jax.lax.cond(
+                due, update, lambda of, k, nothing=nothing: (of, nothing), before, k
+            )
+            metrics |= masked_mean(latest, due)
+        return state.replace(learners=learned, key=keys.next), metrics
+
+    def _keys(self, key: Array) -> _Keys:
+        """The keys of one decision, from that of the state before it."""
+        keys = jax.random.split(key, 3 + 2 * self.num_envs)
+        return _Keys(*keys[:3], *jnp.split(keys[3:], 2))
 
     def _initial_control(self) -> Any:
         """The controller's initial state in every environment [E, ...]."""
         first = self.controller.init(self.spec)
         return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *x.shape)), first)
-
-    def _decide(
-        self, params: Params, state: AgentState, step: Array, at_random: Array, keys: Array
-    ) -> tuple[Array, Any, dict[str, Array]]:
-        """Actions [E, m], controller states [E, ...], metrics [E]; random ones from `at_random`."""
-
-        def plan() -> tuple[Array, Any, dict[str, Array]]:
-            return act(self.controller, params, state.control, state.env, keys)
-
-        if not self.random_steps:
-            return plan()
-        plan = trace_once(plan)
-        shapes = jax.eval_shape(plan)
-        draw = jax.random.uniform(at_random, shapes[0].shape, minval=-1, maxval=1)
-        nothing = _zeros(shapes[2])
-        return jax.lax.cond(step < self.random_steps, lambda: (draw, state.control, nothing), plan)
-
-    def _learn(
-        self,
-        states: dict[str, Any],
-        params: Params,
-        memory: Memory,
-        new: Transition,
-        step: Array,
-        key: Array,
-    ) -> tuple[dict[str, Any], dict[str, Array]]:
-        """The learners' states after this decision, and the metrics of their last updates."""
-        learned, metrics = {}, {}
-        keys = jax.random.split(key, len(states)) if states else []
-        starts = self.starts()
-        for k, (name, learner) in zip(keys, self.learners.items(), strict=True):
-            count, every = update_schedule(name, learner, self.num_envs)
-
-            def one(state: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
-                drawing, updating = keys
-                if learner.data == "latest":
-                    return learner.update(state, params, as_batch(new), updating)
-                batch = self._sample(memory, learner, drawing)
-                return learner.update(state, params, batch, updating)
-
-            @trace_once
-            def update(state: Any, k: Array, count: int = count, one: Any = one) -> Any:
-                pairs = jax.random.split(k, (count, 2))
-                state, each = jax.lax.scan(one, state, pairs)
-                return state, jax.tree.map(lambda m: m[-1], each)
-
-            nothing = _zeros(jax.eval_shape(update, states[name], k)[1])
-            due = (step >= starts[name]) & ((step // self.num_envs) % every == 0)
-            learned[name], latest = jax.lax.cond(
-                due, update, lambda state, k, nothing=nothing: (state, nothing), states[name], k
-            )
-            metrics |= masked_mean(latest, due)
-        return learned, metrics
 
 
 def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:
@@ -272,26 +291,3 @@ def trace_once(f: Any) -> Any:
 def _zeros(shapes: Any) -> Any:
     """Zeros with the shapes that `jax.eval_shape` returned."""
     return jax.tree.map(lambda m: jnp.zeros(m.shape, m.dtype), shapes)
-
-
-def masked_mean(
-    metrics: dict[str, Array], when: Array | bool, sparse: bool = False
-) -> dict[str, Array]:
-    """The means [] of metrics: NaN unless `when`, infinite if a value is not finite.
-
-    sparse: NaN marks values that do not apply, which the mean omits.
-    """
-
-    def mean(value: Array) -> Array:
-        finite = jnp.isfinite(value)
-        if not sparse:
-            return jnp.where(finite.all(), value.mean(), jnp.inf)
-        average = jnp.where(finite, value, 0).sum() / finite.sum()
-        return jnp.where(jnp.isinf(value).any(), jnp.inf, average)
-
-    return {name: jnp.where(when, mean(value), jnp.nan) for name, value in metrics.items()}
-
-
-def _expanded(flags: Array, x: Array) -> Array:
-    """Flags [E] with trailing axes, to select among x [E, ...]."""
-    return flags.reshape(flags.shape + (1,) * (x.ndim - 1))

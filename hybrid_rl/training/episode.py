@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.branching import when_any
+from hybrid_rl.core.branching import when_any, where
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState, Spec
@@ -102,7 +102,7 @@ class Episode:
         def repeat(_: int, now: EnvState) -> EnvState:
             after = self._substep(now, action)
             after = after.replace(reward=now.reward + after.reward)
-            return jax.tree.map(lambda a, b: jnp.where(now.terminated, a, b), now, after)
+            return where(now.terminated, now, after)
 
         if self.action_repeat > 1:
             now = jax.lax.fori_loop(1, self.action_repeat, repeat, now)
@@ -128,7 +128,6 @@ class Episode:
         """
 
         def reset_done(state: EnvState, key: Array) -> EnvState:
-            fresh = self.reset(key)
-            return jax.tree.map(lambda a, b: jnp.where(state.done, a, b), fresh, state)
+            return where(state.done, self.reset(key), state)
 
         return when_any(lambda state: state.done, reset_done)(state, key)

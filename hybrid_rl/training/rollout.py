@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.branching import where
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params
@@ -55,14 +56,7 @@ def _decided(episode: Episode, controller: Controller, params: Params, carry: tu
     keys, now = _split(keys)
     u, control, _ = act(controller, params, control, env, now)
     after = jax.vmap(episode.step)(env, u)
-    frozen = jax.tree.map(
-        lambda old, new: jnp.where(
-            env.done.reshape(env.done.shape + (1,) * (new.ndim - 1)), old, new
-        ),
-        env,
-        after,
-    )
-    return frozen, control, keys
+    return where(env.done, env, after), control, keys
 
 
 def scores(env: EnvState) -> dict[str, Array]:
@@ -111,7 +105,7 @@ def rollout_with_actions(
         env, control = carry
         u, control, _ = controller.act(params._replace(world=env), control, env.obs, key)
         after = episode.step(env, u)
-        env = jax.tree.map(lambda old, new: jnp.where(env.done, old, new), env, after)
+        env = where(env.done, env, after)
         return (env, control), (u, env)
 
     carry = (env, controller.init(episode.spec))

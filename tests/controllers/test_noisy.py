@@ -66,6 +66,14 @@ def test_ou_noise_has_its_variance_and_its_correlation() -> None:
     np.testing.assert_allclose(np.mean(e[7:] * e[:-7], 0), variance * 0.9**7, rtol=0.1)
 
 
+@pytest.mark.parametrize("fields", [{"decay": 0.999}, {"until": 100}])
+def test_noise_that_decays_is_over_after_training(fields: dict[str, float]) -> None:
+    """Where the decisions of the run are not counted."""
+    controller = NoisyController(Still(), "normal", level=0.1, **fields)
+    u = controller.act(Params(), controller.init(SPEC), jnp.zeros(1), jax.random.key(0))[0]
+    np.testing.assert_array_equal(u, np.float32(0.2))
+
+
 def test_noise_decays_and_actions_are_bounded() -> None:
     """Linearly to zero after `until` decisions, or by `decay`; actions stay within -1 and 1."""
     e = noise(NoisyController(Still(), "normal", level=0.1, until=1000), 2000)

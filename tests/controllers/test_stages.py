@@ -10,7 +10,7 @@ import pytest
 from jax import Array
 
 from hybrid_rl.controllers.stages import StagesController
-from hybrid_rl.training.agent import masked_mean
+from hybrid_rl.training.metrics import masked_mean
 from hybrid_rl.types import Params, Spec
 
 SPEC = Spec(obs=1, act=1, dt=0.1)

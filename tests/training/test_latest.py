@@ -125,7 +125,9 @@ def test_recorded_decisions_teach_the_same_again(every: int) -> None:
 
     def again(key: Array) -> Any:
         def learn(state: Any, given: tuple[Any, Array]) -> tuple[Any, Array]:
-            state = one.learn(state, *given)
+            new, step = given
+            seen = state.replace(memory=one.replay.add(state.memory, new))
+            state, _ = one.learn(seen, step)
             return state, state.learners["recorder"]["drawn"]
 
         steps = NUM_ENVS * jnp.arange(DECISIONS)

@@ -93,9 +93,7 @@ def test_pretraining_is_gradient_steps_on_demonstrations(agent):
 def test_no_key_of_pretraining_is_reused(agent, monkeypatch):
     """Its keys differ from those of the initial state and of the first decision."""
     received = []
-    monkeypatch.setattr(
-        Agent, "_pretrain", lambda _, states, memory, key: received.append(key) or states
-    )
+    monkeypatch.setattr(Agent, "_pretrained", lambda _, state, key: received.append(key) or state)
     state = agent.init(KEY)
     first = jax.random.split(KEY, 2 + len(agent.learners))
     decision = jax.random.split(state.key, 3 + 2 * agent.num_envs)
