@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from hybrid_rl.training.loop import Loop
     from hybrid_rl.types import EnvState, Spec
 
-__version__ = "0.2.0"
+__version__ = "0.3.0.dev0"
 
 __all__ = [
     "Agent",

@@ -207,10 +207,11 @@ def _check_version(folder: Path, key: str, config: DictConfig) -> None:
     if _minor(version) == _minor(__version__):
         return
     if version is None:
-        version = _version_of_summary(folder)
+        version = _of_summary(folder, "versions", "hybrid_rl")
         if _minor(version) == _minor(__version__):
             raise UsageError(f"{folder / 'config.yaml'}: lacks version")
-    todo = "train again" if version is None else f"pip install hybrid_rl=={version}, or train again"
+    commit = _of_summary(folder, "git_commit")
+    todo = f"check out its commit, {commit}, or train again" if commit else "train again"
     raise UsageError(
         f"{key}={folder}: made by hybrid_rl {version or f'older than {FIRST}'}, and this is "
         f"{__version__}; {todo}"
@@ -222,12 +223,15 @@ def _minor(version: Any) -> list[str]:
     return str(version).split(".")[:2]
 
 
-def _version_of_summary(folder: Path) -> str | None:
-    """The version that summary.json names, if it does."""
+def _of_summary(folder: Path, *keys: str) -> str | None:
+    """What summary.json holds at `keys`, one below the other; None if it has no such thing."""
     try:
-        return str(json_file(folder / "summary.json")["versions"]["hybrid_rl"])
+        value: Any = json_file(folder / "summary.json")
+        for key in keys:
+            value = value[key]
     except (ValueError, KeyError, TypeError):
         return None
+    return None if value is None else str(value)
 
 
 def _check_seeds(folder: Path, config: DictConfig) -> None:

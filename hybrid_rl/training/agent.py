@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -15,6 +15,7 @@ from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
 from hybrid_rl.training.rollout import act
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
@@ -29,16 +30,6 @@ class AgentState:
     memory: Memory
     learners: dict[str, Any]
     key: Array  # []
-
-
-class _Keys(NamedTuple):
-    """The random numbers of one decision."""
-
-    next: Array  # [] of the next decision
-    at_random: Array  # []
-    learning: Array  # []
-    deciding: Array  # [E]
-    resetting: Array  # [E]
 
 
 @dataclass(frozen=True)
@@ -180,17 +171,22 @@ class Agent:
         A metric is NaN if it does not apply, infinite if it is not finite. `episode/...` are per
         environment [E].
         """
-        u, state, planned = self.decide(state, step)
+        keys = Keys.of(state.key, self.num_envs)
+        u, state, planned = self.decide(state, step, keys)
         now = jax.vmap(self.episode.step)(state.env, u)
-        state, learned = self.learn(self.observe(state, u, now), step)
+        state, learned = self.learn(self.observe(state, u, now, keys=keys), step, keys)
         return state, {**planned, **learned, **outcome(u, now)}
 
-    def decide(self, state: AgentState, step: Array) -> tuple[Array, AgentState, dict[str, Array]]:
+    def decide(
+        self, state: AgentState, step: Array, keys: Keys | None = None
+    ) -> tuple[Array, AgentState, dict[str, Array]]:
         """Actions [E, m] at `state.env`, `step` [] decisions into the run; metrics name -> [].
 
-        They are random for `random_steps` decisions. The controllers' states [E, ...] change.
+        They are random for `random_steps` decisions. The controllers' states [E, ...] change. keys:
+        of this decision; None, as in `observe` and `learn`: drawn from `state.key`.
         """
-        keys, params = self._keys(state.key), self.params(state)._replace(decisions=step)
+        keys = Keys.of(state.key, self.num_envs) if keys is None else keys
+        params = self.params(state)._replace(decisions=step)
 
         def plan() -> tuple[Array, Any, dict[str, Array]]:
             return act(self.controller, params, state.control, state.env, keys.deciding)
@@ -207,7 +203,12 @@ class Agent:
         return u, state.replace(control=control), metrics
 
     def observe(
-        self, state: AgentState, action: Array, now: EnvState, after: EnvState | None = None
+        self,
+        state: AgentState,
+        action: Array,
+        now: EnvState,
+        after: EnvState | None = None,
+        keys: Keys | None = None,
     ) -> AgentState:
         """`state` after action [E, m] led from `state.env` to `now` [E, ...].
 
@@ -216,19 +217,23 @@ class Agent:
         """
         new = Transition(state.env.obs, action, now.reward, now.terminated, now.truncated, now.obs)
         if after is None:
-            after = jax.vmap(self.episode.auto_reset)(now, self._keys(state.key).resetting)
+            keys = Keys.of(state.key, self.num_envs) if keys is None else keys
+            after = jax.vmap(self.episode.auto_reset)(now, keys.resetting)
         return state.replace(
             env=after,
             control=where(now.done, self._initial_control(), state.control),
             memory=self.replay.add(state.memory, new),
         )
 
-    def learn(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
+    def learn(
+        self, state: AgentState, step: Array, keys: Keys | None = None
+    ) -> tuple[AgentState, dict[str, Array]]:
         """`state` after learning from the memory, and the metrics of the last updates, name -> [].
 
         The newest decision in the memory is that of `step` []. The next one gets other keys.
         """
-        keys, params = self._keys(state.key), self.params(state)._replace(decisions=step)
+        keys = Keys.of(state.key, self.num_envs) if keys is None else keys
+        params = self.params(state)._replace(decisions=step)
         learned, metrics, starts = {}, {}, self.starts()
         each = jax.random.split(keys.learning, len(starts)) if starts else []
         for k, (name, learner) in zip(each, self.learners.items(), strict=True):
@@ -252,11 +257,6 @@ class Agent:
             )
             metrics |= masked_mean(latest, due)
         return state.replace(learners=learned, key=keys.next), metrics
-
-    def _keys(self, key: Array) -> _Keys:
-        """The keys of one decision, from that of the state before it."""
-        keys = jax.random.split(key, 3 + 2 * self.num_envs)
-        return _Keys(*keys[:3], *jnp.split(keys[3:], 2))
 
     def _initial_control(self) -> Any:
         """The controller's initial state in every environment [E, ...]."""

@@ -105,10 +105,11 @@ def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, c
 
     before = contents(tmp_path)
     key = "resume" if command_name == "train" else "run"
+    commit = json.loads((old / "summary.json").read_text())["git_commit"]
     line = refuse()
     assert line == (
         f"hybrid_rl: {key}={old}: made by hybrid_rl 0.1.0, and this is {__version__}; "
-        "pip install hybrid_rl==0.1.0, or train again\n"
+        f"check out its commit, {commit}, or train again\n"
     )
     (old / "summary.json").unlink()
     before = contents(tmp_path)
