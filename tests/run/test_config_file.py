@@ -120,7 +120,9 @@ def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, c
 def test_a_run_of_another_minor_version_is_refused(trained, tmp_path):
     folder = shutil.copytree(trained, tmp_path / "run")
     file = folder / "config.yaml"
-    for version, fits in (("0.2.9", True), ("0.3.1", False), ("1.2.0", False)):
+    major, minor, *_ = map(int, re.findall(r"\d+", __version__))
+    others = (f"{major}.{minor - 1}.9", f"{major}.{minor + 1}.0", f"{major + 1}.{minor}.0")
+    for version, fits in ((f"{major}.{minor}.9", True), *((other, False) for other in others)):
         file.write_text(re.sub(r"(?m)^version: .*$", f"version: {version}", file.read_text()))
         if fits:
             assert run_folder.read(folder, "run").version == version
