@@ -19,12 +19,14 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
+from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, require_slurm, watched
 from hybrid_rl.composition import check_task
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
 from hybrid_rl.run.folder import made
+from hybrid_rl.run.jax_settings import prepare
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 
@@ -141,6 +143,8 @@ class Sweeper(BasicSweeper):
             try:
                 with command.as_typed(overrides):
                     if whole.resume is None:
+                        check(whole)
+                        prepare(whole)  # first: a check of the user's world initialises JAX
                         configuration.build(whole)
             except UsageError as error:
                 label = f"job {number}: {self.task.labels[number]}".removesuffix(": ")

@@ -66,6 +66,8 @@ def train(
         given = {key: value for key, value in given.items() if key != "distributed"}
     if config.resume is not None:
         return _resume(config, given, handled, output)
+    check(config)
+    prepare(config)  # first: a check of the user's world initialises JAX's devices
     return begin(configuration.build(config), handled, output)
 
 
@@ -99,8 +101,9 @@ def _resume(
     with locked(folder.writable(run_dir, "resume"), "resume"):
         config = _settings(config, given)  # again, as another process may have continued the run
         with folder.blamed(run_dir):
-            run = configuration.build(config)
+            check(config)
             prepare(config)
+            run = configuration.build(config)
         _refuse_edits(config, run_dir)
         return _run(run, run_dir, _fits(run), handled, output)
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import jax
@@ -89,7 +88,7 @@ class Agent:
         for part in self.learners.values():
             if (check := getattr(part, "check", None)) is not None:
                 check(longest)
-            jax.eval_shape(partial(self._first, part), jax.random.key(0))
+            jax.eval_shape(lambda part=part: self._first(part, jax.random.key(0)))
         jax.eval_shape(lambda: self.controller.init(self.spec))
 
     def starts(self) -> dict[str, int]:
