@@ -183,7 +183,7 @@ def test_a_checkpoint_without_what_orbax_must_write_is_refused(three, monkeypatc
 
 
 def test_a_manifest_names_files_of_its_folder_alone(three):
-    """/dev/zero would be read for ever."""
+    """Reading /dev/zero would never end."""
     folder = three / "30"
     (folder / "link").symlink_to("/dev/zero")
     for name in ("../" * 20 + "dev/zero", "/dev/zero", "link", "a\0b"):
