@@ -22,12 +22,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hybrid_rl.analysis.curves import curves
     from hybrid_rl.config import load as compose
     from hybrid_rl.core import adjoint, sampling
     from hybrid_rl.envs.contract import check
     from hybrid_rl.errors import DivergenceError, UsageError
     from hybrid_rl.named import load, make
-    from hybrid_rl.studies.curves import curves
     from hybrid_rl.train import train
     from hybrid_rl.training.agent import Agent
     from hybrid_rl.training.episode import Episode
@@ -65,7 +65,7 @@ _MEMBERS = {  # public name -> module and name there
     "UsageError": ("errors", "UsageError"),
     "check": ("envs.contract", "check"),
     "compose": ("config", "load"),
-    "curves": ("studies.curves", "curves"),
+    "curves": ("analysis.curves", "curves"),
     "load": ("named", "load"),
     "make": ("named", "make"),
 }

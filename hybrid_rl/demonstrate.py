@@ -30,6 +30,7 @@ import numpy as np
 from omegaconf import OmegaConf
 
 from hybrid_rl import config as configuration
+from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, output, read, whole
 from hybrid_rl.controllers.policy import PolicyController
@@ -40,7 +41,6 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.reading import json_file
-from hybrid_rl.run.results import RunFolder
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions

@@ -5,8 +5,9 @@
     python -m hybrid_rl.figures study=koopman from=docs/results/fig_7_3.json out=fig_7_3.png
     python -m hybrid_rl.figures study=model_learning --help
 
-study=NAME --help shows what a study measures and its arguments; study=list lists the studies. A
-summary of the numbers is printed. from=FILE.json draws a picture again, without its runs.
+study=NAME --help shows what a study measures and its arguments; study=list lists the studies. NAME
+may also be a module of your own: study=my_study is my_study.py in this folder. A summary of the
+numbers is printed. from=FILE.json draws a picture again, without its runs.
 """
 
 if __name__ == "__main__":
@@ -17,26 +18,25 @@ if __name__ == "__main__":
 import ast
 import difflib
 import inspect
-import itertools
 import json
 import math
 import sys
 from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 
-import hybrid_rl.studies
+from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.config import load
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, in_user_code
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.reading import json_file
-from hybrid_rl.studies.style import STYLE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,6 +45,7 @@ SUFFIXES = (".png", ".pdf", ".svg")
 TABLE = ".csv"  # of studies with a function `table`
 DPI, MOST_PIXELS = 200, 1600  # of a .png; across
 DEFAULT = "learning_curves"
+HOMES = ("hybrid_rl.analysis", "hybrid_rl.thesis.studies")  # packages whose studies are listed
 ARGUMENTS = (  # of every study
     Argument("study", DEFAULT, "name of the study, or list"),
     Argument("out", "figure.png", f"the picture: {', '.join(SUFFIXES)}; JSON next to it"),
@@ -53,7 +54,7 @@ FROM = Argument("from", "", "instead of runs: the JSON of a picture, which is dr
 
 
 class Study(Protocol):
-    """A module in hybrid_rl/studies with these two functions.
+    """A module with these two functions, in HOMES or anywhere on Python's path.
 
     The first line of its docstring is its entry in the list; the rest is its help.
     """
@@ -73,13 +74,50 @@ class Study(Protocol):
 def studies() -> dict[str, str]:
     """Name of every study -> first line of its docstring; no study is imported."""
     lines = {}
-    files = [Path(folder).glob("*.py") for folder in hybrid_rl.studies.__path__]
-    for path in itertools.chain(*files):
+    for path in _sources().values():
         module = ast.parse(path.read_text(encoding="utf-8"))
         functions = {node.name for node in module.body if isinstance(node, ast.FunctionDef)}
         if "figure" in functions:
             lines[path.stem] = (ast.get_docstring(module) or "").partition("\n")[0]
     return dict(sorted(lines.items()))
+
+
+def _sources() -> dict[str, Path]:
+    """Full name -> file of every module in HOMES."""
+    folders = {home: import_module(home).__path__ for home in HOMES}
+    return {
+        f"{home}.{path.stem}": path
+        for home, paths in folders.items()
+        for folder in paths
+        for path in Path(folder).glob("*.py")
+    }
+
+
+def study_of(name: str) -> Study:
+    """The study of this name: one that is listed, or a module on Python's path.
+
+    Raises:
+        UsageError: if there is none, or the module cannot be imported or draws no figure.
+    """
+    known = studies()
+    if name in known:
+        (module,) = (full for full in _sources() if full.rpartition(".")[2] == name)
+        return cast(Study, import_module(module))
+    try:
+        there = find_spec(name) is not None
+        study = import_module(name) if there else None
+    except Exception as error:  # whatever the user's module does
+        reason = in_user_code(error) or f"cannot be imported ({error})"
+        raise UsageError(f"study={name}: {reason}") from error
+    if study is None:
+        close = difflib.get_close_matches(name, known, n=1)
+        hint = f" (did you mean {close[0]}?)" if close else ""
+        raise UsageError(
+            f"study={name}: unknown; choose one of {', '.join(known)}, or a module of yours{hint}"
+        )
+    if not (hasattr(study, "figure") and hasattr(study, "summary")):
+        raise UsageError(f"study={name}: {study.__file__} has no functions figure and summary")
+    return cast(Study, study)
 
 
 def arguments(study: Study) -> tuple[Argument, ...]:
@@ -163,25 +201,15 @@ def _listing(known: dict[str, str]) -> str:
     return "\n".join(f"  {name:{width}}  {about}" for name, about in known.items())
 
 
-def _name(line: list[str], known: dict[str, str]) -> str:
-    """The study that the command line names, or the default."""
-    names = [text.removeprefix("study=") for text in line if text.startswith("study=")]
-    name = names[-1] if names else DEFAULT
-    if name not in known:
-        close = difflib.get_close_matches(name, known, n=1)
-        hint = f" (did you mean {close[0]}?)" if close else ""
-        raise UsageError(f"study={name}: unknown; choose one of {', '.join(known)}{hint}")
-    return name
-
-
 def main() -> None:
     """The command."""
     line, known = sys.argv[1:], studies()
     if not line or "study=list" in line:
         print(f"Studies (study=NAME; with --help, the arguments of one):\n{_listing(known)}")
         return
-    name = _name(line, known)
-    study = cast(Study, import_module(f"hybrid_rl.studies.{name}"))
+    names = [text.removeprefix("study=") for text in line if text.startswith("study=")]
+    name = names[-1] if names else DEFAULT
+    study = study_of(name)
     doc = inspect.getdoc(study)
     if set(HELP) & set(line) and not any(text.startswith("study=") for text in line):
         doc = f"{inspect.cleandoc(__doc__ or '')}\n\nStudies (study=NAME):\n{_listing(known)}"

@@ -98,8 +98,8 @@ def film(world: Any, controller: Any, params: Any, key: Any) -> Film:
 
 def draw_film(world: Any, shown: Film, out: Path, width: int = 640, height: int = 480) -> None:
     """Write an episode of `world` to a file of one of drawing.SUFFIXES, in real time."""
+    from hybrid_rl.analysis.drawing import draw
     from hybrid_rl.envs.mujoco.scenery import scene_of
-    from hybrid_rl.run.drawing import draw
 
     stride = _stride(world)
     rate = 1 / (world.spec.dt * stride)
@@ -155,9 +155,9 @@ def _training(
     folder: Path, seed: int | None, steps: int, out: Path, width: int, height: int
 ) -> None:
     """Draw the first episode of training, with the belief at the right."""
+    from hybrid_rl.analysis.drawing import draw
     from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
-    from hybrid_rl.run.drawing import draw
-    from hybrid_rl.studies.belief_video import MOST, film
+    from hybrid_rl.thesis.studies.belief_video import MOST, film
 
     shown = film(folder, seed, steps, height, MOST[out.suffix])
     _check(check_drawable, shown.world)
@@ -181,9 +181,9 @@ def main() -> None:
         raise UsageError("env, episode, expert: a run has its own; give them with task=T")
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
+    from hybrid_rl.analysis.drawing import SUFFIXES, draw_beside
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.envs.mujoco.scenery import scene_of
-    from hybrid_rl.run.drawing import SUFFIXES, draw_beside
 
     default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
     out = Path(given["out"] or default)

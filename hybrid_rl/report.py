@@ -27,6 +27,10 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl import __version__
+from hybrid_rl.analysis import report_panels
+from hybrid_rl.analysis.curves import Curve, area, plural, spread
+from hybrid_rl.analysis.html_table import table
+from hybrid_rl.analysis.results import RunFolder, differences, find
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, output, read
 from hybrid_rl.errors import UsageError
@@ -34,10 +38,6 @@ from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.progress import clock
 from hybrid_rl.run.reading import json_file
 from hybrid_rl.run.reading import text as text_of
-from hybrid_rl.run.results import RunFolder, differences, find
-from hybrid_rl.studies import report_panels
-from hybrid_rl.studies.curves import Curve, area, plural, spread
-from hybrid_rl.studies.html_table import table
 
 ARGUMENTS = (
     Argument("run", "", 'run folders, with commas, or "GLOB"', needed="run=DIR, a run folder"),

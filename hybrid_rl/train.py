@@ -42,7 +42,7 @@ from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
 
 if TYPE_CHECKING:
-    from hybrid_rl.studies.curves import Curve
+    from hybrid_rl.analysis.curves import Curve
     from hybrid_rl.trained import Trained
 
 OnRow = Callable[[dict[str, Any]], Any]
@@ -65,7 +65,7 @@ class Result(dict[str, Any]):
 
     def curves(self, metric: str = EVALUATION) -> "list[Curve]":
         """The curve of a metric, with arrays; see hybrid_rl.curves."""
-        from hybrid_rl.studies.curves import curves
+        from hybrid_rl.analysis.curves import curves
 
         return curves(self.folder, metric)
 
@@ -182,8 +182,8 @@ def _job(config: DictConfig) -> dict[str, Any]:
 
 def _curve(run_dir: Path) -> None:
     """Print and draw the evaluations of a run, if there are at least CURVE of them."""
+    from hybrid_rl.analysis import curves_picture, learning_curves
     from hybrid_rl.figures import save
-    from hybrid_rl.studies import curves_picture, learning_curves
 
     try:
         (line,) = learning_curves.curves(run_dir, EVALUATION)

@@ -56,7 +56,8 @@ PACKAGES = {  # page of the reference -> folders and modules
     "Learners and data": ("learners", "data"),
     "Training": ("training",),
     "Runs": ("run",),
-    "Studies": ("studies",),
+    "Analysis": ("analysis",),
+    "Thesis": ("thesis.studies",),
     "Environments": ("envs",),
 }
 TREE = """
@@ -211,7 +212,9 @@ def reference() -> None:
 
 def modules(member: str) -> list[str]:
     """The modules of hybrid_rl.MEMBER, which is a package or a module."""
-    folder = ROOT / ("envs" if member == "envs" else f"hybrid_rl/{member}")
+    folder = ROOT.joinpath("hybrid_rl", *member.split("."))
+    if not folder.exists() and not folder.with_suffix(".py").exists():  # beside it in a checkout
+        folder = ROOT.joinpath(*member.split("."))
     if not folder.is_dir():
         return [f"hybrid_rl.{member}"]
     paths = (path for path in sorted(folder.rglob("*.py")) if not path.name.startswith("_"))

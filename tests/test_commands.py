@@ -17,12 +17,12 @@ from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, contents, run
 
 from hybrid_rl import config, evaluate, figures, render
+from hybrid_rl.analysis.curves import curves
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.native import cores
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.studies.curves import curves
 from hybrid_rl.trained import built, restore
 from hybrid_rl.training.rollout import evaluation_keys
 

@@ -9,11 +9,11 @@ from tiny import TINY, call, call_train, run
 from tiny import demonstrate as recorded
 
 from hybrid_rl import config, demonstrate, evaluate, train
+from hybrid_rl.analysis import held_out
 from hybrid_rl.cli import command
 from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.sawyer_push import SawyerPush
-from hybrid_rl.studies import held_out
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 

@@ -1,12 +1,12 @@
 """The figures command: it finds studies, saves a picture and its numbers, and checks arguments."""
 
 import json
+import sys
 
 import pytest
 from matplotlib.figure import Figure
 from tiny import call
 
-import hybrid_rl.studies
 from hybrid_rl import figures
 from hybrid_rl.cli import command
 
@@ -40,13 +40,16 @@ def summary(numbers):
 
 @pytest.fixture
 def toy(tmp_path, monkeypatch):
-    """A study in a folder of its own."""
+    """A study in a folder of the user's."""
     folder = tmp_path / "more"
     folder.mkdir()
     (folder / "toy.py").write_text(TOY)
+    (folder / "broken.py").write_text("1 / 0\n")
     (folder / "library.py").write_text('"""No study."""\n\n\ndef line():\n    return []\n')
-    path = [*hybrid_rl.studies.__path__, str(folder)]
-    monkeypatch.setattr(hybrid_rl.studies, "__path__", path)
+    monkeypatch.syspath_prepend(folder)
+    yield
+    for name in ("toy", "library"):
+        sys.modules.pop(name, None)
 
 
 def draw(*arguments):
@@ -74,7 +77,7 @@ def test_the_studies_are_listed_without_their_libraries(toy, capsys, arguments):
     lines = capsys.readouterr().out.splitlines()[1:]
     names = ["active_learning", "bayesian_optimisation", "contact_maps", "ergodic_coverage"]
     names += ["held_out", "imitation", "koopman", "koopman_settings"]
-    names += ["learning_curves", "model_learning", "toy"]
+    names += ["learning_curves", "model_learning"]
     assert [line.split()[0] for line in lines] == names
     assert all(line.endswith(".") for line in lines)
 
@@ -104,7 +107,7 @@ def test_a_study_explains_itself(toy, capsys):
 def test_help_has_the_list_and_the_arguments_of_the_default(toy, capsys):
     assert draw("--help") == 0
     printed = capsys.readouterr().out
-    for line in ("  toy ", "  runs= ", "  metric=train/return ", "study=learning_curves"):
+    for line in ("  koopman ", "  runs= ", "  metric=train/return ", "study=learning_curves"):
         assert line in printed
 
 
@@ -158,7 +161,10 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["from=RUNS/../numbers.json"], "numbers.json: has no numbers of this study"),
         (["study=toy", "from=a.json"], "from=a.json: unknown argument; give key=value with study"),
         (["study=toys", "--help"], "study=toys: unknown; choose one of active_learning, "),
-        (["study=toys"], "learning_curves, model_learning, toy (did you mean toy?)"),
+        (["study=toys"], "model_learning, or a module of yours"),
+        (["study=koopmann"], "or a module of yours (did you mean koopman?)"),
+        (["study=library"], "library.py has no functions figure and summary"),
+        (["study=broken"], "broken.py:1: ZeroDivisionError"),
         (["study=curves"], "study=curves: unknown"),
         (["study=toy", "runs=RUNS"], "give key=value with study, out, title, points"),
         (["study=toy", "title=x", "points=1"], "points=1: must be a whole number, 2 or more"),

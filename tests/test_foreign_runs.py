@@ -10,14 +10,14 @@ import yaml
 from tiny import SMALL, call, call_train, contents, only_line
 
 from hybrid_rl import config, demonstrate, evaluate, export, figures, render, report
+from hybrid_rl.analysis import recorded
+from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run import jax_settings
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.loggers import CSV
-from hybrid_rl.run.results import RunFolder
-from hybrid_rl.studies import recorded
 
 METRIC = "metric=eval/return"
 ROW = {"step": 5, "seed": 0, "wall_s": 1.0, "eval/return": -3.0}
@@ -100,7 +100,7 @@ def test_a_section_that_holds_no_part_is_refused(folder, keys, words):
         ),
         *("antigravity.webbrowser", "yaml.unsafe_load", "__main__.x", "site.main", "pytest.main"),
         "hybrid_rl.run.integrity.write_text",
-        "hybrid_rl.run.results.RunFolder",
+        "hybrid_rl.analysis.results.RunFolder",
         "hybrid_rl.config.Path",
         "hybrid_rl.config.Run",
         "hybrid_rl.types.Spec",

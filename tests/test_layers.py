@@ -4,8 +4,8 @@ types, errors, parts
       ^
 core, networks
       ^
-models controllers ... data <- training <- config <- run <- trained <- studies <- commands
-                                                      cli
+models controllers ... data <- training <- config <- run <- trained <- analysis <- commands
+                                                      cli              <- thesis
 parts never import each other: YAML files combine them; some read files by data/archive
 
 envs -> types, protocols, errors; benchmark -> all but parts
@@ -20,7 +20,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-FILES = sorted([*ROOT.glob("hybrid_rl/**/*.py"), *ROOT.glob("envs/**/*.py")])
+PATTERNS = ("hybrid_rl/**/*.py", "envs/**/*.py", "thesis/*.py", "thesis/studies/*.py")
+FILES = sorted(file for pattern in PATTERNS for file in ROOT.glob(pattern))
 LAYER_FILES = {"types", "networks", "errors", "checks", "composition", "config", "overrides"}
 LAYER_FILES |= {"parts", "trained"}
 SHARED = {"types", "protocols", "core", "networks"}
@@ -48,11 +49,13 @@ ALLOWED = {
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "trained": {*SHARED, *CONFIG, "archive", "data", "controllers", "run"},
-    "studies": {*SHARED, *CONFIG, "data", "maps", "run", "cli", "trained", "studies"},
-    "benchmark": {*CONFIG, "run", "cli", "trained", "studies", "benchmark"},
+    "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "trained", "analysis"},
+    "benchmark": {*CONFIG, "run", "cli", "trained", "analysis", "benchmark"},
+    # as a user's project would, and nothing but the command `render` imports it
+    "thesis": {*SHARED, *CONFIG, "data", "maps", "run", "cli", "trained", "analysis", "thesis"},
 }
 HYDRA = {"command", "checks", "composition", "config", "overrides", "run", "trained", "cli"}
-HYDRA |= {"studies"}
+HYDRA |= {"analysis", "thesis"}
 VAGUE = {"utils", "util", "common", "base", "helpers", "helper", "misc", "manager"}
 
 over_files = pytest.mark.parametrize("file", FILES, ids=lambda f: str(f.relative_to(ROOT)))

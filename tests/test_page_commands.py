@@ -39,7 +39,7 @@ def programs():
 
 def runs_here(name, given):
     """Whether a command needs no more than a run of hybrid learning."""
-    if name == "figures":  # tests/studies draw the others
+    if name == "figures":  # thesis/tests draw the others
         metrics = set(given.get("metric", "train/return").split(","))
         return "study" not in given and "x" not in given and metrics <= METRICS
     if name == "render" and given.get("mode") == "training":  # test_belief_frames.py

@@ -144,7 +144,7 @@ def declared(name, words):
     assert study in figures.studies()
     return [
         *figures.ARGUMENTS,
-        *figures.arguments(import_module(f"hybrid_rl.studies.{study}")),
+        *figures.arguments(figures.study_of(study)),
     ]
 
 

@@ -18,9 +18,9 @@ from programs import shared
 from tiny import TINY, contents
 
 import hybrid_rl as hr
+from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.run.loggers import Function
 from hybrid_rl.run.session import Session
-from hybrid_rl.studies.curves import Curve
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
 SIZES = {"total_steps": 200, "random_steps": 20, "eval_every": 100}

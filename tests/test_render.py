@@ -12,9 +12,9 @@ import pytest
 from scenes import FIXED
 
 from hybrid_rl import render
+from hybrid_rl.analysis import drawing
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
-from hybrid_rl.run import drawing
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Spec

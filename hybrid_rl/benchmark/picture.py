@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.studies.style import GREY, STYLE, VERMILION
+from hybrid_rl.analysis.style import GREY, STYLE, VERMILION
 
 Table = dict[str, Any]  # part, what, unit, rows of name and rate
 WIDTH, BAR, HEAD = 4.2, 0.27, 0.5  # [in] of a panel; heights of a bar, and of a panel's title

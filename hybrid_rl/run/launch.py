@@ -20,8 +20,7 @@ from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import Progress, Silent
-from hybrid_rl.run.records import summary_of
-from hybrid_rl.run.results import flat
+from hybrid_rl.run.records import flat, summary_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop

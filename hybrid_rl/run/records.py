@@ -4,7 +4,7 @@ A line or a value that training does not write is damage, and is found here.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import NoneType
 from typing import Any
@@ -77,3 +77,14 @@ SUMMARY = {  # key -> whether a value is one that training writes
     "versions": lambda value: isinstance(value, dict),
     "git_commit": lambda value: isinstance(value, (str, NoneType)),
 }
+
+
+def flat(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """The values of a tree by their full keys."""
+    values: dict[str, Any] = {}
+    for key, value in node.items():
+        if isinstance(value, Mapping) and value:
+            values |= flat(value, f"{where}{key}.")
+        else:
+            values[f"{where}{key}"] = value
+    return values

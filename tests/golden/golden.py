@@ -18,9 +18,8 @@ from pathlib import Path
 from typing import Any
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent))
+sys.path[:0] = [str(HERE.parent), str(HERE.parents[1])]
 
-import conftest  # noqa: E402, F401  # the same flags of XLA as in the tests
 import jax  # noqa: E402
 import jax.numpy as jnp  # noqa: E402
 import numpy as np  # noqa: E402
@@ -28,6 +27,7 @@ from hydra import compose, initialize_config_dir  # noqa: E402
 from omegaconf import DictConfig, ListConfig, OmegaConf  # noqa: E402
 from tiny import demonstrate  # noqa: E402
 
+import conftest  # noqa: E402, F401  # the same flags of XLA as in the tests
 from hybrid_rl import config  # noqa: E402
 from hybrid_rl.cli.command import options  # noqa: E402
 from hybrid_rl.training.loop import Loop  # noqa: E402

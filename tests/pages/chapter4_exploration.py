@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.stats import fisher_exact
 
-from hybrid_rl.studies.curves import band, iqm
+from hybrid_rl.analysis.curves import band, iqm
 from pages.cited import Table, Text
 from pages.values import curve, read
 

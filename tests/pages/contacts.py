@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binomtest
 
-from hybrid_rl.studies.curves import band, iqm
+from hybrid_rl.analysis.curves import band, iqm
 from pages.values import read
 
 MAPS, POSES = "fig_5_5_mapping", "fig_5_5_localisation"

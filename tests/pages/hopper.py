@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.stats import kruskal
 
-from hybrid_rl.studies.curves import RESAMPLES, iqm
+from hybrid_rl.analysis.curves import RESAMPLES, iqm
 from pages.cited import Table, Text
 from pages.values import Curve, curve, p_value, read, spread
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hybrid_rl.studies.curves import iqm
+from hybrid_rl.analysis.curves import iqm
 from pages.cited import Table, Text
 from pages.values import Curve, curve, number, read
 

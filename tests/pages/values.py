@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import mannwhitneyu
 
-from hybrid_rl.studies.curves import RESAMPLES, improvement, iqm
+from hybrid_rl.analysis.curves import RESAMPLES, improvement, iqm
 from pages.cited import NUMBER, ROOT, Table
 
 RESULTS = ROOT / "docs" / "results"
@@ -81,7 +81,7 @@ def parts(name: str) -> Callable[[str, str], list[float]]:
 
 
 def band(each: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """As `hybrid_rl.studies.curves.band`, with all resamples in one array."""
+    """As `hybrid_rl.analysis.curves.band`, with all resamples in one array."""
     draws = np.random.default_rng(0).integers(len(each), size=(RESAMPLES, len(each)))
     low, high = np.percentile(iqm(each[draws.T]), [2.5, 97.5], axis=0)
     return low, high

@@ -12,9 +12,9 @@ from tiny import TINY, call, call_train, contents, demonstrate, only_line, run
 
 from hybrid_rl import __version__, config, evaluate, figures, render
 from hybrid_rl import demonstrate as recording
+from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.results import RunFolder
 
 METHODS = {
     "sac": "halfcheetah",

@@ -1,0 +1,96 @@
+"""What all tests run under: a CPU, strict shapes, and compiled programs kept between runs.
+
+Set as environment variables, before JAX is imported, so that commands which a test starts
+run under the same.
+"""
+
+import gc
+import os
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+CACHE = Path(__file__).resolve().parent / ".cache" / "jax"
+FLAGS = ["--xla_backend_optimization_level=0"]  # a third less to compile, same mathematics
+if version("jaxlib").startswith("0.10."):  # later releases end the process at flags they lack
+    # The emitters would compute the frames of a long chain of bodies again and again: MJX's
+    # kinematics of an arm took 6 s instead of 2 ms. Parts of a program compile in parallel, at
+    # a tenth more time in all, and every core has a worker already.
+    FLAGS += [
+        "--xla_cpu_use_fusion_emitters=false",
+        "--xla_cpu_parallel_codegen_split_count=1",
+    ]
+SETTINGS = {
+    "JAX_PLATFORMS": "cpu",
+    "JAX_NUMPY_RANK_PROMOTION": "raise",
+    "JAX_COMPILATION_CACHE_DIR": str(CACHE),
+    "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.5",
+    "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
+    "MPLBACKEND": "agg",
+    "XLA_FLAGS": " ".join(FLAGS),
+}
+
+for name, value in SETTINGS.items():
+    os.environ.setdefault(name, value)
+
+gc.set_threshold(50_000, 50, 50)  # tracing makes many objects that stay
+
+SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
+    f"{task}-mjx"
+    for task in (
+        "hopper",
+        "walker2d",
+        "ant",
+        "panda_stack",
+        "sawyer_push",
+        "sawyer_torque",
+        "sprk",
+    )
+]
+
+
+def pytest_addoption(parser):
+    parser.addoption("--slow", action="store_true", help="run all robots under MJX, too")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config, items):
+    """The tests of a file share a worker, so that fixtures and programs are made once."""
+    for item in items:
+        if item.get_closest_marker("xdist_group") is None:
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+    if config.getoption("--slow"):
+        return
+    slow = [item for item in items if any(name in item.nodeid for name in SLOW)]
+    config.hook.pytest_deselected(items=slow)
+    items[:] = [item for item in items if item not in slow]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def small_programs():
+    """Workers cache these, too; commands do not, as two that begin at once could collide."""
+    import jax
+
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def frozen():
+    """What the files before this one left is not searched for garbage again."""
+    gc.collect()
+    gc.freeze()
+
+
+@pytest.fixture
+def can_draw():
+    """Whether this machine can draw; if not, it names the packages to install."""
+    from hybrid_rl.envs.mujoco import offscreen
+
+    try:
+        offscreen.backend()
+    except offscreen.NoGraphicsError:
+        with pytest.raises(offscreen.NoGraphicsError, match="install libegl1 or libosmesa6"):
+            offscreen.backend()
+        return False
+    return True

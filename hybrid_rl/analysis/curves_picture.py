@@ -1,0 +1,167 @@
+"""Pictures of learning curves: a panel per task and metric, lines with bands, or rows of points."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hybrid_rl.analysis import rows
+from hybrid_rl.analysis.curves import Curve, plural
+from hybrid_rl.analysis.style import (
+    ENTRY,
+    LEGEND_WIDTH,
+    NOTE_WIDTH,
+    STYLE,
+    legend_below,
+    legend_outside,
+    line_styles,
+    thousands,
+    words,
+    wrapped,
+    write_notes,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LABELS = {
+    "train/return": "Training return",
+    "train/length": "Training episode length [steps]",
+    "eval/return": "Evaluation return",
+    "eval/policy_return": "Evaluation return, policy alone",
+    "eval/planner_return": "Evaluation return, planner alone",
+    "eval/success": "Share of successes",
+    "eval/policy_success": "Share of successes, policy alone",
+    "eval/planner_success": "Share of successes, planner alone",
+    "planner/mode_insertion_gradient": "Mode insertion gradient",
+    "planner/policy_share": "Share of the policy in the action",
+    "planner/insertion_per_variance": "Insertion gradient / policy variance",
+    "planner/policy_variance": "Variance of the policy",
+    "planner/lyapunov": "Lyapunov function V",
+    "planner/lyapunov_rate": "Change of V under the policy [per decision]",
+    "planner/lyapunov_bound": "Most that the plan adds to V [per decision]",
+    "planner/handed_over": "Share of decisions handed over",
+    "world/speed": "Speed [m/s]",
+    "wall_s": "Wall time",
+    "step": "Decisions",
+    "num_demonstrations": "Number of demonstrations",
+}
+PANELS = ((4.4, 3.1), (4.4, 3.1), (3.0, 2.5))  # [in] of 1, 2, 3 across, without a legend
+FEW, MOST_LINES = 3, 4  # up to FEW points of more lines are rows
+PER_INCH = 22  # [characters/in] fewer in the legend of a narrow panel
+ROWS = 6.0, 0.9  # [in] of their panel: width, and height without them
+SHADE = 0.8  # sum of the opacities of the bands of a panel
+MARGIN = 1.02  # of the last step, so that the marker there is whole
+TIMES = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))  # [s]
+
+
+def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
+    """One panel per task and metric; several metrics are rows if they fill the columns.
+
+    Legends and the notes that name a curve are below and cover nothing. A line is thin where not
+    all seeds have a value. Many lines with few points each are rows.
+    """
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    pairs = [(curve.metric, curve.task) for curve in drawn]
+    metrics, tasks = (list(dict.fromkeys(names)) for names in zip(*pairs, strict=True))
+    wanted = [pair for pair in itertools.product(metrics, sorted(tasks)) if pair in pairs]
+    each = [[c for c, own in zip(drawn, pairs, strict=True) if own == pair] for pair in wanted]
+    styles = line_styles([curve.label for curve in drawn])
+    across = _across(len(wanted), len(tasks) if len(metrics) > 1 else 0)
+    down = math.ceil(len(wanted) / across)
+    width, height = PANELS[across - 1]
+    if short := len(drawn) > MOST_LINES and max(len(curve.x) for curve in drawn) <= FEW:
+        across, down, width = 1, len(wanted), ROWS[0]
+        height = ROWS[1] + rows.HEIGHT * max(map(len, each))
+    own = [note for curve in drawn for note in curve.notes if note.startswith(f"{curve.task}, ")]
+    notes = wrapped(own, round(NOTE_WIDTH * across * width / PANELS[0][0]))
+    same = len({tuple(map(_entry, some)) for some in each}) == 1
+    one_legend = len(wanted) > 1 and same and not notes
+    entries = 1 if short else len(each[0]) if one_legend else down * max(map(len, each))
+    with matplotlib.rc_context(STYLE):
+        size = width * across, height * down + ENTRY * (entries + len(notes))
+        figure = Figure(figsize=size, layout="constrained")
+        panels = list(figure.subplots(down, across, squeeze=False).flat)
+        for axes, some, (metric, task) in zip(panels, each, wanted, strict=False):
+            axes.set_title(words(task))
+            if short:
+                axes.set_xlabel(LABELS.get(metric, metric))
+                _rows(axes, some)
+                continue
+            _panel(axes, some, styles, x)
+            axes.set_ylabel(LABELS.get(metric, metric))
+            if not one_legend:
+                legend_below(axes, LEGEND_WIDTH - round(PER_INCH * (PANELS[0][0] - width)))
+        if one_legend:
+            legend_outside(panels[0])
+        for axes in panels[len(wanted) :]:
+            axes.remove()
+        write_notes(figure, notes)
+    return figure
+
+
+def _across(panels: int, columns: int) -> int:
+    """Panels in a row: `columns` if that fills all rows, else a number that leaves no gap."""
+    if 1 < columns <= len(PANELS) and panels % columns == 0:
+        return columns
+    return panels if panels <= 3 else next((n for n in (3, 2) if panels % n == 0), 3)
+
+
+def _entry(curve: Curve) -> str:
+    """A curve in a legend."""
+    return f"{words(curve.label)} ({plural(len(curve.seeds), 'seed')})"
+
+
+def _panel(axes: "Axes", drawn: list[Curve], styles: dict[str, Any], x: str) -> None:
+    """The lines of one task and metric."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    end = max(curve.x[-1] for curve in drawn)
+    unit, name = next(pair for pair in TIMES if end >= pair[0] or pair[0] == 1.0)
+    scale = unit if x == "wall_s" else 1.0
+    for curve in drawn:
+        style = styles[curve.label] | ({} if len(curve.x) <= 10 else {"marker": None})
+        _line(axes, curve, curve.x / scale, style, min(0.2, SHADE / len(drawn)))
+    axes.set_xlabel(LABELS.get(x, words(x)) + (f" [{name}]" if x == "wall_s" else ""))
+    if x in ("wall_s", "step"):
+        axes.set_xlim(0, MARGIN * end / scale or 1.0)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_formatter(FuncFormatter(thousands))
+
+
+def _rows(axes: "Axes", drawn: list[Curve]) -> None:
+    """A row for each curve, a point with its band for each of few decisions."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    entries, counts = list(map(_entry, drawn)), {plural(len(c.seeds), "seed") for c in drawn}
+    if len(counts) == 1:
+        entries = [words(curve.label) for curve in drawn]
+        axes.set_title(f"{axes.get_title()}, {counts.pop()}")
+    times = sorted({at for curve in drawn for at in curve.x})
+    spreads = {curve.label: np.full((len(times), 3), np.nan) for curve in drawn}
+    for curve in drawn:
+        at = [times.index(each) for each in curve.x]
+        spreads[curve.label][at] = np.stack([curve.iqm, curve.low, curve.high], 1)
+    rows.points(axes, spreads, [f"{thousands(at)} decisions" for at in times], entries)
+    legend_below(axes)
+    axes.xaxis.set_major_locator(MaxNLocator(4))
+    axes.xaxis.set_major_formatter(FuncFormatter(thousands))
+
+
+def _line(axes: "Axes", curve: Curve, at: np.ndarray, style: Any, shade: float) -> None:
+    """One curve and its band; thin where not all seeds have a value."""
+    shared = curve.shared
+    axes.plot(at, np.where(shared, curve.iqm, np.nan), lw=1.6, ms=4, label=_entry(curve), **style)
+    if not shared.all():
+        next_to = ~shared | np.append(~shared[1:], False) | np.append(False, ~shared[:-1])
+        thin = style | {"marker": "." if style["marker"] else None}
+        axes.plot(at, np.where(next_to, curve.iqm, np.nan), lw=0.7, ms=3, **thin)
+    if len(curve.seeds) > 1:
+        ends = curve.low, curve.high
+        axes.fill_between(at, *ends, where=shared, color=style["color"], alpha=shade, lw=0)

@@ -1,0 +1,151 @@
+"""Learning curves: interquartile mean over seeds with its 95% bootstrap band.
+
+    python -m hybrid_rl.figures runs="runs/halfcheetah/*/*" metric=train/return out=figure.png
+
+One panel per task; one line per algorithm and, where its runs differ in their settings, per set of
+settings (hybrid_rl.analysis.curves). Several metrics, such as
+metric=train/return,planner/mode_insertion_gradient, are one row of panels each. x=wall_s plots over
+time, x=KEY over a number that was swept, such as num_demonstrations. runs=FILE.json redraws a
+figure from its JSON. out=FILE.csv writes a table instead, a value of a seed in each row, with the
+columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.long_table).
+
+The summary has the last value, the mean over the run (the area under the curve), the decisions to
+reach threshold=, and in which share of pairs of seeds one method is ahead of another. Notes on
+missing values and failed seeds are in the picture and in the JSON.
+"""
+
+import itertools
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+
+from hybrid_rl.analysis.curves import (
+    Curve,
+    area,
+    curves,
+    improvement,
+    iqm,
+    plural,
+    spread,
+    steps_to,
+)
+from hybrid_rl.analysis.curves_picture import plot
+from hybrid_rl.analysis.long_table import long_table
+from hybrid_rl.cli.arguments import number
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run.reading import json_file
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ARRAYS = ("x", "each", "iqm", "low", "high")  # of a curve
+WIDTH = number(0, " of steps (or seconds), 0 or more")
+VALUE = number(what=" in the metric's unit")
+
+
+def figure(
+    runs: Annotated[str | Path, 'run folders, as "runs/*/*/*" in quotes; or a JSON to redraw'],
+    metric: Annotated[str, "metrics of metrics.jsonl, with commas between them"] = "train/return",
+    x: Annotated[str, "step, wall_s, or a key that was swept"] = "step",
+    group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
+    smooth: Annotated[float, "width of a moving mean, in units of x", WIDTH] = 0.0,
+    threshold: Annotated[float | None, "value of the metric to reach", VALUE] = None,
+) -> tuple["Figure", dict[str, Any]]:
+    """The learning curves of `runs`, and their numbers."""
+    if str(runs).endswith(".json"):
+        numbers = _read(runs)
+    else:
+        metrics = [name.strip() for name in metric.split(",")]
+        each = [curves(runs, name, x, group, smooth) for name in metrics]
+        numbers = {
+            "metric": metric,
+            "x": x,
+            "group": group,
+            "line": "interquartile mean over seeds",
+            "band": "95% percentile bootstrap over seeds",
+            "curves": [to_numbers(curve) for curve in itertools.chain(*each)],
+        }
+    if threshold is not None:
+        numbers["threshold"] = threshold
+    return draw(numbers), numbers
+
+
+def summary(numbers: dict[str, Any]) -> list[str]:
+    """A line per curve, up to the last point that all its seeds have; then comparisons by area."""
+    threshold, drawn = numbers.get("threshold"), from_numbers(numbers)
+    lines = []
+    for curve in drawn:
+        if not curve.shared.any():
+            lines.append(f"{curve.task}, {curve.label}: no point that all its seeds have")
+            continue
+        last = np.flatnonzero(curve.shared)[-1]
+        ends = spread(curve.each[:, last])
+        if last < len(curve.x) - 1:
+            ends += f" at {curve.x[last]:,.10g}"
+        line = (
+            f"{curve.task}, {curve.label}: {plural(len(curve.seeds), 'seed')}, "
+            f"last {curve.metric} {ends}, mean {spread(area(curve))}"
+        )
+        if threshold is not None:
+            steps = steps_to(curve, threshold)
+            line += f", {threshold:,.10g} reached by {np.isfinite(steps).sum()} of {len(steps)}"
+            if np.isfinite(steps).all():
+                line += f" at {iqm(steps):,.0f}"
+        lines.append(line)
+    for one, other in itertools.combinations(drawn, 2):
+        both = one.shared.any() and other.shared.any()
+        if both and (one.task, one.metric) == (other.task, other.metric):
+            rate, low, high = improvement(area(one), area(other))
+            lines.append(
+                f"{one.task}, {one.metric}: {one.label} ahead of {other.label} "
+                f"in {rate:.0%} [{low:.0%}, {high:.0%}] of pairs"
+            )
+    return lines + [f"note: {note}" for curve in drawn for note in curve.notes]
+
+
+def table(numbers: dict[str, Any]) -> str:
+    """The curves as text of a long table."""
+    return long_table(from_numbers(numbers), numbers["x"])
+
+
+def to_numbers(curve: Curve) -> dict[str, Any]:
+    """A curve as the JSON holds it, in float32."""
+    return {
+        **{name: getattr(curve, name) for name in ("task", "metric", "label")},
+        **{name: list(getattr(curve, name)) for name in ("seeds", "runs", "notes")},
+        **{name: getattr(curve, name).astype("float32") for name in ARRAYS},
+        "area": area(curve).astype("float32"),
+    }
+
+
+def from_numbers(numbers: dict[str, Any]) -> list[Curve]:
+    """The curves of a JSON; null becomes NaN."""
+    drawn = []
+    for one in numbers["curves"]:
+        metric = one.get("metric", numbers["metric"])
+        seeds, runs, notes = (tuple(one[name]) for name in ("seeds", "runs", "notes"))
+        arrays = [np.array(one[name], float) for name in ARRAYS]
+        drawn.append(Curve(one["task"], metric, one["label"], seeds, runs, *arrays, notes=notes))
+    return drawn
+
+
+def _read(file: str | Path) -> dict[str, Any]:
+    """The numbers of a learning-curve figure.
+
+    Raises:
+        UsageError: if the file cannot be read or has no curves.
+    """
+    try:
+        numbers = json_file(Path(file))
+        from_numbers(numbers)
+        return numbers
+    except UsageError as error:
+        raise UsageError(f"runs={error}") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise UsageError(f"runs={file}: has no curves written by figures") from error
+
+
+def draw(numbers: dict[str, Any]) -> "Figure":
+    """The picture of numbers from a JSON."""
+    return plot(from_numbers(numbers), numbers["x"])

@@ -1,0 +1,270 @@
+"""Run folders, read for figures: the rows of metrics.jsonl and the settings of a run.
+
+A setting is named by a key that train takes, such as planner.horizon, by its full key in
+config.yaml, such as controllers.full.horizon, or by the last names of that key, such as
+full.horizon or horizon. Runs of older versions are read, too.
+"""
+
+import difflib
+import glob
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from hybrid_rl.checks import SECTIONS
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run.reading import Loader, lines, yaml_file
+from hybrid_rl.run.records import COORDINATES, flat, row_of, summary_of
+
+NOT_ROWS = (*COORDINATES, "diverged")  # of a row; every other name is a metric
+# Keys in which runs of the same settings may differ: which learners they hold, how long they run,
+# what they write, when and where. None of them changes what a learner does up to a given step.
+NOT_SETTINGS = (
+    *("task", "algo", "seed", "num_seeds", "run_dir", "resume", "total_steps", "log_every"),
+    *("eval_every", "eval_episodes", "eval_modes", "checkpoint_every", "checkpoint_replay"),
+    *("compile_cache", "version", "distributed", "logger"),
+)
+NOT_SETTINGS_ANYWHERE = ("physics",)  # implementations of the same equations
+UNSET, SET = "unset", "set"  # for a key that only some of the runs have, and for a group of keys
+MOST_KEYS, MOST_CHARACTERS = 3, 40  # of a label; beyond that it is a letter
+MOST_SUGGESTED = 4  # keys in one message
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """A folder that training wrote; its files are read when they are first needed.
+
+    Raises:
+        UsageError: if a file is damaged; the line names it.
+    """
+
+    path: Path
+
+    @cached_property
+    def _read(self) -> tuple[list[dict[str, Any]], bool]:
+        """The rows, and whether the last one is incomplete."""
+        file, rows, last = self.path / "metrics.jsonl", [], b""
+        for number, last in enumerate(lines(file), 1):
+            if not last.endswith(b"\n"):  # what follows the last line end is cut
+                break
+            row = row_of(last)
+            if row is None:
+                raise UsageError(
+                    f"{file}: line {number} is no row of metrics (JSON with step, seed and wall_s)"
+                )
+            rows.append(row)
+        return rows, not last.endswith(b"\n") and bool(last.strip())
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """The complete rows of metrics.jsonl; a running process may be writing the last one."""
+        return self._read[0]
+
+    @property
+    def cut(self) -> bool:
+        """Whether the last row was left out, as it is incomplete."""
+        return self._read[1]
+
+    @cached_property
+    def settings(self) -> dict[str, Any]:
+        """The values of config.yaml by their full keys, such as "env.reward"; {} without a file."""
+        file = self.path / "config.yaml"
+        if not file.exists():
+            return {}
+        values = yaml_file(file, lambda text: yaml.load(text, Loader))
+        if not isinstance(values, dict):
+            raise UsageError(f"{file}: is empty, or no group of keys")
+        return flat(values)
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """What summary.json holds; {} before there is one."""
+        file = self.path / "summary.json"
+        if not file.exists():
+            return {}
+        return summary_of(file)
+
+    def word(self, key: str) -> str:
+        """The value at `key` as a word, of a part its class; "null" for null.
+
+        Raises:
+            UsageError: if there is no such setting, or several with different values.
+        """
+        word = self._word(key, "group")
+        if word is None:
+            raise UsageError(f"group={key}: not in {self.path}/config.yaml{self._near(key)}")
+        return word
+
+    def number(self, key: str) -> float:
+        """The number at `key`.
+
+        Raises:
+            UsageError: if there is none, or several that differ.
+        """
+        word = self._word(key, "x")
+        try:
+            return float(word or "")
+        except ValueError:
+            has = self._near(key) if word is None else f"; {self.path} has {word}"
+            line = f"x={key}: must be step, wall_s, or a number in every run's config.yaml"
+            raise UsageError(line + has) from None
+
+    def _word(self, key: str, argument: str) -> str | None:
+        """The value at `key`, which `argument` names; None if there is none."""
+        words = {name: _shown(name, value) for name, value in _matches(self.settings, key).items()}
+        if len(set(words.values())) > 1:
+            listed = ", ".join(f"{name}={word}" for name, word in words.items())
+            raise UsageError(
+                f"{argument}={key}: has several values in {self.path}/config.yaml ({listed}); "
+                "give one of these keys"
+            )
+        if not words and key in self.summary:
+            return _shown(key, self.summary[key])
+        return next(iter(words.values()), None)
+
+    def _near(self, key: str) -> str:
+        """A suggestion of keys that exist, for one that does not."""
+        last = key.rpartition(".")[2]
+        leaves = {name.rpartition(".")[2] for name in self.settings} - {"_target_"}
+        close = difflib.get_close_matches(last, leaves, n=1)
+        names = [name for name in self.settings if name.rpartition(".")[2] in close]
+        names.sort(key=lambda name: name.count("."))
+        return f"; it has {', '.join(names[:MOST_SUGGESTED])}" if names else ""
+
+
+def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The setting with the full key `key`, or else those whose keys end with it."""
+    for end in (key, f"{key}._target_"):
+        if end in settings:
+            return {end: settings[end]}
+    ends = f".{key}", f".{key}._target_"
+    return {name: value for name, value in settings.items() if name.endswith(ends)}
+
+
+def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
+    """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob."""
+    if isinstance(runs, (str, Path)):
+        path = Path(runs).expanduser()
+        matched = [path] if path.exists() else glob.glob(str(path), recursive=True)
+        matches = [Path(match) for match in matched]
+    else:
+        matches = [Path(run) for run in runs]
+    files = sorted({path for match in matches for path in match.glob("**/metrics.jsonl")})
+    if not files:
+        raise UsageError(f"runs={runs}: no run there (a folder that holds metrics.jsonl)")
+    if begun := [path.parent for path in files if path.stat().st_size]:
+        return begun  # a start that failed leaves an empty file
+    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+    raise UsageError(f"runs={runs}: {files[0]}{more}: no row of metrics yet")
+
+
+def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:
+    """For each run the settings in which the runs differ: key -> value, as words.
+
+    The sections `env`, `episode`, `replay`, `controllers` and `learners` are compared, and the
+    single values at the root that all runs have. A value that occurs several times, as in the parts
+    that these sections refer to, counts once, by its shortest key: the one that a user overrides.
+    expected: keys that may differ, with all settings that have the same values.
+    """
+    settings = [run.settings for run in runs]
+    built = [_built(each) for each in settings]
+    names = {name for key in expected for each in settings for name in _matches(each, key)}
+    known = {_column(settings, name) for name in names | set(expected)}
+    differ = {
+        key: column
+        for key, column in _columns(built).items()
+        if column not in known and not ("." not in key and UNSET in column)
+    }
+    columns = _columns(settings) if differ else {}
+    shortest: dict[tuple[str, tuple[str, ...]], str] = {}
+    for key, column in differ.items():
+        if UNSET in column and any(parent in differ for parent in _parents(key)):
+            continue  # a field of a part that the others do not have
+        leaf = key.rpartition(".")[2]
+        same = [k for k, c in columns.items() if c == column and k.rpartition(".")[2] == leaf]
+        part = _class(settings[0], key)
+        shortest[leaf, column] = min(
+            same, key=lambda k: (_class(settings[0], k) != part, k.count("."), len(k))
+        )
+    return [
+        {
+            name.removesuffix("._target_"): column[i]
+            for (_, column), name in sorted(shortest.items())
+        }
+        for i in range(len(runs))
+    ]
+
+
+def short(differing: Sequence[Mapping[str, str]]) -> list[str]:
+    """A label for each set of settings: "reward=pybullet", or A, B, ... if that would be long."""
+    keys = list(dict.fromkeys(key for each in differing for key in each))
+    shown = {key: _ending(key, keys) for key in keys}
+    labels = [" ".join(f"{shown[k]}={v}" for k, v in each.items()) for each in differing]
+    if len(keys) <= MOST_KEYS and all(len(label) <= MOST_CHARACTERS for label in labels):
+        return labels
+    order = sorted(set(labels))
+    return [_letters(order.index(label)) for label in labels]
+
+
+def _ending(key: str, keys: Sequence[str]) -> str:
+    """The fewest last names of `key` that no other of the keys ends with."""
+    names = key.split(".")
+    endings = [".".join(names[-number:]) for number in range(1, len(names) + 1)]
+    others = [other for other in keys if other != key]
+    unique = (end for end in endings if not any(f".{o}".endswith(f".{end}") for o in others))
+    return next(unique, key)
+
+
+def _letters(number: int) -> str:
+    """A, B, ..., Z, A1, B1, ..."""
+    return chr(ord("A") + number % 26) + (str(number // 26) if number >= 26 else "")
+
+
+def _built(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings of what a run built; all of them if it has no learners section."""
+    ours = any(key.startswith("learners.") for key in settings)
+    return {
+        key: value
+        for key, value in settings.items()
+        if key not in NOT_SETTINGS
+        and key.rpartition(".")[2] not in NOT_SETTINGS_ANYWHERE
+        and not (ours and "." in key and key.partition(".")[0] not in SECTIONS)
+    }
+
+
+def _columns(settings: Sequence[Mapping[str, Any]]) -> dict[str, tuple[str, ...]]:
+    """The keys whose values differ, and the value of each run."""
+    columns = {key: _column(settings, key) for key in sorted(set().union(*settings))}
+    return {key: column for key, column in columns.items() if len(set(column)) > 1}
+
+
+def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:
+    def one(each: Mapping[str, Any]) -> str:
+        if key in each:
+            return _shown(key, each[key])
+        return SET if any(name.startswith(f"{key}.") for name in each) else UNSET
+
+    return tuple(map(one, settings))
+
+
+def _class(settings: Mapping[str, Any], key: str) -> Any:
+    """The class of the part that a key belongs to."""
+    return settings.get(f"{key.rpartition('.')[0]}._target_")
+
+
+def _parents(key: str) -> list[str]:
+    """The groups that hold a key, and the keys of their classes: "a", "a._target_", ..."""
+    parts = key.split(".")
+    above = [".".join(parts[:i]) for i in range(1, len(parts))]
+    return [name for group in above for name in (group, f"{group}._target_") if name != key]
+
+
+def _shown(key: str, value: Any) -> str:
+    if key.endswith("_target_"):
+        return str(value).rpartition(".")[2]
+    return value if isinstance(value, str) else json.dumps(value, default=str)

@@ -1,0 +1,198 @@
+"""Drawing without a display: pictures, videos, backends."""
+
+import os
+import subprocess
+import sys
+import time
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+from scenes import FIXED, FREE
+
+from hybrid_rl.analysis import drawing
+from hybrid_rl.envs.mujoco import offscreen
+
+
+def centre(picture, channel):
+    """Mean (row, column) of the pixels of one pure colour, as shares of the picture."""
+    rest = [c for c in range(3) if c != channel]
+    result = (picture[..., channel] > 150) & (picture[..., rest] < 90).all(-1)
+    assert result.any()
+    return np.argwhere(result).mean(0) / picture.shape[:2]
+
+
+def positions(number=6):
+    return np.linspace(-1, 1, number)[:, None]
+
+
+def test_pictures_show_the_positions(can_draw):
+    if not can_draw:
+        return
+    pictures = list(drawing.frames(FIXED, positions(3), 64, 48))
+    assert all(picture.shape == (48, 64, 3) for picture in pictures)
+    red = np.array([centre(picture, 0) for picture in pictures])
+    np.testing.assert_allclose(red[:, 0], 0.5, atol=0.05)
+    assert (np.diff(red[:, 1]) > 0.1).all()  # to the right
+    assert centre(pictures[1], 2)[0] < 0.4  # y is up
+
+
+def test_without_a_camera_of_its_own_the_robot_is_followed(can_draw):
+    if not can_draw:
+        return
+    near, far = drawing.frames(FREE, np.array([[0.0], [5.0]]), 64, 48)
+    np.testing.assert_allclose(centre(near, 0), centre(far, 0), atol=0.05)
+    assert len(list(drawing.frames("<mujoco/>", np.zeros((1, 0)), 64, 48))) == 1
+
+
+def test_an_mp4_plays_everywhere(tmp_path, can_draw):
+    if not can_draw:
+        return
+    out = drawing.draw(FIXED, positions(), tmp_path / "new" / "a.mp4", 25, 64, 48)
+    values = iio.immeta(out, plugin="pyav")
+    assert (values["codec"], values["video_format"], values["fps"]) == ("h264", "yuv420p", 25)
+    film = iio.imread(out, plugin="pyav")
+    assert film.shape == (6, 48, 64, 3)
+    assert centre(film[5], 0)[1] > centre(film[0], 0)[1] + 0.2
+    assert [path.name for path in out.parent.iterdir()] == ["a.mp4"]
+
+
+def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, can_draw):
+    if not can_draw:
+        return
+    out = drawing.draw(FIXED, positions(), tmp_path / "a.gif", 40, 64, 48)
+    values = iio.immeta(out)
+    assert (values["duration"], values["loop"]) == (50, 0)  # [ms]: every second of 40 a second
+    film = iio.imread(out)
+    assert film.shape == (3, 48, 64, 3)
+    assert centre(film[2], 0)[1] > centre(film[0], 0)[1] + 0.2
+
+
+def test_what_fails_halfway_leaves_nothing(tmp_path, monkeypatch, can_draw):
+    if not can_draw:
+        return
+
+    def broken(*_):
+        yield np.zeros((48, 64, 3), np.uint8)
+        raise RuntimeError("broken")
+
+    monkeypatch.setattr(drawing, "frames", broken)
+    with pytest.raises(RuntimeError, match="broken"):
+        drawing.draw(FIXED, positions(), tmp_path / "a.mp4", 25, 64, 48)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_png_is_the_picture_halfway(tmp_path, can_draw):
+    if not can_draw:
+        return
+    out = drawing.draw(FIXED, positions(5), tmp_path / "a.png", 25, 64, 48)
+    film = list(drawing.frames(FIXED, positions(5), 64, 48))
+    np.testing.assert_array_equal(iio.imread(out), film[2])
+
+
+def test_a_panel_is_to_the_right_of_its_picture(tmp_path, can_draw):
+    if not can_draw:
+        return
+    grey = lambda i: np.full((48, 10, 3), 40 * i, np.uint8)  # noqa: E731
+    out = drawing.draw(FIXED, positions(5), tmp_path / "a.png", 25, 64, 48, grey)
+    picture = iio.imread(out)
+    np.testing.assert_array_equal(picture[:, 64:], grey(2))
+    np.testing.assert_array_equal(
+        picture[:, :64], next(drawing.frames(FIXED, positions(5)[2:3], 64, 48))
+    )
+
+
+def test_a_canvas_that_is_not_closed_ends_without_noise(can_draw):
+    """And another may be drawn on between two of its pictures."""
+    code = (
+        "import numpy as np, weakref\n"
+        "weakref.finalize(np, print, end='')  # from here on, finalizers run after EGL's end\n"
+        "from hybrid_rl.envs.mujoco.offscreen import Canvas\n"
+        f"one, two = Canvas({FIXED!r}, 64, 48), Canvas({FIXED!r}, 32, 24)\n"
+        "first, small = one.draw(np.zeros(1)), two.draw(np.zeros(1))\n"
+        "assert (first == one.draw(np.zeros(1))).all() and small.shape == (24, 32, 3)\n"
+        "two.close()\n"
+        "assert (first == one.draw(np.zeros(1))).all()\n"
+    )
+    if can_draw:
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+        assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_drawing_is_counted_in_pictures(monkeypatch, capsys):
+    now = iter(range(0, 10_000, 20))
+    monkeypatch.setattr(time, "monotonic", lambda: float(next(now)))
+    assert list(drawing._counted(range(3), 3)) == [0, 1, 2]
+    assert "pictures/s" in capsys.readouterr().out
+
+
+def test_positions_of_another_scene_are_refused(can_draw):
+    if can_draw:
+        with pytest.raises(ValueError, match=r"qpos is \(3,\); the scene takes \[1\]"):
+            next(drawing.frames(FIXED, np.zeros((2, 3))))
+    with pytest.raises(ValueError, match=r"a\.avi: must end in \.mp4, \.gif, \.png"):
+        drawing.draw(FIXED, positions(), "a.avi", 25)
+
+
+@pytest.fixture
+def choosing(monkeypatch):
+    """Decrees which backends work."""
+    offscreen.chosen.cache_clear()
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    monkeypatch.setattr(sys, "platform", "linux")
+
+    def works(*names):
+        code = f"import sys; sys.exit('{{backend}}' not in {names})"
+        monkeypatch.setattr(offscreen, "TRIAL", code)
+
+    yield works
+    offscreen.chosen.cache_clear()
+
+
+def test_egl_comes_before_osmesa_unless_the_user_says_otherwise(choosing, monkeypatch):
+    choosing("egl", "osmesa")
+    assert offscreen.backend() == "egl"
+    offscreen.chosen.cache_clear()
+    monkeypatch.setenv("MUJOCO_GL", "OSMesa")
+    assert offscreen.backend() == "osmesa"
+
+
+def test_osmesa_is_taken_where_egl_fails(choosing):
+    choosing("osmesa")
+    assert offscreen.backend() == "osmesa"
+
+
+@pytest.mark.parametrize(
+    ("renderer", "expected"), [("llvmpipe (LLVM 15.0.6, 256 bits)", True), ("NVIDIA H100", False)]
+)
+def test_the_driver_says_whether_the_processor_draws(choosing, monkeypatch, renderer, expected):
+    monkeypatch.setattr(offscreen, "TRIAL", f"print(16384); print('{renderer}')")
+    assert offscreen.by_processor() == expected
+
+
+def test_a_machine_that_cannot_draw_names_the_packages_to_install(choosing):
+    choosing()
+    with pytest.raises(offscreen.NoGraphicsError, match="egl and osmesa failed; install libegl1"):
+        offscreen.backend()
+
+
+@pytest.mark.parametrize("name", offscreen.BACKENDS)
+def test_each_backend_draws_or_is_not_chosen(name):
+    """In a process of its own, after mujoco was imported for no display at all."""
+    code = (
+        "import mujoco, numpy as np, sys\n"
+        "from hybrid_rl.analysis import drawing\n"
+        "from hybrid_rl.envs.mujoco import offscreen\n"
+        "try: name = offscreen.backend()\n"
+        "except offscreen.NoGraphicsError as problem: sys.exit(str(problem))\n"
+        f"assert name == {name!r}\n"
+        f"pictures = list(drawing.frames('''{FIXED}''', np.zeros((2, 1)), 64, 48))\n"
+        "assert (pictures[0] == pictures[1]).all() and pictures[0].std() > 10\n"
+    )
+    env = {**os.environ, "MUJOCO_GL": name}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    assert done.stdout == ""
+    if done.returncode:
+        assert done.stderr.startswith(f"cannot draw without a display: {name} failed; install")
+    else:
+        assert done.stderr == ""

@@ -1,0 +1,78 @@
+"""Held-out errors of learned models."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import tiny
+from tiny import call, only_line
+
+from hybrid_rl import figures
+from hybrid_rl.analysis import held_out
+from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.models.gaussian import Gaussian
+from hybrid_rl.types import Params, Spec
+
+
+def test_the_error_is_that_of_numpy_for_linear_models() -> None:
+    """One model for each of two seeds; predicting the mean change gives 1."""
+    model, rng = Gaussian(hidden=(), normalise=False), np.random.default_rng(0)
+    obs, action = rng.normal(size=(40, 2)), rng.normal(size=(40, 1))
+    after = obs + rng.normal(size=(40, 2)) * [0.1, 3.0] + [1.0, -2.0]
+    keys = jax.random.split(jax.random.key(0), 2)
+    params = jax.vmap(lambda key: model.init(key, Spec(2, 1, 0.1)))(keys)
+    layer = params["weights"]["net"]["params"]["Dense_0"]
+    layer["kernel"] = layer["kernel"].at[1].set(0)
+    layer["bias"] = layer["bias"].at[1].set((after - obs).mean(0))
+    agent = SimpleNamespace(learners={"model": SimpleNamespace(model=model)})
+    run = SimpleNamespace(agent=agent, params=Params(model=params))
+    data = (jnp.asarray(each, jnp.float32) for each in (obs, action, after))
+    errors = held_out.errors(run, *data)
+    change = np.concatenate([obs, action], 1) @ np.asarray(layer["kernel"][0])
+    change += np.asarray(layer["bias"][0])
+    first = np.sqrt((((obs + change - after) ** 2).mean(0) / (after - obs).var(0)).mean())
+    np.testing.assert_allclose(errors, [first, 1.0], rtol=1e-4)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of two learners of a model."""
+    folder = tmp_path_factory.mktemp("runs") / "run"
+    tiny.run(folder, "algo=nn_mppi", "total_steps=60", "num_seeds=2")
+    return folder
+
+
+def test_the_study_measures_each_seed_on_both_kinds_of_decisions(folder: Path) -> None:
+    out = folder.with_name("held_out.png")
+    line = ("study=held_out", f"runs={folder}", "decisions=100", f"out={out}")
+    assert call(lambda: command.guarded(figures.main), *line) == 0
+    (one,) = json.loads(out.with_suffix(".json").read_text())["runs"].values()
+    assert (one["step"], one["seeds"]) == (60, [0, 1])
+    assert all(error > 0 for kind in held_out.SETS for error in one[kind]["each"])
+
+
+def test_held_out_decisions_are_transitions_of_the_task(folder: Path) -> None:
+    """The pendulum's own dynamics lead from each observation to the next one, for both kinds."""
+    data = held_out.held_out([held_out.restored(folder)], 50)
+    assert sorted(data) == sorted(held_out.SETS)
+    for obs, action, after in data.values():
+        assert obs.shape == (50, 3)
+        want = jax.vmap(Pendulum().dynamics)(obs, jnp.clip(action, -1, 1))
+        np.testing.assert_allclose(after, want, atol=1e-4)
+
+
+def test_a_run_without_a_model_is_refused(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """In one line."""
+    tiny.run(tmp_path / "sac", "algo=sac", "total_steps=100")
+    capfd.readouterr()
+    assert (
+        call(lambda: command.guarded(figures.main), "study=held_out", f"runs={tmp_path}/sac") == 2
+    )
+    assert "has no learned model" in only_line(capfd)

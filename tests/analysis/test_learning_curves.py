@@ -1,0 +1,265 @@
+"""Learning curves: panels, lines and notes, and their numbers."""
+
+import csv
+import itertools
+import json
+from dataclasses import replace
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from tiny import call
+
+from hybrid_rl import figures
+from hybrid_rl.analysis.curves import Curve, iqm
+from hybrid_rl.analysis.learning_curves import figure, from_numbers, plot, summary, to_numbers
+from hybrid_rl.analysis.style import BLUE, COLOURS, GREEN
+from hybrid_rl.cli import command
+from hybrid_rl.figures import save
+
+
+def curve(task="hopper", label="sac", seeds=3, scale=1.0, points=50, metric="train/return"):
+    x = np.linspace(1000, 200_000, points)
+    each = scale * (1 + np.arange(seeds))[:, None] * np.linspace(0, 1000, points)
+    names = tuple(f"runs/{seed}" for seed in range(seeds))
+    ends = each.min(0), each.max(0)
+    return Curve(task, metric, label, tuple(range(seeds)), names, x, each, iqm(each), *ends, ())
+
+
+def numbers_of(drawn, metric="train/return", x="step"):
+    return {"metric": metric, "x": x, "curves": [to_numbers(one) for one in drawn]}
+
+
+def test_a_panel_per_task_and_a_line_per_label_of_one_colour():
+    drawn = [curve("ant", "sac", 1), curve("hopper", "nn_mppi", 5), curve("hopper", "sac", 3)]
+    axes = plot(drawn).axes
+    assert [panel.get_title() for panel in axes] == ["ant", "hopper"]
+    labels = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in axes]
+    assert labels == [["sac (1 seed)"], ["nn_mppi (5 seeds)", "sac (3 seeds)"]]
+    assert [line.get_color() for line in axes[1].lines] == [GREEN, BLUE]
+    assert axes[0].lines[0].get_color() == axes[1].lines[1].get_color()
+    assert [len(panel.collections) for panel in axes] == [0, 2]  # one seed has no band
+    np.testing.assert_array_equal(axes[1].lines[1].get_ydata(), drawn[2].iqm)
+
+
+def test_labels_carry_units_and_thousands():
+    figure = plot([curve(scale=-1)])
+    figure.canvas.draw()
+    (panel,) = figure.axes
+    assert (panel.get_xlabel(), panel.get_ylabel()) == (
+        "Decisions",
+        "Training return",
+    )
+    assert "200,000" in [text.get_text() for text in panel.get_xticklabels()]
+    assert "\N{MINUS SIGN}1,600" in [text.get_text() for text in panel.get_yticklabels()]
+    (panel,) = plot([curve(metric="sac/alpha")], x="wall_s").axes
+    assert (panel.get_xlabel(), panel.get_ylabel()) == ("Wall time [h]", "sac/alpha")
+    assert panel.lines[0].get_xdata()[-1] == pytest.approx(200_000 / 3600)
+
+
+def test_several_metrics_are_rows_without_a_blank():
+    """One column per task; if a task lacks a metric, no panel is empty."""
+    metrics = ("train/return", "planner/mode_insertion_gradient")
+    drawn = [curve(task, metric=metric) for metric in metrics for task in ("ant", "hopper")]
+    axes = plot(drawn).axes
+    assert [panel.get_title() for panel in axes] == ["ant", "hopper", "ant", "hopper"]
+    assert axes[3].get_ylabel() == "Mode insertion gradient"
+    assert [panel.get_subplotspec().rowspan.start for panel in axes] == [0, 0, 1, 1]
+    axes = plot(drawn[:3]).axes
+    assert len(axes) == axes[0].get_subplotspec().get_gridspec().ncols == 3
+    assert all(panel.lines for panel in axes)
+
+
+@pytest.mark.parametrize(("tasks", "labels"), [(1, 1), (1, 9), (3, 4)])
+def test_legends_and_notes_cover_no_axes(tasks, labels):
+    """By their boxes in the rendered picture; and all are inside the picture."""
+    names = itertools.product([f"task{i}" for i in range(tasks)], range(labels))
+    drawn = [
+        replace(
+            curve(task, f"a_method_with_a_long_name_{i}"), notes=(f"{task}, {i}: " + 30 * "word ",)
+        )
+        for task, i in names
+    ]
+    figure = plot(drawn)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    renderer = canvas.get_renderer()
+    panels = [panel.get_window_extent() for panel in figure.axes]
+    own = [panel.get_legend() for panel in figure.axes]
+    legends = [one.get_window_extent(renderer) for one in [*own, *figure.legends] if one]
+    assert len(legends) == tasks
+    note = figure._supxlabel.get_window_extent(renderer)
+    for box in [*legends, note]:
+        assert not any(box.overlaps(panel.padded(-0.5)) for panel in panels)
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= box.y0 < box.y1 <= figure.bbox.y1
+    assert not any(note.overlaps(legend) for legend in legends)
+    labels_of_x = [panel.xaxis.label.get_window_extent(renderer) for panel in figure.axes]
+    assert not any(box.overlaps(other) for box in labels_of_x for other in legends)
+
+
+def test_panels_of_the_same_lines_share_a_legend():
+    """Below all of them, where it covers none."""
+    figure = plot([curve(task, label) for task in ("ant", "hopper") for label in ("bc", "sac")])
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["bc (3 seeds)", "sac (3 seeds)"]
+    box = legend.get_window_extent(canvas.get_renderer())
+    assert not any(box.overlaps(panel.get_tightbbox()) for panel in figure.axes)
+    assert figure.bbox.y0 <= box.y0
+
+
+def test_notes_are_on_the_picture():
+    """Those that name their line; what ran where is in the JSON. Beyond eight, their number."""
+    notes = ("hopper, sac: seed 3 diverged", "one core of a server")
+    (text,) = [plot([replace(curve(), notes=notes)])._supxlabel.get_text()]
+    assert text == "hopper, sac: seed 3 diverged"
+    many = replace(curve(), notes=tuple(f"hopper, sac: note {i}" for i in range(20)))
+    lines = plot([many])._supxlabel.get_text().splitlines()
+    assert lines[-1] == "and 12 more notes, in the JSON next to this picture"
+
+
+def test_markers_at_the_right_edge_are_whole():
+    figure = plot([curve(points=5)])
+    figure.canvas.draw()
+    (panel,) = figure.axes
+    last = panel.transData.transform((200_000, 0))[0]
+    assert panel.bbox.x1 - last > panel.lines[0].get_markersize() / 2 * figure.dpi / 72
+
+
+def test_a_line_is_thin_where_seeds_are_missing():
+    """The thick line and the band end with the last point that all seeds have."""
+    one = curve(points=5)
+    one.each[2, 3:] = np.nan
+    thick, thin = plot([one]).axes[0].lines
+    np.testing.assert_array_equal(np.isfinite(thick.get_ydata()), [True] * 3 + [False] * 2)
+    np.testing.assert_array_equal(np.isfinite(thin.get_ydata()), [False] * 2 + [True] * 3)
+    assert thin.get_linewidth() < thick.get_linewidth()
+
+
+def test_more_lines_than_colours_stay_apart():
+    drawn = [curve(label=f"algo{i:02}") for i in range(2 * len(COLOURS) + 1)]
+    lines = plot(drawn).axes[0].lines
+    styles = {(line.get_color(), str(line._dash_pattern)) for line in lines}
+    assert len(styles) == len(drawn)
+
+
+def test_many_lines_of_few_points_are_rows_with_their_bands():
+    """Nine curves of two evaluations: a point and a band for each, named on the left."""
+    drawn = [curve(label=f"algo{i}", points=2) for i in range(9)]
+    (axes,) = plot(drawn).axes
+    axes.figure.canvas.draw()
+    assert [text.get_text() for text in axes.get_yticklabels()] == [one.label for one in drawn]
+    assert axes.get_title() == "hopper, 3 seeds"
+    ends = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) == 2]
+    wanted = [(one.low[k], one.high[k]) for one in drawn for k in range(2)]
+    np.testing.assert_array_equal(ends, wanted)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [
+        "1,000 decisions",
+        "200,000 decisions",
+    ]
+
+
+@pytest.mark.parametrize("panels", [1, 2, 3, 4, 6])
+def test_no_picture_is_wider_than_a_page_can_show(tmp_path, panels):
+    """At 700 pixels its smallest text, of 8 points, is 7 pixels high or more."""
+    drawn = [curve(f"task{i}", points=5) for i in range(panels)]
+    save(plot(drawn), numbers_of(drawn), tmp_path / "a.png")
+    width = iio.imread(tmp_path / "a.png").shape[1]
+    assert width <= 1600
+    assert 8 / 72 * 700 / plot(drawn).get_figwidth() >= 7
+
+
+def test_a_single_point_is_visible():
+    (panel,) = plot([curve(points=1)]).axes
+    assert panel.lines[0].get_marker() == "o"
+
+
+def test_the_picture_is_drawn_and_its_numbers_are_float32(tmp_path):
+    drawn, out = [curve(seeds=5)], tmp_path / "new" / "a.png"
+    save(plot(drawn), numbers_of(drawn), out)
+    (one,) = json.loads(out.with_suffix(".json").read_text())["curves"]
+    assert (one["task"], one["label"], one["seeds"]) == ("hopper", "sac", [0, 1, 2, 3, 4])
+    assert one["iqm"] == drawn[0].iqm.astype("float32").tolist()
+    picture = iio.imread(out)
+    assert picture.shape[1] == 880
+    assert 600 < picture.shape[0] < 700
+    blue = np.abs(picture[..., :3].astype(int) - [0x00, 0x72, 0xB2]).max(-1) < 8
+    assert blue.sum() > 1000  # the line was drawn
+
+
+def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
+    """The same curves and picture; numbers that are the source are left as they are."""
+    one = curve()
+    one.each[2, -1] = np.nan
+    drawn = [replace(one, notes=("a note",)), curve(metric="sac/alpha")]
+    source = tmp_path / "a.json"
+    save(plot(drawn), numbers_of(drawn, "train/return,sac/alpha"), tmp_path / "a.png")
+    source.write_text(source.read_text().replace("\n", ""))  # another layout
+    before = source.read_bytes()
+    again = from_numbers(figure(source)[1])
+    for name in ("label", "metric", "seeds", "notes"):
+        assert [getattr(c, name) for c in again] == [getattr(c, name) for c in drawn]
+    for name in ("x", "each", "iqm", "low", "high"):
+        for old, new in zip(drawn, again, strict=True):
+            np.testing.assert_allclose(getattr(new, name), getattr(old, name), rtol=1e-6)
+    first, second = (
+        call(lambda: command.guarded(figures.main), f"{key}={source}", f"out={tmp_path / name}.svg")
+        for key, name in (("runs", "a"), ("from", "b"))
+    )
+    assert (first, second) == (0, 0)
+    assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
+    assert source.read_bytes() == before
+
+
+def test_a_file_without_curves_is_refused(tmp_path, capsys):
+    (tmp_path / "c.json").write_text("{}")
+    arguments = f"runs={tmp_path / 'c.json'}", f"out={tmp_path / 'c.png'}"
+    assert call(lambda: command.guarded(figures.main), *arguments) == 2
+    assert "c.json: has no curves written by figures" in capsys.readouterr().err
+
+
+def test_the_summary_compares_and_counts_who_reaches_the_threshold():
+    """Up to the last point that all seeds have; then the notes."""
+    one, two = curve(label="a", points=5), replace(curve(label="b", scale=2), notes=("a note",))
+    one.each[2, -1] = np.nan
+    lines = summary(numbers_of([one, two]) | {"threshold": 1500.0})
+    assert lines[0].startswith("hopper, a: 3 seeds, last train/return 1,500 [")
+    assert " at 150,250, mean " in lines[0]
+    assert lines[0].endswith(", 1,500 reached by 2 of 3")
+    assert ", 1,500 reached by 3 of 3 at " in lines[1]
+    assert lines[2].startswith("hopper, train/return: a ahead of b in 1")
+    assert lines[3:] == ["note: a note"]
+
+
+def test_a_table_has_a_row_for_each_value_of_each_seed(tmp_path, capsys):
+    """Read by Python's own parser; the columns are those of SimbaV2's published curves."""
+    one = curve(points=3, metric="eval/return")
+    one.each[2, 1] = np.nan
+    drawn = [one, curve("ant", "hybrid, long", seeds=1, points=3)]
+    save(plot(drawn), numbers_of(drawn, "eval/return"), tmp_path / "a.png")
+    arguments = f"runs={tmp_path / 'a.json'}", f"out={tmp_path / 'a.csv'}"
+    assert call(lambda: command.guarded(figures.main), *arguments) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "a.csv")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.json", "a.png"]
+    with (tmp_path / "a.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["exp_name", "env_name", "seed", "metric", "env_step", "value"]
+    read = {
+        (r["exp_name"], r["env_name"], r["metric"], int(r["seed"]), int(r["env_step"])): r
+        for r in rows
+    }
+    assert len(read) == len(rows) == 8 + 3
+    assert float(read["sac", "hopper", "avg_return", 2, 200_000]["value"]) == 3000
+    assert float(read["hybrid, long", "ant", "train/return", 0, 100_500]["value"]) == 500
+    assert ("sac", "hopper", "avg_return", 2, 100_500) not in read
+
+
+def test_a_table_over_time_is_refused(tmp_path, capsys):
+    one = curve()
+    save(plot([one]), numbers_of([one], x="wall_s"), tmp_path / "b.png")
+    arguments = f"runs={tmp_path / 'b.json'}", f"out={tmp_path / 'b.csv'}"
+    assert call(lambda: command.guarded(figures.main), *arguments) == 2
+    assert "x=wall_s: a table is over decisions; give x=step" in capsys.readouterr().err

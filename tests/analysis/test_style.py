@@ -1,0 +1,136 @@
+"""The style of pictures: colours, dashes, words, legends; and pictures from their JSON."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from hybrid_rl.analysis.style import (
+    COLOURS,
+    METHODS,
+    STROKES,
+    VERMILION,
+    colours,
+    legend_below,
+    line_styles,
+    words,
+)
+from hybrid_rl.figures import redrawn, study_of
+
+RESULTS = Path(__file__).parents[2] / "docs" / "results"
+REDRAWN = {  # study -> some of the JSON files from which it draws
+    "active_learning": ("fig_4_1",),
+    "contact_maps": ("fig_5_4_filters", "absence"),
+    "ergodic_coverage": ("kle3_cost",),
+    "held_out": ("exploration_model",),
+    "imitation": ("fig_4_2_lander", "fig_6_9", "fig_6_10"),
+    "koopman": ("fig_7_2", "fig_7_3", "fig_7_4", "fig_7_7"),
+    "koopman_settings": ("koopman_settings",),
+    "learning_curves": ("hybrid_fast", "walker_faster"),
+    "model_learning": ("fig_6_6",),
+}
+
+
+def label_sets():
+    """The labels of each picture that is in the documentation."""
+    for file in sorted(RESULTS.glob("*.json")):
+        numbers = json.loads(file.read_text())
+        if isinstance(numbers, dict):
+            parts = [numbers.get(key) for key in ("methods", "rows", "runs", "two_link")]
+            yield [curve["label"] for curve in numbers.get("curves", ())]
+            yield from (list(part) for part in parts if isinstance(part, dict))
+
+
+def shown_by(styles, *names):
+    return [tuple(str(style[name]) for name in names) for style in styles.values()]
+
+
+def test_no_two_lines_of_a_picture_share_colour_and_dashes():
+    """For the labels of all results, for all methods at once, and for any others."""
+    rng = np.random.default_rng(0)
+    known = [*METHODS, *(f"{name} {key}=1" for name in METHODS for key in "ab")]
+    some = [list(rng.choice(known, count, replace=False)) for count in range(1, 55)]
+    others = [[f"label {i}" for i in range(count)] for count in range(1, 55)]
+    each = [*label_sets(), *some, *others]
+    assert len(each) > 200
+    for labels in each:
+        shown = shown_by(line_styles(labels), "color", "linestyle")
+        assert len(set(shown)) == len(set(labels)), labels
+    many = [f"label {i}" for i in range(2 * len(COLOURS) * len(STROKES))]
+    assert len(set(shown_by(line_styles(many), "color", "linestyle", "marker"))) == len(many)
+
+
+def test_a_method_has_one_colour_in_every_picture():
+    """Also beside others, and as a setting; a plain method has whole lines."""
+    for labels in label_sets():
+        own = colours(labels)
+        for label in labels:
+            if label in METHODS:
+                assert own[label] == METHODS[label], labels
+                style = line_styles(labels)[label]
+                assert style["color"] == METHODS[label]
+    styles = line_styles(["hybrid_stochastic tau=1", "sac", "hybrid_stochastic"])
+    assert styles["hybrid_stochastic"]["linestyle"] == "-"
+    assert styles["hybrid_stochastic tau=1"]["color"] == VERMILION
+    assert styles["hybrid_stochastic tau=1"]["linestyle"] == "--"
+
+
+def test_many_settings_of_one_method_alone_have_colours_of_their_own():
+    sweep = [f"sac tau={tau}" for tau in (1, 2, 3, 4, 5)]
+    assert len(set(colours(sweep).values())) == 5
+    assert colours(sweep)[sweep[0]] == METHODS["sac"]
+    assert len(set(colours(sweep[:2]).values())) == 1
+
+
+@pytest.mark.parametrize(
+    ("label", "shown"),
+    [
+        (
+            "koopman_active deviation=0.316 prior=1e-06",
+            "koopman_active, deviation 0.316, prior 1e-6",
+        ),
+        ("z15_gain_frozen", "z 15, information gain, K frozen"),
+        ("A_step_printed", "A-optimal by step, as printed"),
+        ("bc, experiment=robots/ant", "bc, experiment robots/ant"),
+        ("D_weight_0.3", "D-optimal, weight 0.3"),
+        ("num_demonstrations=5", "num demonstrations 5"),
+        ("my_method", "my_method"),
+        ("sac", "sac"),
+    ],
+)
+def test_labels_are_words(label, shown):
+    assert words(label) == shown
+
+
+@pytest.mark.parametrize(
+    ("study", "name"), [(study, name) for study, names in REDRAWN.items() for name in names]
+)
+def test_a_picture_is_drawn_again_from_its_json(study, name):
+    """In it no two named lines have the same style, and no text is smaller than 7 pixels at 700."""
+    figure, numbers = redrawn(study_of(study), str(RESULTS / f"{name}.json"))
+    assert numbers == json.loads((RESULTS / f"{name}.json").read_text())
+    assert 8 / 72 * 700 / figure.get_figwidth() >= 7
+    for axes in figure.axes:
+        named = [line for line in axes.lines if not line.get_label().startswith("_")]
+        shown = [
+            (str(x.get_color()), str(x._dash_pattern), x.get_marker(), str(x.get_mfc()))
+            for x in named
+        ]
+        assert len(set(shown)) == len(shown)
+
+
+def test_a_long_label_of_a_legend_is_wrapped_and_stays_in_the_picture():
+    figure = Figure(figsize=(4.4, 3.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots()
+    axes.plot([0, 1], label="no gradient through the models, and a critic that learns from one")
+    axes.plot([1, 0], label="short")
+    legend_below(axes)
+    figure.canvas.draw()
+    long, short = axes.get_legend().get_texts()
+    assert long.get_text().count("\n") == 1
+    assert short.get_text() == "short"
+    assert axes.get_legend().get_window_extent().x1 <= figure.bbox.x1
