@@ -94,7 +94,6 @@ class Session:
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
-        notes += [self.loop.note] if self.loop.note else []
         self.before_s = meta["wall_s"]
         self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
         self.final_eval = meta.get("final_eval", [None for _ in self.loop.seeds])
@@ -102,7 +101,7 @@ class Session:
         self.unevaluated = meta.get("unevaluated", False)
         self.saved = self.step, self.unevaluated
         self.diverged.resume(meta.get("diverged", []))
-        for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
+        for note in [*notes, *self.loop.notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
             self.progress.note(note)
         self.progress.note(f"continuing from step {self.step:,}")
 

@@ -47,9 +47,9 @@ class HostLoop(Loop):
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     @property
-    def note(self) -> str:
+    def notes(self) -> tuple[str, ...]:
         """What a resumed run says about its environments."""
-        return RESUMED
+        return (RESUMED,)
 
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that learns; that of the other one is kept."""

@@ -42,9 +42,9 @@ class Loop:
     compile_s: float = 0.0  # [s] spent compiling so far
 
     @property
-    def note(self) -> str:
-        """A line for a run that is resumed; empty: it continues bit for bit."""
-        return ""
+    def notes(self) -> tuple[str, ...]:
+        """Lines for a run that is resumed; none: it continues bit for bit."""
+        return ()
 
     @property
     def mesh(self) -> Mesh:
