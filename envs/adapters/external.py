@@ -93,7 +93,9 @@ class External:
 
     def one(self, render_mode: str | None = None) -> gymnasium.Env:
         """A copy of the environment, with flat observations and without a time limit of its own."""
-        given = dict(self.kwargs or {}) | ({"render_mode": render_mode} if render_mode else {})
+        given: dict[str, Any] = dict(self.kwargs or {}) | (
+            {"render_mode": render_mode} if render_mode else {}
+        )
         if not self.make:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             env = gymnasium.make(self.id, **options, **given)
