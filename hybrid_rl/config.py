@@ -98,9 +98,9 @@ def resolved(config: DictConfig) -> DictConfig:
     What the run does not read is left out; all that the user may override is in it.
     """
     values: Any = OmegaConf.to_container(config, resolve=True)
-    if values["task"] == "gymnasium":  # runs of different environments are different tasks
-        env = values["env"]
-        values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(env["make"] or env["id"])) or "_"
+    if values["task"] in ("gymnasium", "playground"):  # their environments are different tasks
+        names = (values["env"].get(key) for key in ("make", "id", "name"))
+        values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
     made: Any = OmegaConf.create(_of(values, reached(plain(config), READ)))
     OmegaConf.set_struct(made, True)
     return made

@@ -57,7 +57,7 @@ class External:
             raise UsageError(
                 f"env.timeout_s={self.timeout_s}: must be above 0, with env.processes=true"
             )
-        object.__setattr__(self, "kwargs", _Items(self.kwargs or {}))
+        object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
         _ = self.known
 
     @property
@@ -226,8 +226,8 @@ class Copies:
             vars(self).pop("_vector").close(**options)
 
 
-class _Items(dict):
-    """A dictionary that is not changed, with a hash."""
+class Items(dict):
+    """Settings of an environment: a dictionary that is not changed, with a hash."""
 
     def __hash__(self) -> int:  # type: ignore[override]
         return hash(repr(sorted(self.items(), key=repr)))
@@ -266,7 +266,7 @@ def _known(env: External) -> Known:
     dt = dt or 1 / (one.metadata.get("render_fps") or np.inf)
     if not dt:
         raise UsageError(f"{env.name}: does not say its time step; give env.dt [s]")
-    limit = None if env.make else gymnasium.spec(env.id).max_episode_steps
+    limit = None if env.make else gymnasium.spec(env.id.rpartition(":")[2]).max_episode_steps
     one.close()
     assert isinstance(space, Box)
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
