@@ -13,6 +13,7 @@ Source: MuJoCo Playground's `mjx_env.MjxEnv`; task=playground needs `pip install
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 import jax
@@ -80,7 +81,7 @@ def _done(state: Any) -> Array:
 @cache
 def _loaded(env: Playground) -> Any:
     try:
-        from mujoco_playground import registry
+        registry = import_module("mujoco_playground").registry
     except ImportError as error:
         line = f"task=playground needs MuJoCo Playground ({error}); pip install hybrid_rl[bench]"
         raise UsageError(line) from error
