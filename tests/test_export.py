@@ -6,6 +6,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 
 import jax
@@ -193,6 +194,51 @@ def test_every_format_acts_as_every_policy(learned, tmp_path, saved, name):
 def test_the_function_of_c_refuses_what_is_not_finite(tmp_path):
     with pytest.raises(subprocess.CalledProcessError, match="exit status 3"):
         in_c(tmp_path, clones()[0].perceptron(clones()[1], SPEC), np.array([[0, np.nan, 0]]))
+
+
+def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(monkeypatch):
+    """Without ROS: the safe action before the first observation and after a stale one."""
+    page = (Path(__file__).parents[1] / "docs" / "howto.md").read_text(encoding="utf-8")
+    code = page.split("## A trained policy on a robot")[1].split("```python\n")[1].split("```")[0]
+    clock, sent = SimpleNamespace(now=0.0), []
+
+    class Time(float):
+        def __sub__(self, other):
+            return SimpleNamespace(nanoseconds=1e9 * (float(self) - float(other)))
+
+    class Node:
+        def __init__(self, name):
+            self.timers, self.topics = [], {}
+
+        def get_clock(self):
+            return SimpleNamespace(now=lambda: Time(1 + clock.now))
+
+        def create_subscription(self, kind, topic, call, depth):
+            self.topics[topic] = call
+
+        def create_publisher(self, kind, topic, depth):
+            return SimpleNamespace(publish=lambda message: sent.append(message.data))
+
+        def create_timer(self, period, call):
+            self.timers.append((period, call))
+
+    ros = SimpleNamespace(init=lambda: None, spin=lambda node: None)
+    message = SimpleNamespace(JointState=object, Float64MultiArray=SimpleNamespace)
+    stubs = {"rclpy": ros, "rclpy.node": SimpleNamespace(Node=Node), "sensor_msgs.msg": message}
+    stubs |= {"std_msgs.msg": message, "policy": SimpleNamespace(act=lambda obs: obs[:6] / 10)}
+    for name, module in stubs.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    names: dict = {}
+    exec(compile(code, "howto.md", "exec"), names)
+    node = names["Policy"]()
+    ((period, decide),), observe = node.timers, node.topics["joint_states"]
+    for age, value in ((0.0, None), (0.02, 1.0), (0.2, None), (0.0, np.nan)):
+        if value is not None:
+            observe(SimpleNamespace(position=[value] * 6, velocity=[0.0] * 6))
+        clock.now += age
+        decide()
+    assert period == names["DT"]
+    np.testing.assert_allclose([row[0] for row in sent], [0, 0.1, 0, 0], atol=1e-6)
 
 
 def test_a_state_of_several_types_comes_back():
