@@ -24,12 +24,13 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.models.world import World
 from hybrid_rl.networks import ACTIVATIONS
-from hybrid_rl.objectives.known_reward import KnownReward
+from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.policies.deterministic import Clones
 from hybrid_rl.policies.linear import Linear
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.policies.unit_gaussian import UnitGaussian
 from hybrid_rl.proposals.policy import PolicyProposal
+from hybrid_rl.rewards.known import KnownReward
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
@@ -38,7 +39,7 @@ SPEC = Pendulum().spec
 KEYS = jax.random.split(jax.random.key(0), 2)
 MODEL = Gaussian(hidden=(8,))
 POLICY = TanhGaussian((8, 4), "silu", normalise=True)
-GOAL = KnownReward(Pendulum())
+GOAL = PredictedReturn(KnownReward(Pendulum()))
 PLANNER = SamplingController(MODEL, GOAL, PolicyProposal(POLICY), horizon=2, samples=4)
 OBS = np.random.default_rng(0).normal(size=(4, 3)).astype(np.float32)
 ELSEWHERE = """

@@ -7,13 +7,14 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, only_line
 
-from hybrid_rl import config, evaluate, render
+from hybrid_rl import config, evaluate, render, types
 from hybrid_rl.cli import command
 from hybrid_rl.envs import check
 from hybrid_rl.envs.mujoco import offscreen
@@ -46,7 +47,7 @@ def conf(tmp_path, monkeypatch):
     for group in ("algo", "target", "task"):
         (tmp_path / "my_conf" / group).mkdir(parents=True)
     yield tmp_path / "my_conf"
-    for name in ("ring", "reward_average", "kettle", "crane", "swing", "reach"):
+    for name in ("ring", "reward_average", "kettle", "crane", "swing", "reach", "upright"):
         if name not in modules:
             sys.modules.pop(name, None)
 
@@ -165,6 +166,20 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
         picture = tmp_path / "crane.gif"
         render.draw_film(trained.episode, film, picture, 64, 48)
         assert picture.stat().st_size > 0
+
+
+def test_a_reward_is_one_file_that_a_planner_sums(conf, tmp_path):
+    """Along the path of a learned model."""
+    code, objective = blocks("A reward of your own", HOWTO)
+    (tmp_path / "upright.py").write_text(code)
+    (conf / "objective").mkdir()
+    (conf / "objective" / "upright.yaml").write_text(objective)
+    command = section("A reward of your own", HOWTO).split("my_conf task=")[1].split("\n")[0]
+    composed = config.load([f"task={command.split()[0]}", *command.split()[1:]], config_dir=conf)
+    agent = config.build(composed).agent
+    objective = agent.controller.objective
+    path = types.Path(jnp.arange(12.0).reshape(4, 3), jnp.zeros((3, 1)))
+    assert objective.reward_to_go(types.Params(), path)[0] == 3 + 6 + 9
 
 
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
