@@ -1,5 +1,6 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
+import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -16,6 +17,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, whole
 from hybrid_rl.composition import CONF, check_task, explain
+from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.contract import check as check_world
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
@@ -96,6 +98,9 @@ def resolved(config: DictConfig) -> DictConfig:
     What the run does not read is left out; all that the user may override is in it.
     """
     values: Any = OmegaConf.to_container(config, resolve=True)
+    if values["task"] in ("gymnasium", "playground"):  # their environments are different tasks
+        names = (values["env"].get(key) for key in ("make", "id", "name"))
+        values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
     made: Any = OmegaConf.create(_of(values, reached(plain(config), READ)))
     OmegaConf.set_struct(made, True)
     return made
@@ -180,7 +185,27 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
                 f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",
             )
     check_fields(parts.episode, Episode, "episode.")
-    return Episode(env, **_instantiate(parts.episode)), notes
+    given = _instantiate(parts.episode)
+    if isinstance(env, External):
+        given |= _on_host(env, given)
+    return Episode(env, **given), notes
+
+
+def _on_host(env: External, given: Mapping[str, Any]) -> dict[str, int]:
+    """The time limit of an environment on the host [decisions], if `given` has none.
+
+    Raises:
+        UsageError: if it has none, or for a disturbance, which only a wrapper can add there.
+    """
+    for key in ("delay", "sensor_noise", "action_noise"):
+        if given.get(key):
+            line = "is for the environments in JAX; put a Gymnasium wrapper around this one"
+            raise UsageError(f"episode.{key}={given[key]}: {line}")
+    if given.get("steps") is not None:
+        return {}
+    if env.known.steps is None:
+        raise UsageError(f"episode.steps: {env.name} has no time limit; give one, in decisions")
+    return {"steps": -(-env.known.steps // given.get("action_repeat", 1))}
 
 
 def expert(config: DictConfig) -> Controller:

@@ -19,8 +19,8 @@ HINTS = {  # kind of error -> what to write instead
 }
 
 GYMNASIUM = (  # what an environment of Gymnasium is here
-    "a gymnasium.Env, and environments are JAX functions; A Gymnasium environment in "
-    "docs/howto.md makes a world of it, by jax.pure_callback"
+    "a gymnasium.Env, and this must be a class with JAX functions; task=gymnasium "
+    "env.make=MODULE:CLASS trains in it as it is"
 )
 
 

@@ -31,11 +31,13 @@ from rich.table import Table
 from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
+from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import memory
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.trained import Trained, chosen
 from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
+from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 
 GROUPS = {name: f"another value of a key of its {name}" for name in ("env", "episode")}
@@ -60,7 +62,10 @@ def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[s
     modes = [trained.controllers[mode]]
     memory.episodes("episodes", episodes, len(trained.seeds), trained.episode, modes)
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
-    one = partial(evaluate_episodes, trained.episode, trained.controllers[mode])
+    if isinstance(trained.episode.env, External):
+        got = HostEvaluator(trained.episode, modes[0], trained.params, keys)(trained.params, keys)
+        return got or {}
+    one = partial(evaluate_episodes, trained.episode, modes[0])
     got = jax.jit(jax.vmap(one))(trained.params, keys)
     return {name: np.asarray(value) for name, value in got.items()}
 

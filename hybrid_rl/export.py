@@ -3,17 +3,19 @@
     python -m hybrid_rl.export run=DIR out=policy.stablehlo
     python -m hybrid_rl.export run=DIR out=policy.npz
     python -m hybrid_rl.export run=DIR mode=full out=planner.stablehlo
-    python -m hybrid_rl.export policy=halfcheetah out=policy.npz
+    python -m hybrid_rl.export policy=halfcheetah out=policy.onnx
+    python -m hybrid_rl.export policy=halfcheetah out=policy.h
 
 A .stablehlo is a program of JAX that runs where jax is installed, f = jax.export.deserialize(bytes)
 with action = f.call(obs) for a policy. A controller that plans is
 
     action, state = f.call(obs, state, key)
 
-state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at each decision. A
-.npz holds the layers of a multilayer perceptron, or of a linear policy; the Python file next to it
-has its function act(obs), in NumPy. Both formats include the parameters and the normalisation of
-the observations [o]. Actions are [m] in [-1, 1], without exploration.
+state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at each decision. The
+other formats hold the layers of a multilayer perceptron, or of a linear policy: a .npz, with a
+Python file next to it that has act(obs) in NumPy; an .onnx, obs [N, o] -> action [N, m]
+(`pip install hybrid_rl[onnx]`); a .h, a function of C99. All include the parameters and the
+normalisation of the observations [o]. Actions are [m] in [-1, 1], without exploration.
 """
 
 if __name__ == "__main__":
@@ -34,51 +36,24 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, whole
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
-from hybrid_rl.data import archive
+from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import chosen
 from hybrid_rl.types import Params, Spec
 
-SUFFIXES = (".stablehlo", ".npz")
+SUFFIXES = (".stablehlo", ".npz", ".onnx", ".h")
+SHOWN = ".stablehlo, .npz, .onnx or .h"
 PLATFORMS = ("cpu", "cuda", "rocm", "tpu")
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     POLICY,
-    Argument("out", "", "the file: .stablehlo or .npz", needed="out=policy.stablehlo or .npz"),
+    Argument("out", "", f"the file: {SHOWN}", needed=f"out=policy with {SHOWN}"),
     Argument("mode", "policy", "policy: alone; full or planner: one that plans (.stablehlo)"),
     Argument("seed", None, "of a learner of the run; empty: the first", whole(least=0)),
     Argument("platforms", ["cpu"], f"of a .stablehlo: {', '.join(PLATFORMS)}", several(*PLATFORMS)),
 )
-NUMPY = {  # activation or squashing -> NumPy's expression of z
-    "relu": "np.maximum({}, 0)",
-    "sin": "np.sin({})",
-    "tanh": "np.tanh({})",
-    "silu": "silu({})",
-    "elu": "elu({})",
-    "clip": "np.clip({}, -1, 1)",
-}
-DEFINED = {  # those that NumPy lacks
-    "silu": "def silu(z):\n    return z / (1 + np.exp(-z))\n\n\n",
-    "elu": "def elu(z):\n    return np.where(z > 0, z, np.expm1(np.minimum(z, 0)))\n\n\n",
-}
-CODE = '''"""The policy of {task}: observation [{o}] -> action [{m}] in [-1, 1], every {dt:g} s."""
-
-from pathlib import Path
-
-import numpy as np
-
-P = dict(np.load(Path(__file__).with_suffix(".npz")))
-
-
-{defined}def act(obs):
-    """The action [{m}] at obs [{o}]; or [N, {m}] at [N, {o}]."""
-    x = (np.asarray(obs, np.float32) - P["mean"]) / P["scale"]
-    for i in range(1, {last}):
-        x = {activation}
-    return {squash}
-'''
 
 
 def program(
@@ -138,47 +113,39 @@ def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
     """
     other = "; choose out=FILE.stablehlo"
     if not isinstance(controller, PolicyController):
-        raise UsageError(f"mode: .npz holds a policy, {type(controller).__name__} plans{other}")
+        raise UsageError(f"mode: the file holds a policy, {type(controller).__name__} plans{other}")
     policy: Any = controller.policy
     if not hasattr(policy, "perceptron"):
         name = type(policy).__name__
-        raise UsageError(f"out: .npz holds a multilayer perceptron, the policy is {name}{other}")
+        raise UsageError(f"out: the file holds a multilayer perceptron, this is {name}{other}")
     if not is_identity(controller.model, params.model, spec.obs):
-        raise UsageError(f"out: .npz holds a policy of observations, this one has features{other}")
+        raise UsageError(f"out: the file holds a policy of observations, not of features{other}")
     return policy.perceptron(params.policy, spec)
-
-
-def save_layers(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
-    """Write OUT.npz and OUT.py, which has a function `act` of NumPy; returns the latter.
-
-    The code holds numbers, and of words only the name of the task, which `archive.write` checked.
-    """
-    numbered = zip(net.weights, net.biases, strict=True)
-    arrays = {"mean": net.mean, "scale": net.scale}
-    for i, (weights, bias) in enumerate(numbered, 1):
-        arrays |= {f"W{i}": weights, f"b{i}": bias}
-    archive.write(out, task, spec, arrays)
-    last, layer = len(net.weights), 'x @ P[f"W{i}"] + P[f"b{i}"]'
-    code = CODE.format(
-        task=repr(task),
-        o=int(spec.obs),
-        m=int(spec.act),
-        dt=float(spec.dt),
-        last=last,
-        defined=DEFINED.get(net.activation, ""),
-        activation=NUMPY[net.activation].format(layer),
-        squash=NUMPY[net.squash].format(f'x @ P["W{last}"] + P["b{last}"]'),
-    )
-    script = out.with_suffix(".py")
-    script.write_text(code, encoding="utf-8")
-    return script
 
 
 def _check_script(out: Path) -> None:
     """Raise UsageError if OUT.py is a file of the user's."""
     script = out.with_suffix(".py")
-    if script.exists() and not script.read_text(encoding="utf-8").startswith(CODE[:16]):
+    if script.exists() and not script.read_text(encoding="utf-8").startswith(SCRIPT[:16]):
         raise UsageError(f"out={out}: {script} would be replaced; choose another name")
+
+
+def _saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
+    """Write the file of a policy; returns a line that says how it is used.
+
+    Raises:
+        UsageError: if the format needs a package that is not installed.
+    """
+    if out.suffix == ".h":
+        return f'{out}: #include "{out.name}"; {save_c(out, task, spec, net)}(obs, action)'
+    if out.suffix == ".npz":
+        script = save_numpy(out, task, spec, net)
+        return f"{out} and {script}: from {script.stem} import act; action = act(obs)"
+    try:
+        save_onnx(out, task, spec, net)
+    except ImportError as error:
+        raise UsageError(f"out={out}: needs onnx; pip install hybrid_rl[onnx]") from error
+    return f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs}})'
 
 
 def main() -> None:
@@ -191,8 +158,8 @@ def main() -> None:
     spec = trained.episode.spec
     if out.suffix == ".npz":
         _check_script(out)
-        script = save_layers(out, trained.task, spec, layers(spec, controller, params))
-        print(f"{out} and {script}: from {script.stem} import act; action = act(obs)")
+    if out.suffix != ".stablehlo":
+        print(_saved(out, trained.task, spec, layers(spec, controller, params)))
         return
     made = program(spec, controller, params, given["platforms"])
     out.write_bytes(made.serialize())

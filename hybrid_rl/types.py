@@ -106,7 +106,10 @@ class Params(NamedTuple):
     reward: PyTree = None  # r(x, u, x')
     policy: PyTree = None  # pi(x)
     critic: PyTree = None  # Q(x, u)
-    belief: PyTree = None  # anything else that a method learns
+    belief: PyTree = None  # about the world: a Gaussian process, support vectors, particles
+    labels: PyTree = None  # of a teacher, so far
+    information: PyTree = None  # of the decisions so far about the parameters of the model
+    scale: PyTree = None  # [] of returns
     decisions: Array | None = None  # [] decisions of the run so far, during training
     world: EnvState | None = None  # the state of the environment, for plans on the world itself
 

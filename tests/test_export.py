@@ -1,10 +1,12 @@
 """Exported controllers act as they did, in a process without hybrid_rl."""
 
 import runpy
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 
 import jax
@@ -17,16 +19,18 @@ from hybrid_rl import export
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
+from hybrid_rl.data import layers
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.models.world import World
 from hybrid_rl.networks import ACTIVATIONS
-from hybrid_rl.objectives.known_reward import KnownReward
+from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.policies.deterministic import Clones
 from hybrid_rl.policies.linear import Linear
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.policies.unit_gaussian import UnitGaussian
 from hybrid_rl.proposals.policy import PolicyProposal
+from hybrid_rl.rewards.known import KnownReward
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
@@ -35,7 +39,7 @@ SPEC = Pendulum().spec
 KEYS = jax.random.split(jax.random.key(0), 2)
 MODEL = Gaussian(hidden=(8,))
 POLICY = TanhGaussian((8, 4), "silu", normalise=True)
-GOAL = KnownReward(Pendulum())
+GOAL = PredictedReturn(KnownReward(Pendulum()))
 PLANNER = SamplingController(MODEL, GOAL, PolicyProposal(POLICY), horizon=2, samples=4)
 OBS = np.random.default_rng(0).normal(size=(4, 3)).astype(np.float32)
 ELSEWHERE = """
@@ -118,37 +122,124 @@ def test_files_act_as_the_run_does_without_hybrid_rl(trained, tmp_path, capsys):
     assert np.ptp(want) > 0.01
 
 
-def in_numpy(folder, policy, params):
-    """The actions at OBS of the file of a policy."""
-    export.save_layers(folder / "saved.npz", "pendulum", SPEC, policy.perceptron(params, SPEC))
-    return runpy.run_path(str(folder / "saved.py"))["act"](OBS)
+MAIN = """#include <stdio.h>
+#include "policy.h"
+int main(void) {
+    float x[POLICY_PENDULUM_OBS], u[POLICY_PENDULUM_ACT];
+    int i;
+    while (fread(x, sizeof x, 1, stdin) == 1) {
+        if (policy_pendulum_act(x, u)) return 3;
+        for (i = 0; i < POLICY_PENDULUM_ACT; i++) printf("%.9g ", u[i]);
+    }
+    return 0;
+}
+"""
+FLAGS = "-std=c99 -O1 -Wall -Wextra -Werror -pedantic main.c -lm -o main"
 
 
-@pytest.mark.parametrize("activation", ACTIVATIONS)
-def test_the_function_of_numpy_has_every_activation(learned, tmp_path, activation):
-    policy, params = replace(POLICY, activation=activation), jax.tree.map(first, learned.policy)
-    want = policy.mean(params, jnp.asarray(OBS))
-    np.testing.assert_allclose(in_numpy(tmp_path, policy, params), want, atol=1e-5)
+def in_numpy(folder, net, obs):
+    """The actions at obs [N, o] of the file of a policy."""
+    layers.save_numpy(folder / "saved.npz", "pendulum", SPEC, net)
+    return runpy.run_path(str(folder / "saved.py"))["act"](obs)
 
 
-def test_the_first_of_several_clones_is_written(tmp_path):
-    """Their outputs are clipped."""
-    clones = Clones((6,), squash="clip", members=2)
-    params = jax.tree.map(lambda leaf: 9 * leaf, clones.init(KEYS[0], SPEC))
-    want = clones.mean(params, jnp.asarray(OBS))
-    assert (np.abs(want) == 1).any()
-    np.testing.assert_allclose(in_numpy(tmp_path, clones, params), want, atol=1e-5)
+def in_onnx(folder, net, obs):
+    onnxruntime = pytest.importorskip("onnxruntime")
+    layers.save_onnx(folder / "policy.onnx", "pendulum", SPEC, net)
+    (actions,) = onnxruntime.InferenceSession(folder / "policy.onnx").run(None, {"obs": obs})
+    return actions
 
 
-def test_a_linear_policy_is_one_layer(tmp_path):
+def in_c(folder, net, obs):
+    if shutil.which("gcc") is None:
+        pytest.skip("no gcc")
+    layers.save_c(folder / "policy.h", "pendulum", SPEC, net)
+    (folder / "main.c").write_text(MAIN)
+    subprocess.run(["gcc", *FLAGS.split()], cwd=folder, check=True)
+    given = obs.astype(np.float32).tobytes()
+    out = subprocess.run([folder / "main"], input=given, check=True, capture_output=True).stdout
+    return np.array(out.split(), np.float32).reshape(len(obs), SPEC.act)
+
+
+def linear():
+    """A linear policy, whose action is clipped."""
     rng = np.random.default_rng(1)
     params = {key: jnp.zeros((SPEC.act, SPEC.n)) for key in ("gain", "inverse")}
     params |= {"gain": jnp.asarray(rng.normal(size=(SPEC.act, SPEC.n)), jnp.float32)}
     params |= {"goal": jnp.arange(SPEC.n, dtype=jnp.float32) / 3, "hold": jnp.full(SPEC.act, 0.2)}
-    want = np.stack([Linear().mean(params, x) for x in jnp.asarray(OBS)])
-    assert (np.abs(want) == 1).any()
-    assert (np.abs(want) < 1).any()
-    np.testing.assert_allclose(in_numpy(tmp_path, Linear(), params), want, atol=1e-5)
+    return Linear(), params
+
+
+def clones():
+    """The first of several clones, whose outputs are clipped."""
+    policy = Clones((6,), squash="clip", members=2)
+    return policy, jax.tree.map(lambda leaf: 9 * leaf, policy.init(KEYS[0], SPEC))
+
+
+@pytest.mark.parametrize("saved", [in_numpy, in_onnx, in_c])
+@pytest.mark.parametrize("name", [*ACTIVATIONS, "linear", "clones"])
+def test_every_format_acts_as_every_policy(learned, tmp_path, saved, name):
+    """At observations of 2 and of 20 standard deviations; C sums in double."""
+    if name in ACTIVATIONS:
+        policy, params = replace(POLICY, activation=name), jax.tree.map(first, learned.policy)
+    else:
+        policy, params = {"linear": linear, "clones": clones}[name]()
+    obs = np.random.default_rng(0).normal(size=(2000, 3)).astype(np.float32)
+    obs *= np.repeat([2, 20], 1000)[:, None]
+    want = jax.vmap(lambda x: policy.mean(params, x))(jnp.asarray(obs))
+    got = saved(tmp_path, policy.perceptron(params, SPEC), obs)
+    np.testing.assert_allclose(got, want, atol=2e-5 if saved is in_c else 1e-5)
+    assert np.ptp(want) > 0.1
+
+
+def test_the_function_of_c_refuses_what_is_not_finite(tmp_path):
+    with pytest.raises(subprocess.CalledProcessError, match="exit status 3"):
+        in_c(tmp_path, clones()[0].perceptron(clones()[1], SPEC), np.array([[0, np.nan, 0]]))
+
+
+def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(monkeypatch):
+    """Without ROS: the safe action before the first observation and after a stale one."""
+    page = (Path(__file__).parents[1] / "docs" / "howto.md").read_text(encoding="utf-8")
+    code = page.split("## A trained policy on a robot")[1].split("```python\n")[1].split("```")[0]
+    clock, sent = SimpleNamespace(now=0.0), []
+
+    class Time(float):
+        def __sub__(self, other):
+            return SimpleNamespace(nanoseconds=1e9 * (float(self) - float(other)))
+
+    class Node:
+        def __init__(self, name):
+            self.timers, self.topics = [], {}
+
+        def get_clock(self):
+            return SimpleNamespace(now=lambda: Time(1 + clock.now))
+
+        def create_subscription(self, kind, topic, call, depth):
+            self.topics[topic] = call
+
+        def create_publisher(self, kind, topic, depth):
+            return SimpleNamespace(publish=lambda message: sent.append(message.data))
+
+        def create_timer(self, period, call):
+            self.timers.append((period, call))
+
+    ros = SimpleNamespace(init=lambda: None, spin=lambda node: None)
+    message = SimpleNamespace(JointState=object, Float64MultiArray=SimpleNamespace)
+    stubs = {"rclpy": ros, "rclpy.node": SimpleNamespace(Node=Node), "sensor_msgs.msg": message}
+    stubs |= {"std_msgs.msg": message, "policy": SimpleNamespace(act=lambda obs: obs[:6] / 10)}
+    for name, module in stubs.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    names: dict = {}
+    exec(compile(code, "howto.md", "exec"), names)
+    node = names["Policy"]()
+    ((period, decide),), observe = node.timers, node.topics["joint_states"]
+    for age, value in ((0.0, None), (0.02, 1.0), (0.2, None), (0.0, np.nan)):
+        if value is not None:
+            observe(SimpleNamespace(position=[value] * 6, velocity=[0.0] * 6))
+        clock.now += age
+        decide()
+    assert period == names["DT"]
+    np.testing.assert_allclose([row[0] for row in sent], [0, 0.1, 0, 0], atol=1e-6)
 
 
 def test_a_state_of_several_types_comes_back():
@@ -165,11 +256,17 @@ def test_a_state_of_several_types_comes_back():
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ("out=a.onnx", "out=a.onnx: must end in .stablehlo, .npz"),
-        ("out=a", "out=a: must end in .stablehlo, .npz"),
-        ("mode=full out=a.npz", "mode: .npz holds a policy, SamplingController plans; choose out="),
-        ("mode=unit out=a.npz", "out: .npz holds a multilayer perceptron, the policy is UnitGauss"),
-        ("mode=lifted out=a.npz", "out: .npz holds a policy of observations, this one has featur"),
+        ("out=a.pt", "out=a.pt: must end in .stablehlo, .npz, .onnx, .h"),
+        ("out=a", "out=a: must end in .stablehlo, .npz, .onnx, .h"),
+        ("mode=full out=a.npz", "mode: the file holds a policy, SamplingController plans; choose"),
+        (
+            "mode=unit out=a.npz",
+            "out: the file holds a multilayer perceptron, this is UnitGauss",
+        ),
+        (
+            "mode=lifted out=a.npz",
+            "out: the file holds a policy of observations, not of features; ",
+        ),
         (
             "mode=world out=a.stablehlo",
             "mode=world: plans from the state of the world (model=world)",
@@ -178,7 +275,7 @@ def test_a_state_of_several_types_comes_back():
         ("seed=5 out=a.npz", "seed=5: the run has 3, 4"),
         ("platforms=gpu out=a.stablehlo", "platforms=gpu: unknown; choose of cpu, cuda"),
         ("out=mine.npz", "out=mine.npz: mine.py would be replaced; choose another name"),
-        ("", "out: not given; give out=policy.stablehlo or .npz"),
+        ("", "out: not given; give out=policy with .stablehlo, .npz, .onnx or .h"),
     ],
 )
 def test_what_cannot_be_exported_is_one_line(trained, tmp_path, monkeypatch, capfd, given, line):

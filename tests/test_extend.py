@@ -7,15 +7,14 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-import gymnasium
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from gymnasium.utils.env_checker import check_env
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, only_line
 
-from hybrid_rl import config, evaluate, render
+from hybrid_rl import config, evaluate, render, types
 from hybrid_rl.cli import command
 from hybrid_rl.envs import check
 from hybrid_rl.envs.mujoco import offscreen
@@ -48,7 +47,7 @@ def conf(tmp_path, monkeypatch):
     for group in ("algo", "target", "task"):
         (tmp_path / "my_conf" / group).mkdir(parents=True)
     yield tmp_path / "my_conf"
-    for name in ("ring", "reward_average", "kettle", "crane", "swing"):
+    for name in ("ring", "reward_average", "kettle", "crane", "swing", "reach", "upright"):
         if name not in modules:
             sys.modules.pop(name, None)
 
@@ -169,25 +168,63 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
         assert picture.stat().st_size > 0
 
 
-def test_a_gymnasium_environment_is_a_world_by_a_callback(conf, tmp_path):
-    """The recipe of the how-tos passes the check, and steps as Gymnasium does."""
+def test_a_reward_is_one_file_that_a_planner_sums(conf, tmp_path):
+    """Along the path of a learned model."""
+    code, objective = blocks("A reward of your own", HOWTO)
+    (tmp_path / "upright.py").write_text(code)
+    (conf / "objective").mkdir()
+    (conf / "objective" / "upright.yaml").write_text(objective)
+    command = section("A reward of your own", HOWTO).split("my_conf task=")[1].split("\n")[0]
+    composed = config.load([f"task={command.split()[0]}", *command.split()[1:]], config_dir=conf)
+    agent = config.build(composed).agent
+    objective = agent.controller.objective
+    path = types.Path(jnp.arange(12.0).reshape(4, 3), jnp.zeros((3, 1)))
+    assert objective.reward_to_go(types.Params(), path)[0] == 3 + 6 + 9
+
+
+@pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")
+def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
+    """The class of the how-tos passes Gymnasium's own check, and trains."""
+    monkeypatch.chdir(tmp_path)
     (code,) = blocks("A Gymnasium environment", HOWTO)
-    (tmp_path / "swing.py").write_text(code)
-    world = import_module("swing").Swing()
-    assert check(world) == ()
-    state, theirs = world.reset(jax.random.key(1)), gymnasium.make("Pendulum-v1").unwrapped
-    theirs.reset(seed=0)
-    theirs.state = np.asarray(state.data, float)
-    for action in (0.5, -1.0, 0.25):
-        state = world.step(state, jnp.array([action]))
-        obs, reward, *_ = theirs.step(np.array([2 * action]))
-        np.testing.assert_allclose(state.obs, obs, rtol=0, atol=1e-5)
-        np.testing.assert_allclose(state.reward, reward, rtol=1e-5)
+    (tmp_path / "reach.py").write_text(code)
+    check_env(import_module("reach").Reach(), skip_render_check=True)
+    run = tmp_path / "run"
+    composed = train(
+        conf, run, "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
+    )
+    assert (composed.task, composed.episode.steps) == ("reach_Reach", 4)
+    assert evaluate.evaluate(evaluate.load(run), episodes=2)["return"].shape == (1, 2)
+
+
+CALLBACK = """from dataclasses import dataclass
+
+import jax
+import jax.numpy as jnp
+from hybrid_rl.types import EnvState, Spec
+
+def advance(x, action):
+    return x["goal"]
+
+@dataclass(frozen=True)
+class Swing:
+    spec = Spec(obs=2, act=1, dt=0.05)
+
+    def reset(self, key):
+        return self._state(jax.random.normal(key, (2,)))
+
+    def step(self, state, action):
+        shape = jax.ShapeDtypeStruct((2,), "float32")
+        return self._state(jax.pure_callback(advance, shape, state.data, action))
+
+    def _state(self, x):
+        no = jnp.zeros((), bool)
+        return EnvState(x, x, x[0], terminated=no, truncated=no)
+"""
 
 
 def test_an_error_in_a_callback_is_a_line_of_its_file(conf, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (code,) = blocks("A Gymnasium environment", HOWTO)
-    (tmp_path / "swing.py").write_text(code.replace("np.asarray(x, float)", "{}['goal']"))
-    with pytest.raises(UsageError, match=r"^swing\.py:15: Swing\.step: KeyError: 'goal'$"):
+    (tmp_path / "swing.py").write_text(CALLBACK)
+    with pytest.raises(UsageError, match=r"^swing\.py:8: Swing\.step: "):
         check(import_module("swing").Swing())

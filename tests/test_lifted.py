@@ -25,11 +25,9 @@ from hybrid_rl.learners.ddpg import DDPG
 from hybrid_rl.learners.mbpo import MBPO
 from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.learners.sac import SAC
-from hybrid_rl.models.reward import RewardNetwork
 from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
 from hybrid_rl.objectives.kl_ergodic import KLErgodic
 from hybrid_rl.objectives.predicted_return import PredictedReturn
-from hybrid_rl.objectives.quadratic import Quadratic
 from hybrid_rl.objectives.target_density import TargetDensity
 from hybrid_rl.objectives.utility_ergodic import UtilityErgodic
 from hybrid_rl.objectives.weighted_sum import WeightedSum
@@ -38,6 +36,8 @@ from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
+from hybrid_rl.rewards.network import RewardNetwork
+from hybrid_rl.rewards.quadratic import QuadraticReward
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -128,7 +128,9 @@ CONTROLLERS = {
         horizon=2,
         samples=4,
     ),
-    "quadratic": SamplingController(MODEL, Quadratic(WORLD), NoiseProposal(), horizon=2, samples=3),
+    "quadratic": SamplingController(
+        MODEL, PredictedReturn(QuadraticReward(WORLD)), NoiseProposal(), horizon=2, samples=3
+    ),
     "adjoint": adjoint(RETURN),
     "weighted_sum": adjoint(
         WeightedSum({"a": RETURN, "b": KLErgodic(TARGET, BOX, 5)}, {"a": 1.0, "b": 0.1})

@@ -1,7 +1,6 @@
-"""A teacher's labels, a ring of observations and actions, and what is known besides them.
+"""A teacher's labels: a ring of observations and actions, and what is summed over them.
 
-`Belief` is what a learner that asks a teacher keeps in `Params.belief`, for the targets that
-choose its questions.
+`Queried` is what a learner that asks a teacher keeps in `Params.labels`.
 """
 
 from typing import Any
@@ -24,11 +23,10 @@ class Labels:
 
 
 @struct.dataclass
-class Belief:
-    """What is known about the teacher and about the clone's ways."""
+class Queried:
+    """What targets that choose queries consult."""
 
     labels: Labels
-    visited: Array  # [R, o] the states of the last R decisions, the first one repeated
     scale: Array  # [o] standard deviations of the first demonstration; 1 without one
     evidence: Any  # sum over the labels of what the target asked for; None: nothing
 

@@ -95,6 +95,16 @@ class Replay:
         slot = (memory.count - 1) % memory.rows.shape[0]
         return unpack(jax.lax.dynamic_index_in_dim(memory.rows, slot, keepdims=False), spec)
 
+    def interrupted(self, memory: Memory, spec: Spec) -> Memory:
+        """The memory with its newest decisions marked as truncated, unless they are terminal.
+
+        What follows them is another episode.
+        """
+        slot, flag = (memory.count - 1) % memory.rows.shape[0], spec.obs + spec.act + 1
+        ended = memory.rows[slot, :, flag]
+        cut = jnp.where(memory.count > 0, 1 - ended, 0.0)
+        return memory.replace(rows=memory.rows.at[slot, :, flag + 1].set(cut))
+
     def recent(self, memory: Memory, spec: Spec, ago: int) -> Transition | None:
         """The decisions [E] made `ago` rounds before the newest; None if they are not kept."""
         length, count = memory.rows.shape[0], int(memory.count)

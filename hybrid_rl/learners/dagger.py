@@ -1,4 +1,4 @@
-"""Imitate a teacher that is asked what it would do at chosen states: DAgger, DAIL and their kin.
+"""Interactive imitation learning: query an expert at chosen states (DAgger, DAIL and variants).
 
 Each decision, at the robot's state x:
 
@@ -38,7 +38,6 @@ class DAggerState:
     policy: Any
     optimiser: Any
     labels: labels.Labels
-    visited: Array  # [R, o]
     evidence: Any  # mean over the labels of what the target sums; None: nothing
     seen: statistics.Running  # of the observations of the first demonstration
     rest: Any  # the teacher's state before an answer
@@ -79,17 +78,16 @@ class DAgger:
     batch_size: int = 64
     edge: float = 0.99  # bound of the imitated actions
     capacity: int = 20_000  # labels that are kept
-    recent: int = 0  # R, states that targets consult
 
     data: ClassVar[str] = "latest"
-    owns: ClassVar[tuple[str, ...]] = ("policy", "belief")
+    owns: ClassVar[tuple[str, ...]] = ("policy", "labels")
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
         """Check the fields."""
         teaching.require(self.teacher)
         positive = ("candidates", "length", "spacing", "batch_size", "capacity")
-        for name in (*positive, "spread", "first", "steps", "first_steps", "recent"):
+        for name in (*positive, "spread", "first", "steps", "first_steps"):
             least = 1 if name in positive else 0
             if getattr(self, name) < least:
                 self._refuse(name, f"must be {least} or more")
@@ -116,8 +114,6 @@ class DAgger:
             self._refuse("length", "needs a model of the world, and first=0")
         if self.spread > 0 and self.normalise and not self.first:
             self._refuse("normalise", "needs first above 0, the decisions whose deviations it uses")
-        if getattr(self.target, "needs_recent", False) and not self.recent:
-            self._refuse("recent", "this target needs recent states, such as 200")
         if self.capacity % self.length:
             self._refuse("capacity", f"must be a multiple of length={self.length}")
 
@@ -137,7 +133,6 @@ class DAgger:
             policy,
             optax.adam(self.learning_rate).init(policy),
             labels.empty(self.capacity, spec.obs, spec.act),
-            jnp.zeros((self.recent, spec.obs)),
             self._no_evidence(policy, spec),
             statistics.init(spec.obs),
             rest,
@@ -157,11 +152,11 @@ class DAgger:
         return jax.tree.map(lambda each: jnp.zeros(each.shape, each.dtype), shapes)
 
     def params(self, state: DAggerState) -> dict[str, Any]:
-        """The policy, and as belief what targets consult (`core.labels.Belief`)."""
+        """The policy, and what targets consult about the labels."""
         evidence = jax.tree.map(lambda mean: state.labels.count * mean, state.evidence)
         return {
             "policy": state.policy,
-            "belief": labels.Belief(state.labels, state.visited, state.seen.scale, evidence),
+            "labels": labels.Queried(state.labels, state.seen.scale, evidence),
         }
 
     def update(
@@ -172,7 +167,7 @@ class DAgger:
         keys, before = jax.random.split(asking, len(batch.obs)), state.decisions
 
         def ask(state: DAggerState, at: tuple[Array, Array]) -> tuple[DAggerState, None]:
-            return self._ask(self._visit(state, at[0]), params, *at), None
+            return self._ask(self._see(state, at[0]), params, *at), None
 
         state = jax.lax.scan(ask, state, (batch.obs, keys))[0]
         steps = jnp.where(before < self.first, self.first_steps, self.steps * len(batch.obs))
@@ -185,19 +180,15 @@ class DAgger:
         }
         return state, metrics
 
-    def _visit(self, state: DAggerState, obs: Array) -> DAggerState:
-        """The state with `obs` [o] among the recent ones and, at first, in the statistics."""
-        visited = state.visited
-        if self.recent:
-            slot = jnp.where(state.decisions == 0, jnp.arange(self.recent), state.decisions)
-            visited = visited.at[slot % self.recent].set(obs)
+    def _see(self, state: DAggerState, obs: Array) -> DAggerState:
+        """The state with `obs` [o] in the statistics, during the first demonstration."""
         if not self.first:
-            return state.replace(visited=visited)
+            return state
         leading = state.decisions < self.first
         new = statistics.update(state.seen, obs[None]), self.policy.observe(state.policy, obs[None])
         old = state.seen, state.policy
         seen, policy = jax.tree.map(lambda new, old: jnp.where(leading, new, old), new, old)
-        return state.replace(visited=visited, seen=seen, policy=policy)
+        return state.replace(seen=seen, policy=policy)
 
     def _ask(self, state: DAggerState, params: Params, obs: Array, key: Array) -> DAggerState:
         """The state after one decision at obs [o], with the answer if a query was due."""

@@ -45,7 +45,7 @@ class FlashSACState:
 class FlashSAC:
     """Soft actor-critic on a batch normalised policy and a categorical critic.
 
-    Its rewards are divided by `params.belief`, the scale of returns.
+    Its rewards are divided by `params.scale`, the scale of returns.
 
     Raises:
         ValueError: for rates, a discount, tau or counts out of range.
@@ -99,7 +99,7 @@ class FlashSAC:
     ) -> tuple[FlashSACState, dict[str, Array]]:
         """A step of policy and temperature, then `batches` of the critic. The key is consumed."""
         acting, *following = jax.random.split(key, 1 + self.batches)
-        batch = batch._replace(reward=batch.reward / params.belief, next_action=None)
+        batch = batch._replace(reward=batch.reward / params.scale, next_action=None)
         size = len(batch.reward) // self.batches
         stacked = jax.tree.map(lambda v: v.reshape(self.batches, size, *v.shape[1:]), batch)
         state, metrics = self._improved(state, jax.tree.map(lambda v: v[0], stacked), acting)

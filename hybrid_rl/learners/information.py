@@ -52,7 +52,7 @@ class InformationLearner:
     updates: float = 1  # batches per decision
 
     data: ClassVar[str] = "uniform"
-    owns: ClassVar[tuple[str, ...]] = ("belief",)
+    owns: ClassVar[tuple[str, ...]] = ("information",)
     batches: ClassVar[int] = 1
     early: ClassVar[bool] = True
 
@@ -74,7 +74,7 @@ class InformationLearner:
 
     def params(self, state: InformationState) -> dict[str, Any]:
         """The information, as the belief."""
-        return {"belief": state}
+        return {"information": state}
 
     def update(
         self, state: InformationState, params: Params, batch: Batch, key: Array

@@ -55,7 +55,7 @@ class Lookahead:
         along = for_policy[:-1], for_model, jax.random.split(choosing, length)
         last, (xs, us, log_probs, after) = jax.lax.scan(forward, x, along, unroll=length)
         outcome = jax.vmap(jax.vmap(self.reward.outcome, (None, 0, 0, 0)), (None, 0, 0, 0))
-        rewards, ends = outcome(params.reward, xs, us, after)  # of all decisions at once
+        rewards, ends = outcome(params, xs, us, after)  # of all decisions at once
         u, log_prob = self.policy.sample(params.policy, last, for_policy[-1])
         return Imagined(
             x=jnp.concatenate([xs, last[None]]),

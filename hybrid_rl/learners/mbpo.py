@@ -209,5 +209,5 @@ class MBPO:
         u = jax.vmap(self.policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
         after = self.model.draw(params.model, x, u, for_model, key)
         outcome = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
-        reward, end = outcome(params.reward, x, u, after)
+        reward, end = outcome(params, x, u, after)
         return Batch(x, u, reward, jax.nn.sigmoid(end), jnp.zeros(len(x)), after)

@@ -25,7 +25,7 @@ from jax import Array
 from hybrid_rl.core import held_out
 from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.protocols import Reward, Trainable
+from hybrid_rl.protocols import LearnedReward, Trainable
 from hybrid_rl.types import Batch, Params, Spec
 
 RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
@@ -59,7 +59,7 @@ class ModelLearner:
     """
 
     model: Trainable
-    reward: Reward | None = None
+    reward: LearnedReward | None = None
     learning_rate: float = 3e-3
     batch_size: int = 128
     updates: float = 2  # per decision
@@ -196,7 +196,9 @@ class ModelLearner:
         target = first.reward
         if self.reward_discount > 0:
             outcome = jax.vmap(part.outcome, (None, 0, 0, 0))
-            later = outcome(reward, first.next_obs, first.next_action, first.next_obs)[0]
+            later = outcome(
+                Params(reward=reward), first.next_obs, first.next_action, first.next_obs
+            )[0]
             goes_on = self.reward_discount * (1 - first.terminated) * (1 - first.truncated)
             target = target + goes_on * later
         reward = part.observe_targets(reward, target)

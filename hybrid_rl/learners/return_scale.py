@@ -3,7 +3,7 @@
     G' = r + gamma G,    scale = max(std of all G', max |G'| / bound)
 
 G is the discounted sum of past rewards in each environment and starts at 0 in each episode.
-`params.belief` is the scale [], 1 before the first reward. Source: SimbaV2 (Lee et al. 2025) and
+`params.scale` is the scale [], 1 before the first reward. Source: SimbaV2 (Lee et al. 2025) and
 FlashSAC (Kim et al. 2026).
 """
 
@@ -40,7 +40,7 @@ class ReturnScale:
     num_envs: int = 1
 
     data: ClassVar[str] = "latest"
-    owns: ClassVar[tuple[str, ...]] = ("belief",)
+    owns: ClassVar[tuple[str, ...]] = ("scale",)
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
@@ -59,7 +59,7 @@ class ReturnScale:
     def params(self, state: ScaleState) -> dict[str, Any]:
         """The scale []."""
         scale = jnp.maximum(state.stats.std[0], state.largest / self.bound)
-        return {"belief": jnp.where((state.largest > 0) & (scale > 0), scale, 1.0)}
+        return {"scale": jnp.where((state.largest > 0) & (scale > 0), scale, 1.0)}
 
     def update(
         self, state: ScaleState, params: Params, batch: Batch, key: Array
@@ -72,4 +72,4 @@ class ReturnScale:
             statistics.update(state.stats, now[:, None], rate=0.0),
             jnp.maximum(state.largest, jnp.abs(now).max()),
         )
-        return state, {"return_scale/scale": self.params(state)["belief"]}
+        return state, {"return_scale/scale": self.params(state)["scale"]}

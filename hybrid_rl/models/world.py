@@ -1,4 +1,4 @@
-"""x' = f(x, u) and r(x, u, x') are the environment's own step: nothing is learned.
+"""x' = f(x, u) is the environment's own step: nothing is learned.
 
 The planning state is the whole EnvState, which the planner gets in `params.world`: positions,
 velocities, filters, reward. It stays the same once an episode is over. Randomness that an
@@ -14,18 +14,6 @@ from jax import Array
 
 from hybrid_rl.protocols import Simulator
 from hybrid_rl.types import EnvState, Params, Spec
-
-
-@dataclass(frozen=True)
-class WorldReward:
-    """The reward that the world pays, for paths of its own states; nothing after an episode."""
-
-    ends: bool = True  # also where episodes end
-
-    def outcome(self, params: Any, x: EnvState, u: Array, after: EnvState) -> tuple[Array, Array]:
-        """The reward [] of u [m] at x, and the logit [] of the episode ending there."""
-        reward = jnp.where(x.done, 0.0, after.reward)
-        return reward, jnp.where(self.ends & after.terminated, jnp.inf, -jnp.inf)
 
 
 @dataclass(frozen=True)

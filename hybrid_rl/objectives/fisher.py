@@ -68,8 +68,8 @@ class FisherInformation:
         flat, unravel = ravel_pytree(theta)
         sigma = fisher.noise_of(self.model, params.model, x, self.sigma)
         prior = jnp.full_like(flat, self.floor)
-        if self.past and params.belief is not None:
-            prior += params.belief.total
+        if self.past and params.information is not None:
+            prior += params.information.total
 
         def step(theta: object, x: Array, u: Array) -> Array:
             return self.model.step(fisher.with_weights(params.model, theta), x, u)

@@ -1,4 +1,4 @@
-"""The return of a learned reward, or of the world's own, along a path, discounted.
+"""The return of a reward along a path, discounted; the reward is learned or known.
 
     J(path) = sum_t c_t r(x_t, u_t, x_{t+1}) [+ c_T min_i Q_i(x_T, pi(x_T))]
 
@@ -58,7 +58,7 @@ class PredictedReturn:
         each = jax.vmap(self.reward.outcome, (None, 0, 0, 0))
         before = jax.tree.map(lambda leaf: leaf[:-1], path.x)
         after = jax.tree.map(lambda leaf: leaf[1:], path.x)
-        return each(params.reward, before, path.u, after)
+        return each(params, before, path.u, after)
 
     def reward_to_go(self, params: Params, path: Path) -> Array:
         """S [T+1] along path, x [T+1, n] and u [T, m]; S[T] is the value of the last state."""

@@ -48,7 +48,7 @@ class PathTarget(Target, Protocol):
 
 
 class LabelledTarget(Target, Protocol):
-    """A target that depends on a teacher's labels so far, in `params.belief.evidence`."""
+    """A target that depends on a teacher's labels so far, in `params.labels.evidence`."""
 
     def evidence(self, params: Params, x: Array) -> PyTree:
         """What is summed over the labelled states x [n]; None: nothing."""

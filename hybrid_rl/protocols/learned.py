@@ -199,7 +199,17 @@ class CategoricalCritic(Critic, Protocol):
 
 
 class Reward(Protocol):
-    """r(x, u, x'), learned; its parameters hold "weights" as a Trainable's do."""
+    """r(x, u, x'), learned or known."""
+
+    def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
+        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
+
+        after: [n] the next planning state, real or imagined.
+        """
+
+
+class LearnedReward(Reward, Protocol):
+    """A reward that is learned; its parameters hold "weights" as a Trainable's do."""
 
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial parameters, for planning states of size spec.n."""
@@ -209,12 +219,6 @@ class Reward(Protocol):
 
     def observe_targets(self, params: PyTree, target: Array) -> PyTree:
         """Parameters with statistics updated by targets [B] of the reward."""
-
-    def outcome(self, params: PyTree, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
-        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
-
-        after: [n] the next planning state, real or imagined.
-        """
 
     def loss(
         self, params: PyTree, x: Array, u: Array, after: Array, target: Array, ended: Array

@@ -11,6 +11,7 @@ from jax import Array
 
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
+from hybrid_rl.training.host_loop import HostEvaluator, HostLoop
 from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Params
@@ -31,7 +32,9 @@ class Evaluations:
         """Compile all of them; params: [S, ...]."""
         self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
         self._evaluators = {
-            mode: Evaluator(loop, controller, params, self.keys)
+            mode: HostEvaluator(loop.agent.episode, controller, params, self.keys)
+            if isinstance(loop, HostLoop)
+            else Evaluator(loop, controller, params, self.keys)
             for mode, controller in controllers.items()
         }
 

@@ -101,7 +101,7 @@ class Session:
         self.unevaluated = meta.get("unevaluated", False)
         self.saved = self.step, self.unevaluated
         self.diverged.resume(meta.get("diverged", []))
-        for note in [*notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
+        for note in [*notes, *self.loop.notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
             self.progress.note(note)
         self.progress.note(f"continuing from step {self.step:,}")
 

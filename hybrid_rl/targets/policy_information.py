@@ -69,11 +69,11 @@ class PolicyInformation:
         return fisher.diagonal(F, jnp.full(len(F), self.sigma))
 
     def evidence(self, params: Params, x: Array) -> Array | None:
-        """What params.belief sums over the labels: I(x) [P] for `gain`, else nothing."""
+        """What params.labels sums over the labels: I(x) [P] for `gain`, else nothing."""
         return self.information(params, x) if self.criterion == "gain" else None
 
     def log_density(self, params: Params, s: Array) -> Array:
-        """log p [] at s [v], up to a constant; `gain` needs params.belief."""
+        """log p [] at s [v], up to a constant; `gain` needs params.labels."""
         x = s
         if self.domain is not None:
             assert self.world is not None
@@ -83,5 +83,5 @@ class PolicyInformation:
             return jnp.log(jnp.sum(here))
         if self.criterion == "inverse":
             return -jnp.log(jnp.sum(1 / (here + self.floor)))
-        before = params.belief.evidence + self.floor
+        before = params.labels.evidence + self.floor
         return jnp.log(jnp.sum(jnp.log1p(here / before)))

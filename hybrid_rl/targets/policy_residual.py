@@ -36,9 +36,9 @@ class PolicyResidual:
         above_zero(self, "target", "bandwidth", "floor")
 
     def log_density(self, params: Params, s: Array) -> Array:
-        """log p [] at the planning state s [n], up to a constant; needs params.belief."""
-        known = params.belief.labels
-        away = (known.obs - s[None]) / (self.bandwidth * params.belief.scale)[None]
+        """log p [] at the planning state s [n], up to a constant; needs params.labels."""
+        known = params.labels.labels
+        away = (known.obs - s[None]) / (self.bandwidth * params.labels.scale)[None]
         filled = jnp.arange(len(away)) < known.count
         log_w = jnp.where(filled, -0.5 * jnp.sum(away**2, 1), -jnp.inf)
         u = jax.nn.softmax(jnp.where(known.count > 0, log_w, 0.0)) @ known.action

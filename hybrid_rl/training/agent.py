@@ -117,7 +117,7 @@ class Agent:
             name: self._first(learner, k)
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)
         }
-        state = AgentState(env, self._initial_control(), memory, learners, run)
+        state = AgentState(env, self.first_control(), memory, learners, run)
         return self._pretrained(state, pretraining) if self.pretrain else state
 
     def params(self, state: AgentState) -> Params:
@@ -220,7 +220,7 @@ class Agent:
             after = jax.vmap(self.episode.auto_reset)(now, keys.resetting)
         return state.replace(
             env=after,
-            control=where(now.done, self._initial_control(), state.control),
+            control=where(now.done, self.first_control(), state.control),
             memory=self.replay.add(state.memory, new),
         )
 
@@ -257,7 +257,7 @@ class Agent:
             metrics |= masked_mean(latest, due)
         return state.replace(learners=learned, key=keys.next), metrics
 
-    def _initial_control(self) -> Any:
+    def first_control(self) -> Any:
         """The controller's initial state in every environment [E, ...]."""
         first = self.controller.init(self.spec)
         return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *x.shape)), first)

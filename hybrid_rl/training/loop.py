@@ -42,6 +42,11 @@ class Loop:
     compile_s: float = 0.0  # [s] spent compiling so far
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """Lines for a run that is resumed; none: it continues bit for bit."""
+        return ()
+
+    @property
     def mesh(self) -> Mesh:
         """The devices in use: as many as divide the learners evenly."""
         devices = jax.local_devices()

@@ -11,9 +11,9 @@ from jax import Array
 
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core import sampling
-from hybrid_rl.models.reward import RewardNetwork
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.proposals.mixture import MixtureProposal
+from hybrid_rl.rewards.network import RewardNetwork
 from hybrid_rl.types import Params, Path, Spec
 
 SPEC = Spec(obs=2, act=1, dt=0.1)
@@ -79,7 +79,7 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
             paths = paths._replace(x=paths.x.at[k, t + 1].set(x))
     to_go = jax.vmap(lambda path: objective.reward_to_go(params, path))(paths)
     w = np.asarray(sampling.weights(to_go[:, :-1], 0.1))[:, 0]
-    first = [float(reward.outcome(params.reward, X, jnp.full(1, k / K), X)[0]) for k in range(K)]
+    first = [float(reward.outcome(params, X, jnp.full(1, k / K), X)[0]) for k in range(K)]
     controller = SamplingController(Cart(), objective, Grid(), horizon=T, samples=K)
     metrics = controller.act(params, controller.init(SPEC), X, jax.random.key(1))[2]
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)

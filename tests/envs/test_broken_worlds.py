@@ -264,7 +264,9 @@ class W(gymnasium.Env):
 
     def step(self, action): ...
 """
-HOWTO = r"a gymnasium\.Env, and environments are JAX functions; A Gymnasium environment in docs/.*"
+HOWTO = (
+    r"a gymnasium\.Env, and this must be a class with JAX functions; task=gymnasium env\.make=.*"
+)
 FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the whole line
     (
         "a plain class",

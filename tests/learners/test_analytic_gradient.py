@@ -12,14 +12,21 @@ import pytest
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.learners.analytic import AnalyticGradient
 from hybrid_rl.models.exact import Exact
-from hybrid_rl.objectives.known_reward import KnownReward
+from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.rewards.known import KnownReward
 from hybrid_rl.types import Batch, Params
 
 WORLD = PointMass()
 POLICY = TanhGaussian((8,), "tanh")
 LEARNER = AnalyticGradient(
-    POLICY, Exact(WORLD), KnownReward(WORLD), WORLD, horizon=6, starts=3, learning_rate=0.01
+    POLICY,
+    Exact(WORLD),
+    PredictedReturn(KnownReward(WORLD)),
+    WORLD,
+    horizon=6,
+    starts=3,
+    learning_rate=0.01,
 )
 NOTHING = Batch(*(jnp.zeros(1) for _ in Batch._fields[:-1]))
 

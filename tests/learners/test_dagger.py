@@ -11,11 +11,10 @@ import pytest
 from tiny import call_train, only_line
 
 from hybrid_rl import config
-from hybrid_rl.core.labels import Belief
+from hybrid_rl.core.labels import Queried
 from hybrid_rl.learners.dagger import DAgger, DAggerState
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.policies.deterministic import Deterministic
-from hybrid_rl.targets.likely import Likely
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -209,25 +208,16 @@ class Summed:
 
     def log_density(self, params: Params, s: Any) -> Any:
         """What one label adds in the direction of s."""
-        assert isinstance(params.belief, Belief)
-        return -(s @ params.belief.evidence @ s)
+        assert isinstance(params.labels, Queried)
+        return -(s @ params.labels.evidence @ s)
 
 
 def test_the_evidence_is_a_sum_over_the_labels() -> None:
     """Its running mean over batches, times the number of labels, for labels of two kinds."""
     x = np.tile(np.array([[1.0, 0.0, 2.0], [0.0, -3.0, 1.0]], np.float32), (500, 1))
     learner = DAgger(POLICY, Linear(), Summed(), steps=0, batch_size=256, capacity=1000)
-    belief = learner.params(after(learner, x))["belief"]
-    np.testing.assert_allclose(belief.evidence, x.T @ x, rtol=0.05, atol=0.05 * 4500)
-
-
-def test_recent_states_are_kept() -> None:
-    """The last five."""
-    belief = after(DAgger(POLICY, Linear(), recent=5), X[:12]).visited
-    assert {tuple(row) for row in np.asarray(belief)} == {tuple(row) for row in X[7:12]}
-    np.testing.assert_array_equal(
-        after(DAgger(POLICY, Linear(), recent=5), X[:1]).visited, X[[0] * 5]
-    )
+    labels = learner.params(after(learner, x))["labels"]
+    np.testing.assert_allclose(labels.evidence, x.T @ x, rtol=0.05, atol=0.05 * 4500)
 
 
 BAD = [
@@ -240,7 +230,6 @@ BAD = [
     ({"oracle": True, "target": Far()}, "oracle=True: needs target=null"),
     ({"spacing": 0}, "spacing=0: must be 1 or more"),
     ({"edge": 1.5}, "edge=1.5: must lie in"),
-    ({"target": Likely(Far())}, "recent=0: this target needs recent states"),
 ]
 
 

@@ -45,7 +45,7 @@ def train():
     @jax.jit
     def run(terminated, scale, alpha):
         def one(state, key):
-            return made.update(state, Params(belief=scale), batch(key, terminated), key)
+            return made.update(state, Params(scale=scale), batch(key, terminated), key)
 
         state = made.init(jax.random.key(0), SPEC).replace(log_alpha=jnp.log(alpha))
         return jax.lax.scan(one, state, jax.random.split(jax.random.key(1), STEPS))
@@ -160,7 +160,7 @@ def test_the_scale_is_that_of_the_discounted_returns() -> None:
     terminated, truncated = rng.random((2, count, 2)) < 0.1
     scale = ReturnScale(discount=0.9, bound=5.0, num_envs=2)
     state, returns = scale.init(jax.random.key(0), SPEC), []
-    assert float(scale.params(state)["belief"]) == 1
+    assert float(scale.params(state)["scale"]) == 1
     blank, step = jnp.zeros((2, 1)), jax.jit(scale.update)
     running = np.zeros(2)
     for i in range(count):
@@ -171,7 +171,7 @@ def test_the_scale_is_that_of_the_discounted_returns() -> None:
         returns.append(running)
         running = np.where(terminated[i] | truncated[i], 0, running)
     expected = max(np.std(returns), np.abs(returns).max() / 5)
-    assert float(scale.params(state)["belief"]) == pytest.approx(expected, rel=1e-4)
+    assert float(scale.params(state)["scale"]) == pytest.approx(expected, rel=1e-4)
 
 
 def test_noise_is_held_for_lengths_with_a_zeta_distribution() -> None:

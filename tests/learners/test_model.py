@@ -12,8 +12,8 @@ from hybrid_rl.core import held_out
 from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
-from hybrid_rl.models.reward import RewardNetwork
 from hybrid_rl.objectives.predicted_return import PredictedReturn
+from hybrid_rl.rewards.network import RewardNetwork
 from hybrid_rl.types import Batch, Params, Path, Spec
 
 SPEC = Spec(obs=2, act=1, dt=0.1)
@@ -66,7 +66,7 @@ def test_model_and_reward_are_learned() -> None:
     change = jnp.abs(test.next_obs - test.obs).mean(0)
     assert (np.asarray(error) < 0.1 * np.asarray(change)).all()
     got = jax.jit(jax.vmap(reward.outcome, (None, 0, 0, 0)))(
-        params.reward, test.obs, test.action, test.next_obs
+        params, test.obs, test.action, test.next_obs
     )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05
 
@@ -83,9 +83,9 @@ def test_reward_discount_learns_a_value() -> None:
     learner = ModelLearner(Gaussian(hidden=(8,)), reward, reward_discount=0.8)
     at = (jnp.zeros(2), jnp.zeros(1), jnp.zeros(2))
     going = trained(learner, 4000, endless).reward
-    assert float(reward.outcome(going, *at)[0]) == pytest.approx(5, abs=0.4)
+    assert float(reward.outcome(Params(reward=going), *at)[0]) == pytest.approx(5, abs=0.4)
     ended = trained(learner, 2000, lambda key: endless(key, 1.0)).reward
-    assert float(reward.outcome(ended, *at)[0]) == pytest.approx(1, abs=0.1)
+    assert float(reward.outcome(Params(reward=ended), *at)[0]) == pytest.approx(1, abs=0.1)
 
 
 def test_reward_to_go_is_the_sum_of_later_rewards() -> None:
@@ -95,8 +95,7 @@ def test_reward_to_go_is_the_sum_of_later_rewards() -> None:
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
     path = Path(jax.random.normal(jax.random.key(1), (5, 2)), jnp.ones((4, 1)))
     rates = [
-        float(reward.outcome(params.reward, path.x[t], path.u[t], path.x[t + 1])[0])
-        for t in range(4)
+        float(reward.outcome(params, path.x[t], path.u[t], path.x[t + 1])[0]) for t in range(4)
     ]
     want = [sum(0.9 ** (i - t) * rates[i] for i in range(t, 4)) for t in range(5)]
     np.testing.assert_allclose(objective.reward_to_go(params, path), want, rtol=1e-4, atol=1e-6)
@@ -186,7 +185,7 @@ def test_direct_prediction_and_scaled_rewards_are_learned() -> None:
     error = np.abs(ahead - test.next_obs).mean(0) / SCALE
     assert (error < 0.03).all()
     got = jax.jit(jax.vmap(reward.outcome, (None, 0, 0, 0)))(
-        params.reward, test.obs, test.action, test.next_obs
+        params, test.obs, test.action, test.next_obs
     )[0]
     assert float(jnp.abs(got - test.reward).mean()) < 0.05 * 80
 
@@ -279,7 +278,7 @@ def test_a_reward_of_the_next_state_is_learned() -> None:
         return batch._replace(reward=after[:, 0] / 10, next_obs=after, terminated=ends)
 
     reward = RewardNetwork(hidden=(32,), activation="silu", ends=True, next_state=True)
-    params = trained(ModelLearner(Gaussian(hidden=(8,)), reward), 1000, jumping).reward
+    params = trained(ModelLearner(Gaussian(hidden=(8,)), reward), 1000, jumping)
     test = jumping(jax.random.key(9))
     outcome = jax.vmap(reward.outcome, (None, 0, 0, 0))
     r, end = outcome(params, test.obs, test.action, test.next_obs)

@@ -14,8 +14,9 @@ from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.envs.cartpole import ASSET, Cartpole
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.errors import UsageError
-from hybrid_rl.models.world import World, WorldReward
+from hybrid_rl.models.world import World
 from hybrid_rl.objectives.predicted_return import PredictedReturn
+from hybrid_rl.rewards.world import WorldReward
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params, Path, Spec

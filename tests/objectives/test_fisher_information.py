@@ -60,11 +60,11 @@ def test_the_data_so_far_are_the_prior() -> None:
     """D counts what the path adds to them; without sigma the model's own s is taken."""
     params = observed(LINEAR)
     past = RNG.uniform(0, 9, 8)
-    belief = InformationState(jnp.asarray(past / 3, jnp.float32), jnp.asarray(3.0), jnp.zeros(()))
+    known = InformationState(jnp.asarray(past / 3, jnp.float32), jnp.asarray(3.0), jnp.zeros(()))
     for sigma, s in ((0.2, 0.2), (None, 1.0)):
         expected = np.log1p(squares(params) / s**2 / (past + 0.05)).sum()
         objective = FisherInformation(LINEAR, sigma=sigma, floor=0.05)
-        result = value(objective, Params(model=params, belief=belief))
+        result = value(objective, Params(model=params, information=known))
         np.testing.assert_allclose(result, expected, rtol=1e-5)
     alone = FisherInformation(LINEAR, sigma=None, floor=0.05, past=False)
     assert value(objective, Params(model=params)) == value(alone, Params(model=params))
@@ -80,7 +80,7 @@ def test_the_learner_has_the_information_of_all_decisions() -> None:
             state, Params(model=params, decisions=DECISIONS), BATCH, jax.random.key(0)
         )
     expected = 200 * squares(params) / 8 / 0.2**2
-    np.testing.assert_allclose(learner.params(state)["belief"].total, expected, rtol=1e-5)
+    np.testing.assert_allclose(learner.params(state)["information"].total, expected, rtol=1e-5)
     np.testing.assert_allclose(metrics["information/trace"], expected.sum(), rtol=1e-5)
     assert metrics["information/floored"] == 8
 
@@ -99,7 +99,7 @@ def test_a_singular_information_is_counted_and_stays_finite() -> None:
     assert metrics["information/floored"] == 2
     for name in fisher.CRITERIA:
         objective = FisherInformation(LINEAR, criterion=name)
-        assert np.isfinite(value(objective, Params(model=params, belief=state))), name
+        assert np.isfinite(value(objective, Params(model=params, information=state))), name
 
 
 @pytest.mark.parametrize("kind", fisher.KINDS)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.core.labels import Belief, empty
+from hybrid_rl.core.labels import Queried, empty
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.policies.deterministic import Clones, Deterministic
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
@@ -37,11 +37,9 @@ def at(target: PolicyInformation, params: Params, x: np.ndarray) -> np.ndarray:
     return np.exp(np.asarray(log_p, float))
 
 
-def known(evidence: np.ndarray) -> Belief:
-    """A belief with this information of the labels so far."""
-    return Belief(
-        empty(1, 4, 2), jnp.zeros((1, 4)), jnp.ones(4), jnp.asarray(evidence, jnp.float32)
-    )
+def known(evidence: np.ndarray) -> Queried:
+    """Labels of this information."""
+    return Queried(empty(1, 4, 2), jnp.ones(4), jnp.asarray(evidence, jnp.float32))
 
 
 def test_the_trace_of_a_linear_policy_is_that_of_its_regressors() -> None:
@@ -78,7 +76,7 @@ def test_the_gain_picks_the_point_that_brute_force_picks() -> None:
         *[before[4, 4]] * 2,
         *np.repeat(np.diag(before)[:4], 2),
     ]
-    params = params._replace(belief=known(np.array(order)))
+    params = params._replace(labels=known(np.array(order)))
     prior = 0.01 * np.eye(5)
 
     def log_det(A: np.ndarray) -> float:

@@ -52,7 +52,7 @@ def futures(run: Path, afters: Sequence[int], worlds: int) -> dict[int, dict[str
         u = decided(x, acting)
         next_x = model.draw(params.model, x, u, jax.random.normal(moving, x.shape), choosing)
         outcome = jax.vmap(reward.outcome, (None, 0, 0, 0))
-        rewards, ends = outcome(params.reward, x, u, next_x)
+        rewards, ends = outcome(params, x, u, next_x)
         return next_x, (ends > 0, rewards)
 
     @partial(jax.jit, static_argnums=0)

@@ -7,8 +7,8 @@ import pytest
 
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
-from hybrid_rl.models.reward import RewardNetwork
-from hybrid_rl.types import Spec
+from hybrid_rl.rewards.network import RewardNetwork
+from hybrid_rl.types import Params, Spec
 
 SPEC = Spec(obs=3, act=2, dt=0.1)
 X, U = jnp.array([0.3, -1.0, 2.0]), jnp.array([0.5, -0.2])
@@ -21,7 +21,10 @@ def test_scaled_rewards_are_in_real_units() -> None:
     rewards = np.random.default_rng(0).normal(300, 40, 100).astype(np.float32)
     first = plain.init(jax.random.key(0), SPEC)
     params = scaled.observe_targets(scaled.init(jax.random.key(0), SPEC), jnp.asarray(rewards))
-    (f, logit), (r, same) = plain.outcome(first, X, U, X), scaled.outcome(params, X, U, X)
+    (f, logit), (r, same) = (
+        plain.outcome(Params(reward=first), X, U, X),
+        scaled.outcome(Params(reward=params), X, U, X),
+    )
     assert same == logit
     np.testing.assert_allclose(r, rewards.mean() + rewards.std() * f, rtol=1e-5)
     target, ended = jnp.float32(333.0), jnp.float32(1.0)
@@ -34,7 +37,7 @@ def test_rewards_of_one_value_are_learned_exactly() -> None:
     """A standard deviation of zero does not divide by zero."""
     reward = RewardNetwork(hidden=(8,), scale=True)
     params = reward.observe_targets(reward.init(jax.random.key(0), SPEC), jnp.full(16, 7.0))
-    assert abs(float(reward.outcome(params, X, U, X)[0]) - 7) < 1e-4
+    assert abs(float(reward.outcome(Params(reward=params), X, U, X)[0]) - 7) < 1e-4
     assert np.isfinite(reward.loss(params, X, U, X, jnp.float32(7), jnp.float32(0)))
 
 
@@ -46,7 +49,9 @@ def test_layer_norm_against_numpy() -> None:
     hidden = np.concatenate([X, U]) @ w["Dense_0"]["kernel"] + w["Dense_0"]["bias"]
     hidden = (hidden - hidden.mean()) / np.sqrt(hidden.var() + 1e-6)
     want = np.maximum(hidden, 0) @ w["Dense_1"]["kernel"] + w["Dense_1"]["bias"]
-    np.testing.assert_allclose(reward.outcome(params, X, U, X)[0], want[0], rtol=1e-4)
+    np.testing.assert_allclose(
+        reward.outcome(Params(reward=params), X, U, X)[0], want[0], rtol=1e-4
+    )
 
 
 def test_the_reward_of_several_networks_is_their_mean() -> None:
@@ -58,9 +63,11 @@ def test_the_reward_of_several_networks_is_their_mean() -> None:
         for i in range(3)
     ]
     outcome, loss = jax.jit(one.outcome), jax.jit(one.loss)
-    outcomes = np.array([outcome(member, X, U, X) for member in each])
+    outcomes = np.array([outcome(Params(reward=member), X, U, X) for member in each])
     assert outcomes.std(0).min() > 1e-3
-    np.testing.assert_allclose(several.outcome(params, X, U, X), outcomes.mean(0), rtol=1e-5)
+    np.testing.assert_allclose(
+        several.outcome(Params(reward=params), X, U, X), outcomes.mean(0), rtol=1e-5
+    )
     target, ended = jnp.float32(2.0), jnp.float32(1.0)
     losses = [loss(member, X, U, X, target, ended) for member in each]
     np.testing.assert_allclose(
@@ -81,7 +88,7 @@ def test_the_next_state_is_an_input() -> None:
     m, s = x.mean(0), x.std(0)
     inputs = np.concatenate([(X - m) / s, U, (after - m) / s])
     hidden = np.maximum(inputs @ w["Dense_0"]["kernel"], 0)
-    got = reward.outcome(params, X, U, after)[0]
+    got = reward.outcome(Params(reward=params), X, U, after)[0]
     np.testing.assert_allclose(got, (hidden @ w["Dense_1"]["kernel"])[0], rtol=1e-3)
 
 
@@ -95,7 +102,7 @@ def test_ends_by_the_rule_of_a_task() -> None:
     params = known.init(jax.random.key(0), env.spec)
     x, u = jnp.zeros(11), jnp.zeros(3)
     for height, sign in ((0.69, 1), (0.71, -1)):
-        assert jnp.sign(known.outcome(params, x, u, x.at[0].set(height))[1]) == sign
+        assert jnp.sign(known.outcome(Params(reward=params), x, u, x.at[0].set(height))[1]) == sign
     losses = [known.loss(params, x, u, x, jnp.float32(1), jnp.float32(end)) for end in (0, 1)]
     assert losses[0] == losses[1]
     learned = RewardNetwork(hidden=(8,), ends=True, rule=HalfCheetah(physics="native"))

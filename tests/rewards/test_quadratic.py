@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.objectives.quadratic import Quadratic
+from hybrid_rl.objectives.predicted_return import PredictedReturn
+from hybrid_rl.rewards.quadratic import QuadraticReward
 from hybrid_rl.types import Params, Path
 
 WORLD = QuadcopterSE3()
@@ -15,7 +16,7 @@ WORLD = QuadcopterSE3()
 def test_return_is_the_plain_sum() -> None:
     """It has every state after the first and every action, and is 0 at the end."""
     q = tuple(np.linspace(0.1, 2.0, 12))
-    objective = Quadratic(WORLD, q, (0.3,), discount=0.9)
+    objective = PredictedReturn(QuadraticReward(WORLD, q, (0.3,)), discount=0.9)
     rng = np.random.default_rng(0)
     e, u = rng.uniform(-0.4, 0.4, (5, 12)), rng.uniform(-1, 1, (4, 4))
     x = jax.vmap(WORLD.from_local)(jnp.asarray(e, jnp.float32))
@@ -34,4 +35,4 @@ def test_return_is_the_plain_sum() -> None:
 def test_bad_weights_are_refused() -> None:
     """The error names the field."""
     with pytest.raises(ValueError, match="state_weights"):
-        Quadratic(WORLD, (-1.0,))
+        QuadraticReward(WORLD, (-1.0,))

@@ -7,13 +7,14 @@ import pytest
 
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.halfcheetah import HalfCheetah
-from hybrid_rl.objectives.known_reward import KnownReward
+from hybrid_rl.objectives.predicted_return import PredictedReturn
+from hybrid_rl.rewards.known import KnownReward
 from hybrid_rl.types import Params, Path
 
 
 def test_return_is_the_discounted_sum_of_the_rewards_of_an_episode() -> None:
     env, discount = Pendulum(), 0.9
-    objective = KnownReward(env, discount)
+    objective = PredictedReturn(KnownReward(env), discount)
     u = np.random.default_rng(0).uniform(-1, 1, (6, 1)).astype(np.float32)
     state = env.reset(jax.random.key(1))
     x, rewards = [state.obs], []

@@ -23,7 +23,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
-from hybrid_rl.types import Spec
+from hybrid_rl.types import Params, Spec
 
 CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
 
@@ -83,14 +83,12 @@ class RewardNetwork:
             return params
         return {**params, "target": statistics.update(params["target"], target[:, None])}
 
-    def outcome(
-        self, params: dict[str, Any], x: Array, u: Array, after: Array
-    ) -> tuple[Array, Array]:
+    def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
 
         after: [n] the next state, which is used with `next_state` and with a rule.
         """
-        rewards, logits = self._each(params, x, u, after)
+        rewards, logits = self._each(params.reward, x, u, after)
         if self._known:
             return rewards.mean(), jnp.where(self.rule.ended(after), CERTAIN, -CERTAIN)
         return rewards.mean(), logits.mean() if self.ends else -jnp.inf

@@ -1,0 +1,54 @@
+"""r = -e' Q e - (u - u_0)' R (u - u_0): a quadratic cost around an equilibrium.
+
+e are the local coordinates of the next state; with a model, e = x' - z(o_0), in its planning
+states. Nothing is learned.
+"""
+
+from dataclasses import dataclass
+from typing import cast
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core import analytic
+from hybrid_rl.protocols import AnalyticEnv, BalancedEnv, Model
+from hybrid_rl.types import Params
+
+
+@dataclass(frozen=True)
+class QuadraticReward:
+    """Minus the squared distance to the equilibrium, for episodes that do not end.
+
+    Raises:
+        ValueError: for an environment that is not analytic, one without an equilibrium if there is
+            a model, or weights below 0.
+    """
+
+    world: BalancedEnv  # an AnalyticEnv, if there is no model
+    state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or the first of e
+    action_weights: tuple[float, ...] = (0.0,)  # diagonal of R: one for all, or [m]
+    model: Model | None = None  # e in its planning states; None: in local coordinates
+
+    def __post_init__(self) -> None:
+        """Check the fields."""
+        if self.model is None:
+            analytic.require("reward", cast(AnalyticEnv, self.world))
+        else:
+            analytic.require_equilibrium("reward", self.world)
+        for name in ("state_weights", "action_weights"):
+            weights = tuple(getattr(self, name))
+            object.__setattr__(self, name, weights)
+            if not all(weight >= 0 for weight in weights):
+                raise ValueError(f"reward.{name}={list(weights)}: must be 0 or more")
+
+    def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
+        """The reward [] of u [m], which led to `after` [n]; no end."""
+        rest, hold = self.world.equilibrium()
+        q, r = jnp.array(self.state_weights), jnp.array(self.action_weights)
+        if self.model is not None:
+            e = after - self.model.lift(params.model, rest.astype(after.dtype))
+        else:
+            e = cast(AnalyticEnv, self.world).to_local(after[: rest.size])
+        if len(q) > 1:
+            e = e[: len(q)]
+        return -jnp.sum(q * e**2) - jnp.sum(r * (u - hold) ** 2), jnp.full((), -jnp.inf)
