@@ -115,6 +115,19 @@ def gallery(chapter: dict[str, dict[str, Any]]) -> str:
     return "\n".join(["| | | |", "|---|---|---|", *rows])
 
 
+def claims(names: str) -> str:
+    """For a page of results: claims and verdicts of a chapter, or of figures after commas."""
+    rows = ["| | claim of the thesis | here |", "|---|---|---|"]
+    for title, chapter in entries().items():
+        for name, entry in chapter.items():
+            chosen = title.startswith(names) or name in names.split(", ")
+            if chosen and entry["verdict"] != "no claim":
+                link = f"[{name}]({entry['page'].removeprefix('results/')})"
+                verdict = entry["verdict"].replace("holds with", "holds, with a condition")
+                rows.append(f"| {link} | {entry['claim']} | {verdict} |")
+    return "\n".join(rows) + "\n"
+
+
 def entry_text(name: str, entry: dict[str, Any]) -> str:
     """The part of the page about one figure or table."""
     verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
