@@ -136,7 +136,9 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "area": area,
     "band": band,
     "count": lambda x: np.asarray(x).size,
+    "first": lambda x, n: x[: int(n)],
     "iqm": lambda x: float(iqm_of(np.asarray(x))),
+    "join": lambda *x: np.concatenate(x),
     "max": lambda *x: max(np.max(one) for one in x),
     "mean": np.mean,
     "median_range": lambda x: [np.median(x), np.min(x), np.max(x)],
@@ -148,6 +150,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "p": lambda x, y: float(mannwhitneyu(x, y).pvalue),  # two-sided
     "range": lambda x: [np.mean(x), np.min(x), np.max(x)],  # mean, lowest and highest
     "sign": lambda x, y: float(binomtest(*_less(x, y)).pvalue),  # p of the sign test, of pairs
+    "sort": np.sort,
     "sum": np.sum,
 }
 OPERATORS: dict[type, Callable[..., Any]] = {
