@@ -6,7 +6,7 @@ PYTHON ?= python3
 WORKERS ?= 2
 RUN := .venv/bin/python -m
 
-.PHONY: setup train test lint format docs lock dist clean
+.PHONY: setup train test lint format pages docs lock dist clean
 
 setup: .venv/.installed
 
@@ -29,6 +29,10 @@ lint: setup
 format: setup
 	$(RUN) ruff check --fix
 	$(RUN) ruff format
+
+# The numbers of README.md, docs and paper from the JSON of docs/results, and docs/atlas.md.
+pages: setup
+	$(RUN) scripts.pages
 
 # The site in build/docs/html; make docs ARGS=fast does not run the notebooks, ARGS=links requests the external links instead.
 # Sphinx is in .venv-docs; everything else is imported from .venv.

@@ -23,9 +23,6 @@ from hybrid_rl.errors import UsageError
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 HOWTO = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
-IMPORTS = (
-    "from dataclasses import dataclass\n\nimport jax.numpy as jnp\n\n\n"  # the page omits them
-)
 
 
 def section(title: str, page: str = PAGE) -> str:
@@ -55,7 +52,7 @@ def conf(tmp_path, monkeypatch):
 @pytest.fixture
 def ring(conf, tmp_path):
     """The files of "A part"."""
-    (tmp_path / "ring.py").write_text(IMPORTS + blocks("A part")[0])
+    (tmp_path / "ring.py").write_text(blocks("A part")[0])
     lines = re.search(r"with two lines, `(.*?)` and `(.*?)`", section("A part")).groups()
     (conf / "target" / "ring.yaml").write_text("\n".join(lines) + "\n")
     return conf
@@ -74,7 +71,7 @@ def test_a_method_is_one_yaml_and_a_recursive_learner_one_file(conf, tmp_path, c
     method.write_text(blocks("A method")[0])
     composed = config.load(["algo=single_model"], config_dir=conf)
     assert list(composed.learners) == ["model", "policy"]
-    (tmp_path / "reward_average.py").write_text(IMPORTS + blocks("A recursive learner")[0])
+    (tmp_path / "reward_average.py").write_text(blocks("A recursive learner")[0])
     entry = re.search(r"`(average: \{.*?\})`", section("A recursive learner"))[1]
     method.write_text(f"{method.read_text()}  {entry}\n")
     written = train(conf, tmp_path / "run", "algo=single_model")

@@ -1,10 +1,10 @@
-"""Commands on the pages that do not train, run in a small size on one small run."""
+"""Commands on the library's pages compose; those that do not train run in a small size."""
 
 from functools import partial
 from pathlib import Path
 
+import page_commands as commands
 import pytest
-from pages import commands
 from tiny import call, run
 
 from hybrid_rl.cli import command
@@ -17,13 +17,23 @@ SMALL = {  # command -> arguments that make it small
 METRICS = {"train/return", "eval/return", "eval/policy_return"}  # of the small run
 
 
+@pytest.mark.parametrize("page", commands.LIBRARY)
+def test_training_commands_compose(page):
+    commands.compose([page])
+
+
+@pytest.mark.parametrize("page", commands.LIBRARY)
+def test_other_commands_have_the_arguments_of_the_page(page):
+    commands.check_arguments(page)
+
+
 def programs():
     """(command, its arguments) of the pages, in their order, each as often as it differs.
 
     A name of a file makes no difference, but its suffix does.
     """
     found = {}
-    for page in commands.PAGES:
+    for page in [*commands.LIBRARY, *commands.RESULTS]:
         for name, words in commands.commands(page):
             given = dict(word.split("=", 1) for word in words if "=" in word)
             if not runs_here(name, given):

@@ -31,8 +31,7 @@ WORDS = {  # regular expression -> what to write
 }
 QUOTED = {  # file -> regular expression of names that are quoted there
     "CHANGELOG.md": r"`[^`]*`",
-    "docs/results/chapter6.md": r"`explorer\.level`",
-    "tests/pages/chapter6_values.py": r"explorer\.level=\{label\}",
+    "docs/results/chapter6.md": r"`explorer\.level`|\bexplorer\.level=\d+",
 }
 IN_CODE = {r"def _?once(?=\()": "what the function does once"}
 IN_CODE_WITHOUT_PICTURES = {r"colour(s|ed)?(?=\s*[=(,):\]])": "correlation (noise), denormalise"}

@@ -1,26 +1,22 @@
-"""Write docs/atlas.md, every figure of the thesis with our result, from docs/atlas.yaml.
+"""docs/atlas.md: every figure of the thesis with our result, from docs/atlas.yaml.
 
-    python scripts/atlas.py
-
-Numbers, seeds and commands are read from the JSON and from the pages of docs/results.
+Numbers, seeds, machines and commands are those of the JSON and of the pages of docs/results.
 """
 
-import json
 import re
 from collections.abc import Iterator
-from functools import cache
-from pathlib import Path
-from statistics import fmean, median
 from typing import Any
 
 import yaml
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
-RESULTS = DOCS / "results"
+from scripts.pages.machines import machine
+from scripts.pages.values import RESULTS, evaluated, read
+
+DOCS = RESULTS.parent
 VERDICTS = ("holds", "holds with", "does not hold", "no claim")
 INTRODUCTION = """# Atlas: every figure and table of the thesis
 
-<!-- Written by scripts/atlas.py from atlas.yaml and the JSON of results; do not edit. -->
+<!-- Written by `make pages` from atlas.yaml and the JSON of results; do not edit. -->
 
 I. Abraham, *Optimal Experimental Learning and Infinite Linear Embeddings*, Northwestern
 University, 2020: what each figure and table claims, and what we found. "Holds with" means in part,
@@ -34,59 +30,16 @@ def entries() -> dict[str, dict[str, dict[str, Any]]]:
     return yaml.safe_load((DOCS / "atlas.yaml").read_text(encoding="utf-8"))
 
 
-@cache
-def numbers(stem: str) -> Any:
-    """docs/results/STEM.json."""
-    return json.loads((RESULTS / f"{stem}.json").read_text(encoding="utf-8"))
-
-
-def value(path: str) -> float:
-    """The number at FILE/KEY/..., the median of a list.
-
-    A step is a key, an index, the label of a curve (before a comma and the end of its metric, if
-    several have it), `x=X` (IQM of a curve at X), `mean=X` (mean over its seeds) or * (each one).
-
-    Raises:
-        KeyError, IndexError, StopIteration or ValueError: if there is no such value.
-    """
-    stem, *steps = path.split("/")
-    found = _follow(numbers(stem), steps)
-    return median(found) if isinstance(found, list) else found
-
-
-def _follow(data: Any, steps: list[str]) -> Any:
-    if not steps:
-        return data
-    step, rest = steps[0], steps[1:]
-    if step == "*":
-        return [_follow(one, rest) for one in data]
-    if isinstance(data, list) and not re.fullmatch(r"-?\d+", step):
-        label, _, metric = step.partition(", ")
-        data = next(
-            one for one in data if one["label"] == label and one.get("metric", "").endswith(metric)
-        )
-    elif isinstance(data, list):
-        data = data[int(step)]
-    elif step.startswith("x="):
-        data = data["iqm"][data["x"].index(float(step[2:]))]
-    elif step.startswith("mean="):
-        i = data["x"].index(float(step[5:]))
-        data = fmean(seed[i] for seed in data["each"])
-    else:
-        data = data[step]
-    return _follow(data, rest)
-
-
 def filled(text: str) -> str:
-    """The text with the value of each {PATH:FORMAT}."""
-    return re.sub(r"\{([^{}:]+):?([^{}]*)\}", lambda match: format(value(match[1]), match[2]), text)
+    """The text with the value of each {EXPRESSION:FORMAT}."""
+    return re.sub(r"\{([^{}]+?):([^{}:]*)\}", lambda m: format(evaluated(m[1])[0], m[2]), text)
 
 
 def seeds(entry: dict[str, Any]) -> str:
     """Seeds or trials of an entry, from the first of its JSON that has them."""
     if "seeds" in entry:
         return entry["seeds"]
-    for data in map(numbers, entry["results"]):
+    for data in map(read, entry["results"]):
         for key, found in _items(data):
             if key == "seeds" and isinstance(found, list):
                 return f"{found[0]} to {found[-1]}"
@@ -162,6 +115,19 @@ def gallery(chapter: dict[str, dict[str, Any]]) -> str:
     return "\n".join(["| | | |", "|---|---|---|", *rows])
 
 
+def claims(names: str) -> str:
+    """For a page of results: claims and verdicts of a chapter, or of figures after commas."""
+    rows = ["| | claim of the thesis | here |", "|---|---|---|"]
+    for title, chapter in entries().items():
+        for name, entry in chapter.items():
+            chosen = title.startswith(names) or name in names.split(", ")
+            if chosen and entry["verdict"] != "no claim":
+                link = f"[{name}]({entry['page'].removeprefix('results/')})"
+                verdict = entry["verdict"].replace("holds with", "holds, with a condition")
+                rows.append(f"| {link} | {entry['claim']} | {verdict} |")
+    return "\n".join(rows) + "\n"
+
+
 def entry_text(name: str, entry: dict[str, Any]) -> str:
     """The part of the page about one figure or table."""
     verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
@@ -172,7 +138,9 @@ def entry_text(name: str, entry: dict[str, Any]) -> str:
     text += f"**{verdict}** {shows} [More]({entry['page']})\n"
     if entry["results"]:
         files = ", ".join(f"[{stem}](results/{stem}.json)" for stem in entry["results"])
-        text += f"\nSeeds: {seeds(entry)}. Machine: {entry['machine']}. Numbers: {files}.\n"
+        text += (
+            f"\nSeeds: {seeds(entry)}. Machine: {machine(entry['results'][0])}. Numbers: {files}.\n"
+        )
     if entry["commands"]:
         lines = [command(entry["page"], words) for words in entry["commands"]]
         text += "\n```\n" + "\n".join(lines) + "\n```\n"
@@ -197,7 +165,3 @@ def page() -> str:
 def _anchor(name: str, entry: dict[str, Any]) -> str:
     heading = f"{name}: {entry['title']}".lower()
     return re.sub(r"[^\w\- ]", "", heading).replace(" ", "-")
-
-
-if __name__ == "__main__":
-    (DOCS / "atlas.md").write_text(page(), encoding="utf-8")

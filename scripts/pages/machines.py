@@ -1,0 +1,38 @@
+"""The machines of the results: docs/results/machines.yaml, and its table on README.md there."""
+
+import re
+from fnmatch import fnmatch
+from functools import cache
+from typing import Any
+
+import yaml
+
+from scripts.pages.values import RESULTS
+
+
+@cache
+def entries() -> list[dict[str, Any]]:
+    """docs/results/machines.yaml."""
+    return yaml.safe_load((RESULTS / "machines.yaml").read_text(encoding="utf-8"))
+
+
+def machine(stem: str) -> str:
+    """The machine of most of docs/results/STEM.json: a file without words in brackets comes first.
+
+    Raises:
+        ValueError: if no machine is known.
+    """
+    files = [(file, entry["machine"]) for entry in entries() for file in entry["files"]]
+    for file, found in sorted(files, key=lambda pair: "(" in pair[0]):
+        if fnmatch(stem, file.split(" (")[0]):
+            return found
+    raise ValueError(f"docs/results/machines.yaml has no machine of {stem}")
+
+
+def table() -> str:
+    """Machine, precision and files, in the order of the YAML."""
+    rows = ["| machine | precision of matrix products | files |", "|---|---|---|"]
+    for entry in entries():
+        files = ", ".join(re.sub(r"^\S+", r"`\g<0>`", file) for file in entry["files"])
+        rows.append(f"| {entry['machine']} | {entry['precision']} | {files} |")
+    return "\n".join(rows) + "\n"

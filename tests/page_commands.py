@@ -1,0 +1,117 @@
+"""The commands of hybrid_rl on the pages."""
+
+import re
+import shlex
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from itertools import cycle, islice
+from pathlib import Path
+from types import ModuleType
+
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from omegaconf import DictConfig
+
+from hybrid_rl import config, figures
+from hybrid_rl.cli.arguments import HELP, Argument
+from hybrid_rl.config import CONF
+from hybrid_rl.errors import UsageError
+
+ROOT = Path(__file__).resolve().parents[1]
+LIBRARY = [  # pages; those of the atlas are copied from other pages
+    "README.md",
+    "CONTRIBUTING.md",
+    *(f"docs/{path.name}" for path in sorted(ROOT.glob("docs/*.md")) if path.name != "atlas.md"),
+]
+RESULTS = [f"docs/results/{path.name}" for path in sorted(ROOT.glob("docs/results/*.md"))]
+LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
+
+
+def commands(page: str) -> list[tuple[str, list[str]]]:
+    """(command, its words) of every line of a page that runs a command of hybrid_rl."""
+    return [(name, shlex.split(words)) for name, words in LINE.findall(text(page))]
+
+
+def module(name: str) -> ModuleType:
+    """The module of a command."""
+    spec = find_spec(f"hybrid_rl.{name}")
+    package = spec is not None and spec.submodule_search_locations
+    return import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
+
+
+def jobs(words: list[str]) -> list[tuple[str, ...]]:
+    """Overrides of enough jobs of a sweep that each value is in one of them."""
+    parsed = OverridesParser.create().parse_overrides([word for word in words if "=" in word])
+    values = [
+        list(one.sweep_string_iterator()) if one.is_sweep_override() else [one.get_value_string()]
+        for one in parsed
+    ]
+    most = max(map(len, values), default=1)
+    rows = zip(*(islice(cycle(each), most) for each in values), strict=True)
+    keys = [one.get_key_element() for one in parsed]
+    return [tuple(f"{k}={v}" for k, v in zip(keys, row, strict=True)) for row in rows]
+
+
+def training(page: str) -> list[tuple[str, ...]]:
+    """Overrides of the jobs of the page's training commands, without those in a reader's folder."""
+    lines = [words for name, words in commands(page) if name == "train"]
+    lines = [words for words in lines if "--config-dir" not in words]
+    return sorted({job for words in lines for job in jobs(words)})
+
+
+def text(page: str) -> str:
+    """The page."""
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+def combinations(pages: list[str]) -> list[list[tuple[str, ...]]]:
+    """The pages' training jobs, those with the same choices of groups together."""
+    found: dict[tuple[str, ...], dict[tuple[str, ...], None]] = {}
+    for page in pages:
+        for job in training(page):
+            groups = tuple(word for word in job if (CONF / word.partition("=")[0]).is_dir())
+            found.setdefault(groups, {})[job] = None
+    return [list(jobs) for jobs in found.values()]
+
+
+def compose(pages: list[str]) -> None:
+    """Compose all training jobs: those of one choice of groups at once, alone if that fails."""
+    for jobs in combinations(pages):
+        keys = dict(word.split("=", 1) for job in jobs for word in job)
+        try:
+            composed(tuple(f"{key}={value}" for key, value in keys.items()))
+        except UsageError:  # one job takes the part away that another one sets
+            for job in jobs:
+                composed(job)
+
+
+@cache
+def composed(job: tuple[str, ...]) -> DictConfig:
+    """The configuration of a job."""
+    return config.load(job)
+
+
+def check_arguments(page: str) -> None:
+    """Every other command of the page has the arguments that it is given."""
+    for name, words in commands(page):
+        if name in ("train", "list"):
+            continue
+        if any(f"`{word.removeprefix('study=')}.py`" in text(page) for word in words):
+            continue  # a study that the page itself defines
+        known = {one.name for one in declared(name, words)} | set(HELP)
+        for word in words:
+            key = word.partition("=")[0]
+            section, dot, _ = key.partition(".")
+            in_group = dot and section in getattr(module(name), "GROUPS", {})
+            assert in_group or key in known, f"{name}: {word}"
+
+
+def declared(name: str, words: list[str]) -> list[Argument]:
+    """Arguments of a command; of `figures` also those of the study that the words name."""
+    if name != "figures":
+        return module(name).ARGUMENTS
+    (study,) = [w.removeprefix("study=") for w in words if "study=" in w] or [figures.DEFAULT]
+    if study in ("list", "NAME"):
+        return figures.ARGUMENTS
+    assert study in figures.studies()
+    return [*figures.ARGUMENTS, *figures.arguments(figures.study_of(study))]

@@ -1,1 +1,0 @@
-"""What every number on README.md and docs/results/*.md is recomputed from."""

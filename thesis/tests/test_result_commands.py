@@ -1,0 +1,51 @@
+"""Commands on the pages of results: they compose, and a share of the training commands learn."""
+
+import page_commands as commands
+import pytest
+import small
+import test_conf
+from rotation import share
+
+from hybrid_rl import config
+
+RUN_ELSEWHERE = test_conf.EXECUTED | {  # by test_commands.py
+    ("cartpole", "hybrid_stochastic"),
+    ("pendulum", "nn_mppi"),
+    ("pendulum", "sac"),
+}
+OWN = (  # what a small run has of its own
+    *("settings=", "num_envs=", "num_seeds=", "run_dir=", "resume=", "hydra/", "hydra."),
+    *("random_steps=", "total_steps=", "policy_learner.updates=", "map=", "map.file="),
+)
+
+
+@pytest.mark.parametrize("page", commands.RESULTS)
+def test_training_commands_compose(page):
+    commands.compose([page])
+
+
+@pytest.mark.parametrize("page", commands.RESULTS)
+def test_other_commands_have_the_arguments_of_the_page(page):
+    commands.check_arguments(page)
+
+
+def test_training_commands_learn_in_a_small_size(tmp_path):
+    """One command for each pair of task and method; a twentieth of the pairs for each commit."""
+    found = {}
+    for job, *_ in commands.combinations([*commands.LIBRARY, *commands.RESULTS]):
+        if not sweeps_methods(job):
+            whole = commands.composed(job)
+            found.setdefault((whole.task, whole.algo), job)
+    for task, algo in share(sorted(found.keys() - RUN_ELSEWHERE), 20):
+        given = [word for word in found[task, algo] if not word.startswith(OWN)]
+        print(task, algo, *given)  # which one failed
+        composed = small.with_demonstrations(small.load(algo, *given), tmp_path)
+        small.learn(config.build(composed))
+
+
+def sweeps_methods(job):
+    """Whether an experiment names the methods of a job, which test_conf.py builds."""
+    given = dict(word.split("=", 1) for word in job)
+    if "algo" in given or "experiment" not in given:
+        return False
+    return test_conf.methods_of(given["experiment"]) != [[]]
