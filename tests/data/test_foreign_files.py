@@ -226,7 +226,7 @@ def test_an_exported_program_holds_no_words_of_the_file_but_its_task(tmp_path, p
     spec, net = run.episode.spec, export.layers(run.episode.spec, *run.learner())
     script = layers.save_numpy(tmp_path / "b.npz", "x.y-z_1", spec, net)
     tree = ast.parse(script.read_text())
-    assert (ast.get_docstring(tree) or "").startswith("The policy of 'x.y-z_1': observation")
+    assert (ast.get_docstring(tree) or "").startswith("The policy of 'x.y-z_1': obs [")
     assert "open(" not in script.read_text()
     with pytest.raises(ValueError, match="a file needs a name"):
         layers.save_numpy(tmp_path / "c.npz", 'a"""\nimport os', spec, net)
