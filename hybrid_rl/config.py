@@ -15,6 +15,7 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
+from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, whole
 from hybrid_rl.composition import CONF, check_task, explain
 from hybrid_rl.envs.adapters.external import External
@@ -69,6 +70,7 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
     """
     if isinstance(overrides, str):
         raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')
+    renamed.check(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
     try:
         if GlobalHydra.instance().is_initialized():

@@ -21,7 +21,7 @@ from hybrid_rl.errors import UsageError
 
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
 MOST = 4  # keys that one line suggests
-GROUPS = ("settings", "experiment")  # groups that leave no key of their name
+GROUPS = ("learning", "settings", "experiment")  # groups that leave no key of their name
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
 LACKING: Any = object()  # the value of a key that does not exist
 

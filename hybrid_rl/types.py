@@ -89,7 +89,7 @@ class Imagined(NamedTuple):
     u: Array  # [H+1, B, m]
     log_prob: Array  # [H+1, B] log pi(u|x)
     reward: Array  # [H, B]
-    goes_on: Array  # [H, B] the probability that the episode continues
+    continues: Array  # [H, B] the probability that the episode continues
 
 
 class Path(NamedTuple):

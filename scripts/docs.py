@@ -72,7 +72,7 @@ NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/no
 PAGES = {
     "Start": [
         *("Getting started <self>", "docs/concepts", "docs/howto", "docs/python", "docs/faq"),
-        *("docs/files", "CONTRIBUTING"),
+        *("docs/files", "docs/renamed", "CONTRIBUTING"),
     ],
     "Notebooks": NOTEBOOKS,
     "Methods": ["docs/methods", "All methods <methods/index>"],

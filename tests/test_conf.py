@@ -165,39 +165,32 @@ def test_a_method_that_needs_an_analytic_environment_refuses_others(algo: str, t
 
 
 def test_settings_can_be_overridden_on_the_command_line() -> None:
-    """They apply after the method and before other overrides."""
-    c = config.load(["settings=thesis"])
-    assert (c.planner.horizon, c.model.hidden, c.mbpo.share) == (5, [200], 0)
+    """They apply after the method and before other overrides; one key for one thing."""
     c = config.load(["settings=light", "total_steps=10", "algo=hybrid_stochastic"])
-    learner = c.learners.policy.learner
-    assert (learner.updates, learner.critic.hidden, c.total_steps) == (2, [128, 128], 10)
-    assert learner.lookahead.model.members == 3
-    config.build(c)
+    learner = c.learners.policy
+    assert (learner.updates, learner.batch_size, c.total_steps) == (2, 64, 10)
+    assert (learner.critic.hidden, learner.model.members) == ([128, 128], 3)
+    c = config.load(["settings=light", "policy_learner.updates=3"])
+    assert c.learners.policy.updates == 3
     for algo in ("sac", "nn_mppi", "hybrid_deterministic", "hybrid_disagreement"):
         config.build(config.load(["settings=light", f"algo={algo}"]))
-    with pytest.raises(config.UsageError, match=r"mbpo\.learner\.updates"):
-        config.load(["settings=light", "policy_learner.updates=3"])
 
 
-def test_default_of_hybrid_learning() -> None:
-    """Policy and critic learn from five imagined decisions; settings=mbpo is the old default."""
+def test_how_a_hybrid_method_learns_is_one_override() -> None:
+    """By default from five imagined decisions; learning=mbpo was the default until 0.2."""
     c = config.load(["algo=hybrid_stochastic"])
     learner = c.learners.policy
-    assert (learner.memory, learner.learner.lookahead.steps, learner.learner.expand) == (
-        25600,
-        5,
-        True,
-    )
+    assert (learner.steps, learner.value_expansion, learner.branch_memory) == (5, True, 25600)
     assert (c.random_steps, config.load(["task=cartpole"]).random_steps) == (5000, 1000)
     for algo in ("hybrid_stochastic", "hybrid_disagreement"):
-        c = config.load(["settings=mbpo", f"algo={algo}"])
+        c = config.load(["learning=mbpo", f"algo={algo}"])
         learner = c.learners.policy
-        assert (learner.memory, learner.learner.lookahead, learner.learner.updates) == (0, None, 10)
+        assert (learner.imagined_fraction, learner.steps, learner.learner.updates) == (0.9, 3, 10)
         assert c.random_steps == 1000
         config.build(c)
+        config.build(config.load(["learning=replay", f"algo={algo}"]))
     c = config.load(["settings=fast"])
-    assert (c.learners.policy.learner.updates, c.learners.model.updates) == (1, 1)
-    assert c.learners.policy.learner.lookahead.steps == 5
+    assert (c.learners.policy.updates, c.learners.model.updates) == (1, 1)
 
 
 def test_thesis_parameters() -> None:
@@ -214,7 +207,7 @@ def test_thesis_parameters() -> None:
         assert got == (horizon, steps, samples, temperature)
         assert c.task == task
         assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
-        assert (c.mbpo.share, c.policy_learner.updates, c.model.hidden) == (0, 1, [200])
+        assert (c.policy_learner.updates, c.model.hidden) == (1, [200])
         assert not c.critic.layer_norm
         assert not c.reward.ends
     robots = {  # figure -> task, H, T, K, lambda, policy

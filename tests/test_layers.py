@@ -23,11 +23,11 @@ ROOT = Path(__file__).resolve().parents[1]
 PATTERNS = ("hybrid_rl/**/*.py", "envs/**/*.py", "thesis/*.py", "thesis/studies/*.py")
 FILES = sorted(file for pattern in PATTERNS for file in ROOT.glob(pattern))
 LAYER_FILES = {"types", "networks", "errors", "checks", "composition", "config", "overrides"}
-LAYER_FILES |= {"parts", "trained"}
+LAYER_FILES |= {"parts", "renamed", "trained"}
 SHARED = {"types", "protocols", "core", "networks"}
 CONFIG = {
     *("types", "protocols", "errors", "parts", "envs", "training"),
-    *("checks", "composition", "config", "overrides"),
+    *("checks", "composition", "config", "overrides", "renamed"),
 }
 ALLOWED = {
     "types": set(),
@@ -42,6 +42,7 @@ ALLOWED = {
     "data": {*SHARED, "parts", "archive"},
     "maps": {*SHARED, "archive"},
     "policies": {*SHARED, "archive"},
+    "renamed": {"errors"},
     "overrides": {"errors"},
     "checks": {"types", "errors", "overrides", "parts", "envs"},
     "composition": {"errors", "checks", "overrides", "parts", "training"},

@@ -38,7 +38,7 @@ CASES = {  # method -> decisions, settings
     "sac": (3000, SAC),  # -247 to -81
     "hybrid_stochastic": (  # -213 to -82
         1600,
-        [*MODEL, *SAC, "mbpo.share=0", "planner.horizon=10", "planner.samples=16"],
+        [*MODEL, *SAC, "learning=replay", "planner.horizon=10", "planner.samples=16"],
     ),
 }
 

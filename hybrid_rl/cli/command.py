@@ -18,7 +18,7 @@ from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
-from hybrid_rl import overrides
+from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_task, explain, options
 from hybrid_rl.errors import UsageError, in_user_code, shown
@@ -101,6 +101,7 @@ def usage(module: Any) -> str:
 
 def _check_form(line: Sequence[str]) -> None:
     """Raise UsageError for what is neither key=value nor an option of Hydra's."""
+    renamed.check(line)
     follow = 0
     for at, text in enumerate(line):
         name, equals, value = text.partition("=")

@@ -19,16 +19,16 @@ def returns(paths: Imagined, alpha: Array, discount: float, last: Array) -> Arra
     """y [H, B] along paths whose last decisions have action values `last` [B]."""
 
     def back(value: Array, at: tuple[Array, Array, Array]) -> tuple[Array, Array]:
-        r, goes_on, log_prob = at
-        y = r + discount * goes_on * value
+        r, continues, log_prob = at
+        y = r + discount * continues * value
         return y - alpha * log_prob, y
 
-    along = paths.reward, paths.goes_on, paths.log_prob[:-1]
+    along = paths.reward, paths.continues, paths.log_prob[:-1]
     value = last - alpha * paths.log_prob[-1]
     return jax.lax.scan(back, value, along, reverse=True, unroll=True)[1]
 
 
 def reached(paths: Imagined) -> Array:
     """The probability [H, B] that a trajectory does not end before each decision."""
-    before = jnp.concatenate([jnp.ones_like(paths.goes_on[:1]), paths.goes_on[:-1]])
+    before = jnp.concatenate([jnp.ones_like(paths.continues[:1]), paths.continues[:-1]])
     return jnp.cumprod(before, 0)

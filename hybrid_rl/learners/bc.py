@@ -61,7 +61,7 @@ class BehaviourCloning:
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
     batches: ClassVar[int] = 1
-    early: ClassVar[bool] = False  # starts after the random decisions
+    during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""

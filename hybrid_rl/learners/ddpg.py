@@ -17,6 +17,7 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import soft_actor_critic as steps
 from hybrid_rl.core import statistics
 from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.protocols import Critic, LearnedPolicy
@@ -55,7 +56,7 @@ class DDPG:
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     batches: ClassVar[int] = 1
-    early: ClassVar[bool] = False  # starts after the random decisions
+    during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -83,9 +84,8 @@ class DDPG:
         self, state: DDPGState, params: Params, batch: Batch, key: Array
     ) -> tuple[DDPGState, dict[str, Array]]:
         """One step of critic, policy and targets."""
-        state = state.replace(
-            policy=self.policy.observe(state.policy, batch.obs),
-            critic=self.critic.observe(state.critic, batch.obs, batch.reward / (1 - self.discount)),
+        state = steps.observed(
+            state, self.policy, self.critic, batch.obs, batch.reward, self.discount
         )
         after = self.critic.value(
             state.target_critic,
@@ -93,29 +93,15 @@ class DDPG:
             self.policy.mean(state.target_policy, batch.next_obs),
         )
         y = batch.reward + self.discount * (1 - batch.terminated) * after
+        state, (of_critic, q) = steps.critic_step(self, state, batch.obs, batch.action, y)
 
-        def critic_loss(critic: Any) -> tuple[Array, Array]:
-            q = self.critic.all(critic, batch.obs, batch.action)
-            return 0.5 * jnp.sum(jnp.mean((q - y[None]) ** 2, axis=-1)), q.mean()
-
-        (of_critic, q), grads = jax.value_and_grad(critic_loss, has_aux=True)(state.critic)
-        adam = optax.adam(self.critic_learning_rate)
-        change, critic_optimiser = adam.update(grads, state.critic_optimiser)
-        critic: Any = optax.apply_updates(state.critic, change)
-
-        def policy_loss(policy: Any) -> Array:
+        def loss(policy: Any) -> tuple[Array, None]:
             u = self.policy.mean(policy, batch.obs)
-            return -jnp.mean(self.critic.value(critic, batch.obs, u))
+            return -jnp.mean(self.critic.value(state.critic, batch.obs, u)), None
 
-        of_policy, grads = jax.value_and_grad(policy_loss)(state.policy)
-        adam = optax.adam(self.policy_learning_rate)
-        change, policy_optimiser = adam.update(grads, state.policy_optimiser)
-        policy: Any = optax.apply_updates(state.policy, change)
-        targets = [
-            statistics.following(old, new, self.tau)
-            for old, new in ((state.target_policy, policy), (state.target_critic, critic))
-        ]
+        state, (of_policy, *_) = steps.policy_step(self, state, loss)
         metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
-        return DDPGState(
-            policy, critic, targets[0], targets[1], policy_optimiser, critic_optimiser
+        return state.replace(
+            target_policy=statistics.following(state.target_policy, state.policy, self.tau),
+            target_critic=statistics.following(state.target_critic, state.critic, self.tau),
         ), metrics

@@ -24,6 +24,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.ranges import above_zero, discount_and_tau
+from hybrid_rl.core.soft_actor_critic import adam
 from hybrid_rl.protocols import BatchPolicy, CategoricalCritic
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -64,7 +65,7 @@ class FlashSAC:
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
-    early: ClassVar[bool] = False  # starts after the random decisions
+    during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -79,15 +80,15 @@ class FlashSAC:
         """Initial parameters, optimisers and target. The key is consumed."""
         for_policy, for_critic = jax.random.split(key)
         policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
-        log_alpha, adam = jnp.log(jnp.float32(self.alpha)), optax.adam(self.learning_rate)
+        log_alpha, rule = jnp.log(jnp.float32(self.alpha)), optax.adam(self.learning_rate)
         return FlashSACState(
             policy,
             critic,
             jax.tree.map(jnp.copy, critic),
             log_alpha,
-            adam.init(policy["weights"]),
-            adam.init(critic["weights"]),
-            adam.init(log_alpha),
+            rule.init(policy["weights"]),
+            rule.init(critic["weights"]),
+            rule.init(log_alpha),
         )
 
     def params(self, state: FlashSACState) -> dict[str, Any]:
@@ -126,11 +127,13 @@ class FlashSAC:
         (of_policy, (entropy, statistics)), grads = jax.value_and_grad(loss, has_aux=True)(
             state.policy["weights"]
         )
-        weights, optimiser = self._stepped(grads, state.policy_optimiser, state.policy["weights"])
+        weights, optimiser = adam(
+            self.learning_rate, grads, state.policy_optimiser, state.policy["weights"]
+        )
         policy = self.policy.constrained({"weights": weights, "statistics": statistics})
         aim = batch.action.shape[-1] * math.log(self.target_sigma * math.sqrt(2 * math.pi * math.e))
-        log_alpha, alpha_optimiser = self._stepped(
-            alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
+        log_alpha, alpha_optimiser = adam(
+            self.learning_rate, alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
         )
         metrics = {"sac/policy_loss": of_policy, "sac/alpha": alpha, "sac/entropy": entropy}
         return state.replace(
@@ -160,13 +163,10 @@ class FlashSAC:
         (of_critic, statistics), grads = jax.value_and_grad(loss, has_aux=True)(
             state.critic["weights"]
         )
-        weights, optimiser = self._stepped(grads, state.critic_optimiser, state.critic["weights"])
+        weights, optimiser = adam(
+            self.learning_rate, grads, state.critic_optimiser, state.critic["weights"]
+        )
         critic = self.critic.constrained({"weights": weights, "statistics": statistics})
         target = optax.incremental_update(critic, state.target, self.tau)
         state = state.replace(critic=critic, critic_optimiser=optimiser, target=target)
         return state, {"sac/critic_loss": of_critic}
-
-    def _stepped(self, grads: Any, optimiser: Any, weights: Any) -> tuple[Any, Any]:
-        """One Adam step: new weights, new optimiser state."""
-        change, optimiser = optax.adam(self.learning_rate).update(grads, optimiser, weights)
-        return optax.apply_updates(weights, change), optimiser

@@ -54,7 +54,7 @@ class InformationLearner:
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("information",)
     batches: ClassVar[int] = 1
-    early: ClassVar[bool] = True
+    during_random: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Check the fields."""

@@ -69,7 +69,7 @@ class ModelLearner:
     holdout: float = 0.0  # share of the decisions
 
     data: ClassVar[str] = "uniform"
-    early: ClassVar[bool] = True  # random decisions inform the model
+    during_random: ClassVar[bool] = True  # random decisions inform the model
 
     def __post_init__(self) -> None:
         """Check the fields."""

@@ -50,7 +50,6 @@ from hybrid_rl.protocols.learned import (
 )
 from hybrid_rl.protocols.learning import (
     Demonstrations,
-    Imagination,
     LatestLearner,
     Learner,
     UniformLearner,
@@ -74,7 +73,6 @@ __all__ = [
     "Env",
     "Features",
     "GoalPolicy",
-    "Imagination",
     "InformedBelief",
     "LabelledTarget",
     "LatestLearner",

@@ -4,7 +4,7 @@ from typing import Literal, Protocol
 
 from jax import Array
 
-from hybrid_rl.types import Batch, Imagined, Params, PyTree, Spec, Transition
+from hybrid_rl.types import Batch, Params, PyTree, Spec, Transition
 
 
 class Demonstrations(Protocol):
@@ -12,16 +12,6 @@ class Demonstrations(Protocol):
 
     def load(self) -> Transition:
         """All of them [N, ...], in order."""
-
-
-class Imagination(Protocol):
-    """Trajectories of the policy in the learned model."""
-
-    def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
-        """H decisions of size m from planning states x [B, n]. The key is consumed.
-
-        Differentiable by `params.policy`.
-        """
 
 
 class _Learner(Protocol):
@@ -54,7 +44,7 @@ class UniformLearner(_Learner, Protocol):
     batch_size: int  # transitions of a batch
     batches: int  # batches of one update, concatenated
     updates: float  # per decision
-    early: bool  # whether it also learns while decisions are random
+    during_random: bool  # whether it also learns while decisions are random
 
 
 class LatestLearner(_Learner, Protocol):

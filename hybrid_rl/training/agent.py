@@ -38,8 +38,8 @@ class Agent:
     A learner of `latest` data uses each decision once, from the first one on. A learner of
     `uniform` data makes `pretrain` gradient steps before the first decision, on the demonstrations
     in the memory; then `updates` per decision, as soon as the memory holds a batch and, unless the
-    learner is `early`, the `random_steps` are over. Where a model is learned, they get its planning
-    states in place of observations, but for the model's own learner.
+    learner is `during_random`, the `random_steps` are over. Where a model is learned, learners get
+    its planning states in place of observations, but for the model's own learner.
 
     Raises:
         ValueError: for counts out of range, updates that do not divide into decisions, or two
@@ -98,7 +98,7 @@ class Agent:
             name: 0
             if learner.data == "latest"
             else max(
-                0 if learner.early else self.random_steps,
+                0 if learner.during_random else self.random_steps,
                 self.first_update + learner.batch_size + self.num_envs - demonstrated,
             )
             for name, learner in self.learners.items()

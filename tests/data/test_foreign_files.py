@@ -16,7 +16,7 @@ from tiny import call, only_line
 
 from hybrid_rl import evaluate, export, trained
 from hybrid_rl.cli import command
-from hybrid_rl.data import archive, demonstrations
+from hybrid_rl.data import archive, demonstrations, layers
 from hybrid_rl.errors import UsageError
 from hybrid_rl.maps import learned
 from hybrid_rl.types import Spec, Transition
@@ -224,12 +224,12 @@ def test_an_exported_program_holds_no_words_of_the_file_but_its_task(tmp_path, p
     np.savez(tmp_path / "a.npz", **described(policy, command='"""\nopen("ran", "w")'))
     run = trained.read(str(tmp_path / "a.npz"))
     spec, net = run.episode.spec, export.layers(run.episode.spec, *run.learner())
-    script = export.save_layers(tmp_path / "b.npz", "x.y-z_1", spec, net)
+    script = layers.save_numpy(tmp_path / "b.npz", "x.y-z_1", spec, net)
     tree = ast.parse(script.read_text())
-    assert (ast.get_docstring(tree) or "").startswith("The policy of 'x.y-z_1': observation")
+    assert (ast.get_docstring(tree) or "").startswith("The policy of 'x.y-z_1': obs [")
     assert "open(" not in script.read_text()
     with pytest.raises(ValueError, match="a file needs a name"):
-        export.save_layers(tmp_path / "c.npz", 'a"""\nimport os', spec, net)
+        layers.save_numpy(tmp_path / "c.npz", 'a"""\nimport os', spec, net)
     assert not (tmp_path / "c.py").exists()
 
 

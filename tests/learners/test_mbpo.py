@@ -51,7 +51,7 @@ class Keeping:
     updates: float = 1
 
     batches = 1
-    early = False
+    during_random = False
     owns = ()
 
     def init(self, key: Array, spec: Spec) -> None:
@@ -66,22 +66,19 @@ class Keeping:
         return batch, {}
 
 
-def imagined(start: Array, updates: int = 1, **given: Any) -> Batch:
-    """The last of the learner's batches if all data are at `start` [B] with reward -7."""
+def imagined(start: Array, **given: Any) -> Batch:
+    """The learner's batch if all data are at `start` [B] with reward -7."""
     known: Any = Counting()
     learner = MBPO(Keeping(), known, known, known, **given)
     x, same = start[:, None], jnp.full(B, -7.0)
     seen = Batch(x, x, same, 0 * same, 0 * same, 0 * x, x)
     state = learner.init(jax.random.key(0), Spec(obs=1, act=1, dt=0.1))
-    update = jax.jit(learner.update)
-    for key in jax.random.split(jax.random.key(3), updates):
-        state, _ = update(state, Params(), seen, key)
-    return state.learner
+    return jax.jit(learner.update)(state, Params(), seen, jax.random.key(3))[0]
 
 
-def test_a_share_is_imagined_and_the_rest_is_unchanged() -> None:
+def test_a_fraction_is_imagined_and_the_rest_is_unchanged() -> None:
     """One step from the data: x -> x + 1, with the reward at x."""
-    batch = imagined(jnp.zeros(B), share=0.6)
+    batch = imagined(jnp.zeros(B), imagined_fraction=0.6)
     assert batch.obs.shape == (B, 1)
     np.testing.assert_array_equal(batch.next_obs[:, 0], [1] * 6 + [0] * 4)
     np.testing.assert_array_equal(batch.reward, [0] * 6 + [-7] * 4)
@@ -90,7 +87,7 @@ def test_a_share_is_imagined_and_the_rest_is_unchanged() -> None:
 
 def test_branches_have_every_length_and_restart_after_an_end() -> None:
     """From 1: steps 1 -> 2 -> 3, where the episode ends, and then from 1 again."""
-    batch = imagined(jnp.ones(B), share=1.0, steps=4)
+    batch = imagined(jnp.ones(B), imagined_fraction=1.0, steps=4)
     at = np.asarray(batch.obs[:, 0])
     assert set(at) == {1.0, 2.0, 3.0}
     np.testing.assert_array_equal(batch.reward, at)
@@ -99,32 +96,15 @@ def test_branches_have_every_length_and_restart_after_an_end() -> None:
     np.testing.assert_allclose(batch.terminated, at > 2.5, atol=1e-6)
 
 
-def test_branches_that_are_kept_reach_every_length() -> None:
-    """From -9, where nothing ends, to -9 + steps: one decision of the model per update."""
-    batch = imagined(jnp.full(B, -9.0), share=1.0, steps=4, memory=8 * B, updates=1)
-    np.testing.assert_array_equal(batch.obs[:, 0], -9)
-    batch = imagined(jnp.full(B, -9.0), share=0.9, steps=4, memory=8 * B, updates=30)
-    at = np.asarray(batch.obs[:-1, 0])
-    assert set(at) == {-9.0, -8.0, -7.0, -6.0}
-    np.testing.assert_array_equal(batch.reward, [*at, -7])
-    np.testing.assert_array_equal(batch.action[:-1, 0], -at)
-    np.testing.assert_array_equal(batch.next_obs[:-1, 0], at + 1)
-    ended = imagined(jnp.ones(B), share=1.0, steps=9, memory=8 * B, updates=30)
-    assert set(np.asarray(ended.obs[:, 0])) == {1.0, 2.0, 3.0}
-    np.testing.assert_allclose(ended.terminated, np.asarray(ended.obs[:, 0]) > 2.5, atol=1e-6)
-
-
-def test_a_share_of_zero_passes_the_batch_on() -> None:
+def test_a_fraction_of_zero_passes_the_batch_on() -> None:
     """The learner gets the batch itself."""
-    np.testing.assert_array_equal(imagined(jnp.ones(B), share=0.0).reward, -7)
+    np.testing.assert_array_equal(imagined(jnp.ones(B), imagined_fraction=0.0).reward, -7)
 
 
 def test_bad_fields() -> None:
     """One line that names the field."""
     known: Any = Counting()
-    with pytest.raises(ValueError, match=r"mbpo\.share=2"):
-        MBPO(Keeping(), known, known, known, share=2)
+    with pytest.raises(ValueError, match=r"mbpo\.imagined_fraction=2"):
+        MBPO(Keeping(), known, known, known, imagined_fraction=2)
     with pytest.raises(ValueError, match=r"mbpo\.steps=0"):
         MBPO(Keeping(), known, known, known, steps=0)
-    with pytest.raises(ValueError, match=r"mbpo\.memory=15"):
-        MBPO(Keeping(), known, known, known, memory=15)

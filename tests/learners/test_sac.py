@@ -1,6 +1,6 @@
 """Soft actor-critic on problems with known values."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -13,7 +13,7 @@ from jax import Array
 from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.learners.sac import SAC, SACState
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
-from hybrid_rl.types import Batch, Imagined, Params, Spec
+from hybrid_rl.types import Batch, Params, Spec
 
 SPEC = Spec(obs=1, act=1, dt=1.0)
 B = 64
@@ -167,32 +167,3 @@ def test_the_target_has_the_critic_s_statistics() -> None:
         strict=True,
     ):
         np.testing.assert_allclose(target, 0.95 * old + 0.05 * new, rtol=1e-5, atol=1e-8)
-
-
-@dataclass(frozen=True)
-class Staying:
-    """Three decisions in one state with reward 1; after the second the episode ends or not."""
-
-    policy: Any
-    goes_on: float
-
-    def imagine(self, params: Params, x: Array, m: int, key: Array) -> Imagined:
-        """The same state again and again."""
-        xs = jnp.broadcast_to(x, (4, *x.shape))
-        u, log_prob = self.policy.sample(params.policy, xs, jax.random.normal(key, (4, len(x), m)))
-        goes_on = jnp.ones((3, len(x))).at[1].set(self.goes_on)
-        return Imagined(xs, u, log_prob, jnp.ones((3, len(x))), goes_on)
-
-
-@pytest.mark.parametrize(("goes_on", "wanted"), [(1.0, 2.0), (0.0, 1.25)])
-def test_an_expanded_critic_learns_the_imagined_returns(goes_on: float, wanted: float) -> None:
-    """Q = 1 / (1 - 1/2); with an end the mean of 1 + 1/2 and 1, as later decisions do not count.
-
-    The rewards of the batch, -(u - 0.5)^2, do not matter.
-    """
-    plain = learner(discount=0.5, alpha=1e-6, alpha_learning_rate=1e-9, expand=False)
-    sac = replace(plain, lookahead=Staying(plain.policy, goes_on), expand=True)
-    state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 1500)
-    assert value(sac, state) == pytest.approx(wanted, abs=0.05)
-    with pytest.raises(ValueError, match=r"policy_learner\.expand=true: needs"):
-        replace(plain, expand=True)

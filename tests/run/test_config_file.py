@@ -169,7 +169,7 @@ def test_a_setting_is_named_by_its_last_names(trained):
 SWEPT = [
     ("algo=sac", "policy_learner.tau", "0.02"),
     ("algo=hybrid_stochastic settings=light", "policy_learner.discount", "0.9"),
-    ("algo=hybrid_stochastic settings=light", "mbpo.learner.updates", "7"),
+    ("algo=hybrid_stochastic settings=light", "policy_learner.updates", "7"),
     ("algo=hybrid_stochastic", "policy_learner.tau", "0.02"),
     ("algo=kle3", "target", "mixture"),
 ]
@@ -187,12 +187,11 @@ def test_the_key_that_was_swept_is_a_setting_of_the_run(line, key, value, tmp_pa
 
 
 def test_a_part_that_the_method_does_not_use_is_no_setting(tmp_path):
-    """`light` has its own learner for hybrid learning; of the other one it reads the discount."""
-    line = ["task=pendulum", "algo=hybrid_stochastic", "settings=light", "total_steps=100"]
-    run_folder.write(tmp_path, config.load(line))
-    assert RunFolder(tmp_path).number("policy_learner.discount") == 0.995
-    with pytest.raises(config.UsageError, match=r"group=policy_learner.tau: not in .*; it has "):
-        RunFolder(tmp_path).word("policy_learner.tau")
+    """Of the planner of hybrid learning soft actor-critic reads nothing."""
+    run_folder.write(tmp_path, config.load(["task=pendulum", "algo=sac", "total_steps=100"]))
+    assert RunFolder(tmp_path).number("policy_learner.discount") == 0.99
+    with pytest.raises(config.UsageError, match=r"group=planner.samples: not in .*; it has "):
+        RunFolder(tmp_path).word("planner.samples")
 
 
 def test_every_copy_of_the_world_has_the_same_physics(tmp_path):

@@ -109,8 +109,13 @@ def test_pretraining_needs_demonstrations(agent):
 
 
 def test_the_model_learns_from_random_decisions_and_the_policy_after_them() -> None:
-    """So imagined data never come from an untrained model, unless the policy learns early, too."""
-    line = [*TINY, "algo=hybrid_stochastic", "random_steps=24", "policy_learner.early=false"]
+    """Imagined data come from a trained model, unless the policy learns at random, too."""
+    line = [
+        *TINY,
+        "algo=hybrid_stochastic",
+        "random_steps=24",
+        "policy_learner.during_random=false",
+    ]
     early = config.build(config.load(line)).agent
     learned = history(early, 25)
     first, during, later = (at(learned, decision) for decision in (0, 24, 25))

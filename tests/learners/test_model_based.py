@@ -11,8 +11,10 @@ import pytest
 from jax import Array
 
 from hybrid_rl.core import adjoint, soft_return
-from hybrid_rl.learners.lookahead import Lookahead
-from hybrid_rl.types import Imagined, Params, Path
+from hybrid_rl.critics.ensemble_q import EnsembleQ
+from hybrid_rl.learners.model_based import ModelBased
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.types import Batch, Imagined, Params, Path, Spec
 
 A = np.array([[0.9, 0.2], [-0.1, 0.8]], np.float32)
 B = np.array([[0.1], [0.7]], np.float32)
@@ -47,6 +49,7 @@ GAIN = jnp.array([[-0.3, -0.4]])
 PARAMS = Params(model=None, reward=None, critic=None, policy=GAIN)
 X = jax.random.normal(jax.random.key(0), (4, 2))
 KEY = jax.random.key(1)
+START = Batch(X, jnp.zeros((4, 1)), *(jnp.zeros(4) for _ in range(3)), X)
 
 
 def looped(gain: np.ndarray, steps: int) -> np.ndarray:
@@ -70,8 +73,8 @@ def looped(gain: np.ndarray, steps: int) -> np.ndarray:
 @partial(jax.jit, static_argnums=(1, 3))
 def returned(gain: Array, steps: int, alpha: float = ALPHA, part: Any = PART) -> Array:
     """R [4] of the part."""
-    ahead = Lookahead(part, part, part, steps=steps)
-    paths = ahead.imagine(PARAMS._replace(policy=gain), X, 1, KEY)
+    ahead = ModelBased(part, part, part, part, steps=steps)
+    paths = ahead.imagine(PARAMS._replace(policy=gain), START, KEY)
     last = part.value(None, paths.x[-1], paths.u[-1])
     y = soft_return.returns(paths, jnp.float32(alpha), DISCOUNT, last)
     return y[0] - alpha * paths.log_prob[0]
@@ -123,13 +126,64 @@ def test_the_costate_gives_the_same_gradient() -> None:
 
 def test_how_likely_a_decision_is_reached() -> None:
     """The product of the chances to continue before it."""
-    goes_on = jnp.array([[0.5, 1.0], [0.2, 0.0], [1.0, 0.3]])
+    continues = jnp.array([[0.5, 1.0], [0.2, 0.0], [1.0, 0.3]])
     x = jnp.zeros((4, 2, 1))
-    paths = Imagined(x, x, x[..., 0], goes_on, goes_on)
+    paths = Imagined(x, x, x[..., 0], continues, continues)
     np.testing.assert_allclose(soft_return.reached(paths), [[1, 1], [0.5, 1], [0.1, 0]], atol=1e-6)
 
 
-def test_steps_must_be_positive() -> None:
-    """Zero is the critic alone: no lookahead."""
-    with pytest.raises(ValueError, match=r"lookahead\.steps=0"):
-        Lookahead(PART, PART, PART, steps=0)
+@dataclass(frozen=True)
+class Staying:
+    """One state, in which each decision pays 1 and the episode continues with a chance."""
+
+    chance: float
+
+    def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
+        """The state itself."""
+        return x
+
+    def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
+        """1, and the logit of the end."""
+        return jnp.ones(()), jnp.log((1 - self.chance) / self.chance)
+
+
+@pytest.mark.parametrize(("chance", "wanted"), [(1.0, 2.0), (0.5, 4 / 3)])
+@pytest.mark.parametrize("expanded", [True, False])
+def test_the_critic_learns_the_imagined_returns(
+    chance: float, wanted: float, expanded: bool
+) -> None:
+    """Q = 1 / (1 - c / 2), by three decisions or by one; the rewards of the batch do not matter."""
+    world: Any = Staying(chance)
+    policy, critic = TanhGaussian(hidden=(32,)), EnsembleQ(hidden=(32, 32))
+    rates = {"critic_learning_rate": 3e-3, "alpha_learning_rate": 1e-9, "alpha": 1e-6}
+    learner = ModelBased(
+        *(policy, critic, world, world),
+        **{"steps": 3, "value_expansion": expanded, "branch_steps": 2, "branch_memory": 128},
+        **{"discount": 0.5, "tau": 0.05, "batch_size": 64, **rates},
+    )
+    zero = jnp.zeros(64)
+    seen = Batch(zero[:, None], zero[:, None], zero - 7, zero, zero, zero[:, None])
+
+    def one(state: Any, key: Array) -> tuple[Any, None]:
+        params = Params(**learner.params(state))
+        return learner.update(state, params, seen, key)[0], None
+
+    first = learner.init(jax.random.key(0), Spec(obs=1, act=1, dt=1.0))
+    keys = jax.random.split(jax.random.key(1), 1000)
+    state = jax.jit(lambda first: jax.lax.scan(one, first, keys)[0])(first)
+    q = critic.value(state.learner.critic, jnp.zeros(1), jnp.zeros(1))
+    assert float(q) == pytest.approx(wanted, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"steps": -1}, "steps=-1: must be a whole number"),
+        ({"steps": 0}, "value_expansion=true: needs steps"),
+        ({"branch_memory": 300}, "branch_memory=300: must be 0 or a multiple of the batch, 256"),
+    ],
+)
+def test_bad_fields(given: dict, line: str) -> None:
+    """One line that names the field."""
+    with pytest.raises(ValueError, match=line):
+        ModelBased(PART, PART, PART, PART, **given)

@@ -1,0 +1,115 @@
+"""Branches: trajectories of a policy in a model that begin at real states (Janner et al. 2019).
+
+`fresh` draws them for each update. `Branches` are kept from one update to the next: each update
+continues all of them by one decision and restarts those that ended or reached their length. Then
+one decision of the model per update is enough for branches of any length, and thus for states that
+the present policy leads to.
+"""
+
+from collections.abc import Callable
+
+import jax
+import jax.numpy as jnp
+from flax import struct
+from jax import Array
+
+from hybrid_rl.core.branching import where
+from hybrid_rl.protocols import Policy, Reward, Trainable
+from hybrid_rl.types import Batch, Params
+
+Transitions = Callable[[Array, Array, Array, Array], Batch]
+"""x [b, n], noise [b, m] and [b, n], key -> a transition from each x."""
+
+
+@struct.dataclass
+class Branches:
+    """B branches and the ring of their transitions."""
+
+    x: Array  # [B, n] the states that the branches have reached
+    age: Array  # [B] int32 decisions of each branch so far
+    rows: Array  # [memory / B, B, width] the last transitions
+    count: Array  # [] int32 updates so far
+
+
+def transitions(params: Params, policy: Policy, model: Trainable, reward: Reward) -> Transitions:
+    """u ~ pi(x), x' ~ f(x, u) and r, end = reward(x, u, x'); `terminated` is a probability."""
+
+    def one(x: Array, for_policy: Array, for_model: Array, key: Array) -> Batch:
+        u = jax.vmap(policy.sample, (None, 0, 0))(params.policy, x, for_policy)[0]
+        after = model.draw(params.model, x, u, for_model, key)
+        r, end = jax.vmap(reward.outcome, (None, 0, 0, 0))(params, x, u, after)
+        return Batch(x, u, r, jax.nn.sigmoid(end), jnp.zeros(len(x)), after)
+
+    return one
+
+
+def begin(size: int, memory: int, n: int, m: int, steps: int) -> Branches:
+    """`size` branches that are to start at the next update; memory: transitions, a multiple."""
+    return Branches(
+        jnp.zeros((size, n)),
+        jnp.full(size, steps, jnp.int32),
+        jnp.zeros((memory // size, size, 2 * n + m + 2)),
+        jnp.zeros((), jnp.int32),
+    )
+
+
+def extended(
+    branches: Branches, step: Transitions, start: Array, m: int, steps: int, key: Array
+) -> Branches:
+    """The branches one decision later; those to start begin at `start` [B, n].
+
+    At the first update they start at different ages, so that later a part of them restarts at each
+    update. The key is consumed.
+    """
+    acting, moving, choosing, aging = jax.random.split(key, 4)
+    x, age = start, jnp.zeros_like(branches.age)
+    first = jax.random.randint(aging, age.shape, 0, steps)
+    new = branches.age >= steps
+    age = jnp.where(new, jnp.where(branches.count == 0, first, age), branches.age)
+    x = where(new, x, branches.x)
+    for_policy = jax.random.normal(acting, (len(x), m))
+    for_model = jax.random.normal(moving, x.shape)
+    made = step(x, for_policy, for_model, choosing)
+    flags = jnp.stack([made.reward, made.terminated], -1)
+    rows = jnp.concatenate([made.obs, made.action, flags, made.next_obs], -1)
+    slot = branches.count % len(branches.rows)
+    return Branches(
+        made.next_obs,
+        jnp.where(made.terminated > 0.5, steps, age + 1),
+        jax.lax.dynamic_update_index_in_dim(branches.rows, rows, slot, 0),
+        branches.count + 1,
+    )
+
+
+def recalled(branches: Branches, m: int, key: Array) -> Batch:
+    """B transitions, uniform over those that are kept. The key is consumed."""
+    length, size, width = branches.rows.shape
+    known, n = jnp.minimum(branches.count, length) * size, branches.x.shape[1]
+    rows = branches.rows.reshape(-1, width)[jax.random.randint(key, (size,), 0, known)]
+    x, u, flags, after = jnp.split(rows, (n, n + m, n + m + 2), axis=1)
+    return Batch(x, u, flags[:, 0], flags[:, 1], jnp.zeros(size), after)
+
+
+def fresh(step: Transitions, start: Array, m: int, steps: int, key: Array) -> Batch:
+    """The last of 1 to `steps` decisions from each state `start` [b, n]. The key is consumed."""
+    acting, moving, choosing, stopping = jax.random.split(key, 4)
+    b, n = start.shape
+    along = (
+        jax.random.normal(acting, (steps, b, m)),
+        jax.random.normal(moving, (steps, b, n)),
+        jax.random.split(choosing, steps),
+        jnp.arange(steps),
+    )
+    last = jax.random.randint(stopping, (b,), 0, steps)
+
+    def forward(carry: tuple[Array, Batch], at: tuple[Array, ...]) -> tuple:
+        x, last_one = carry
+        *random, t = at
+        new = step(x, *random)
+        last_one = where(t == last, new, last_one)
+        ended = new.terminated > 0.5  # an ended branch restarts at its first state
+        return (where(ended, start, new.next_obs), last_one), None
+
+    shapes = jax.eval_shape(step, start, *(each[0] for each in along[:3]))
+    empty = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
+    return jax.lax.scan(forward, (start, empty), along, unroll=min(steps, 4))[0][1]

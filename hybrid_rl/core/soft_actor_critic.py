@@ -1,0 +1,124 @@
+"""The steps of actor-critic learners: a critic towards targets, a policy, a temperature.
+
+    y      = r + gamma (1 - terminated) (min_i Q'_i(x', u') - alpha log pi(u'|x')),  u' ~ pi(x')
+    L_Q    = 0.5 sum_i mean w (Q_i(x, u) - y)^2
+    L_a    = -log(alpha) mean (log pi(v|x) + target),     v ~ pi(x)
+
+Source: Haarnoja et al. 2018b.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import optax
+from flax import struct
+from jax import Array
+
+from hybrid_rl.core import statistics
+from hybrid_rl.protocols import Critic, LearnedPolicy
+from hybrid_rl.types import Batch, Spec
+
+
+@struct.dataclass
+class SACState:
+    """Policy, critic and temperature, with their optimisers."""
+
+    policy: Any
+    critic: Any
+    target: Any
+    log_alpha: Array  # []
+    policy_optimiser: Any
+    critic_optimiser: Any
+    alpha_optimiser: Any
+
+
+def init(part: Any, key: Array, spec: Spec) -> SACState:
+    """The initial state of `part`, a learner with the fields of SAC. The key is consumed."""
+    for_policy, for_critic = jax.random.split(key)
+    policy, critic = part.policy.init(for_policy, spec), part.critic.init(for_critic, spec)
+    log_alpha = jnp.log(jnp.float32(part.alpha))
+    return SACState(
+        policy,
+        critic,
+        jax.tree.map(jnp.copy, critic),
+        log_alpha,
+        optax.adam(part.policy_learning_rate).init(policy),
+        optax.adam(part.critic_learning_rate).init(critic),
+        optax.adam(part.alpha_learning_rate).init(log_alpha),
+    )
+
+
+def adam(rate: float, grads: Any, optimiser: Any, params: Any) -> tuple[Any, Any]:
+    """One step: new parameters, new state of the optimiser."""
+    change, optimiser = optax.adam(rate).update(grads, optimiser, params)
+    return optax.apply_updates(params, change), optimiser
+
+
+def observed(
+    state: Any, policy: LearnedPolicy, critic: Critic, x: Array, reward: Array, discount: float
+) -> Any:
+    """`state` with the running statistics of states x [B, n] and rewards [B]."""
+    return state.replace(
+        policy=policy.observe(state.policy, x),
+        critic=critic.observe(state.critic, x, reward / (1 - discount)),
+    )
+
+
+def target(part: Any, state: Any, alpha: Array, batch: Batch, noise: Array) -> Array:
+    """y [B] = r + gamma (1 - terminated) (min_i Q'_i(x', u') - alpha log pi(u'|x'))."""
+    v, log_prob = part.policy.sample(state.policy, batch.next_obs, noise)
+    after = part.critic.value(state.target, batch.next_obs, v) - alpha * log_prob
+    return batch.reward + part.discount * (1 - batch.terminated) * after
+
+
+def critic_step(
+    part: Any, state: Any, x: Array, u: Array, y: Array, weight: Array | None = None
+) -> tuple[Any, tuple[Array, Array]]:
+    """`state` after a step towards targets y [B] at x [B, n], u [B, m]; the loss and the mean Q.
+
+    weight: [B] of each target; None: 1.
+    """
+
+    def loss(critic: Any) -> tuple[Array, Array]:
+        q = part.critic.all(critic, x, u)
+        error = (q - y[None]) ** 2
+        error = error if weight is None else weight[None] * error
+        return 0.5 * jnp.sum(jnp.mean(error, axis=-1)), q.mean()
+
+    (value, q), grads = jax.value_and_grad(loss, has_aux=True)(state.critic)
+    critic, optimiser = adam(part.critic_learning_rate, grads, state.critic_optimiser, state.critic)
+    return state.replace(critic=critic, critic_optimiser=optimiser), (value, q)
+
+
+def policy_step(
+    part: Any, state: Any, loss: Callable[[Any], Any], limit: float | None = None
+) -> tuple[Any, tuple[Array, Any, Array]]:
+    """`state` after a step down `loss(policy) -> (value [], more)`; value, more, gradient's norm.
+
+    limit: of the norm; None: none.
+    """
+    (value, more), grads = jax.value_and_grad(loss, has_aux=True)(state.policy)
+    norm = optax.tree.norm(grads)
+    if limit is not None:
+        shrunk = jnp.minimum(1.0, limit / jnp.maximum(norm, 1e-12))
+        grads = jax.tree.map(lambda g: g * shrunk, grads)
+    policy, optimiser = adam(part.policy_learning_rate, grads, state.policy_optimiser, state.policy)
+    return state.replace(policy=policy, policy_optimiser=optimiser), (value, more, norm)
+
+
+def temperature_and_target(part: Any, state: SACState, entropy: Array, actions: int) -> SACState:
+    """`state` with a step of the temperature for `entropy` [], and the target critic following."""
+    aim = -actions if part.target_entropy is None else part.target_entropy
+    log_alpha, optimiser = adam(
+        part.alpha_learning_rate, entropy - aim, state.alpha_optimiser, state.log_alpha
+    )
+    target = statistics.following(state.target, state.critic, part.tau)
+    return state.replace(target=target, log_alpha=log_alpha, alpha_optimiser=optimiser)
+
+
+def check_limit(limit: float | None) -> None:
+    """Raise ValueError for a limit of gradients that is not positive."""
+    if limit is not None and not limit > 0:
+        raise ValueError(f"policy_learner.max_grad_norm={limit}: must be above 0, or null")

@@ -1,0 +1,38 @@
+"""Keys and values of version 0.2 under their present names; docs/renamed.md explains them."""
+
+from collections.abc import Iterable
+
+from hybrid_rl.errors import UsageError
+
+VERSION = "0.3"
+RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it
+    "settings=mbpo": "learning=mbpo",
+    "mbpo.learner": "policy_learner",
+    "mbpo.share": "mbpo.imagined_fraction, with learning=mbpo",
+    "mbpo.memory": "policy_learner.branch_memory",
+    "lookahead.steps": "policy_learner.steps",
+    "policy_learner.early": "policy_learner.during_random",
+    "policy_learner.expand": "policy_learner.value_expansion",
+    "policy_learner.lookahead": "policy_learner.steps, which 0 turns off",
+    "objective=known_reward": "objective=predicted_return reward=known",
+    "objective=quadratic": "objective=predicted_return reward=quadratic",
+    "objective.state_weights": "reward.state_weights, with reward=quadratic",
+    "objective.action_weights": "reward.action_weights, with reward=quadratic",
+    "target=likely": "nothing: no method used it",
+    "target=feature_information": "nothing: no method used it",
+}
+
+
+def check(overrides: Iterable[str]) -> None:
+    """Refuse an override that has another name now.
+
+    Raises:
+        UsageError: with that name, in one line.
+    """
+    for text in overrides:
+        typed = text.lstrip("+~")
+        for old, new in RENAMED.items():
+            end = typed[len(old) : len(old) + 1]
+            if typed.startswith(old) and end in ("", "=", ".", ","):
+                inner = typed[len(old) :].partition("=")[0]
+                raise UsageError(f"{text}: since {VERSION} it is {new}{inner}")

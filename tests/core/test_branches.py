@@ -1,0 +1,43 @@
+"""Branches that are kept, in a model whose every step is known."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.core import branches
+from hybrid_rl.types import Batch
+
+B = 10
+
+
+def counting(x: Array, for_policy: Array, for_model: Array, key: Array) -> Batch:
+    """x' = x + 1; action -x, reward x; the episode ends above 2.5."""
+    ended = jnp.where(x[:, 0] > 2.5, 1.0, 0.0)
+    return Batch(x, -x, x[:, 0], ended, 0 * ended, x + 1)
+
+
+def recalled(start: float, steps: int, updates: int) -> Batch:
+    """Transitions after some updates, with eight in memory for each branch."""
+    kept, first = branches.begin(B, 8 * B, 1, 1, steps), jnp.full((B, 1), start)
+    extend = jax.jit(lambda kept, key: branches.extended(kept, counting, first, 1, steps, key))
+    for key in jax.random.split(jax.random.key(3), updates):
+        kept = extend(kept, key)
+    return branches.recalled(kept, 1, jax.random.key(4))
+
+
+def test_branches_reach_every_length() -> None:
+    """From -9, where nothing ends, to -9 + steps: one decision of the model per update."""
+    np.testing.assert_array_equal(recalled(-9.0, 4, 1).obs[:, 0], -9)
+    batch = recalled(-9.0, 4, 30)
+    at = np.asarray(batch.obs[:, 0])
+    assert set(at) == {-9.0, -8.0, -7.0, -6.0}
+    np.testing.assert_array_equal(batch.reward, at)
+    np.testing.assert_array_equal(batch.action[:, 0], -at)
+    np.testing.assert_array_equal(batch.next_obs[:, 0], at + 1)
+
+
+def test_a_branch_that_ended_restarts() -> None:
+    batch = recalled(1.0, 9, 30)
+    assert set(np.asarray(batch.obs[:, 0])) == {1.0, 2.0, 3.0}
+    np.testing.assert_allclose(batch.terminated, np.asarray(batch.obs[:, 0]) > 2.5)
