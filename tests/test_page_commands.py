@@ -1,7 +1,7 @@
 """Commands on the library's pages compose; those that do not train run in a small size."""
 
+import re
 from functools import partial
-from pathlib import Path
 
 import page_commands as commands
 import pytest
@@ -14,6 +14,7 @@ SMALL = {  # command -> arguments that make it small
     "evaluate": {"episodes": "1"},
     "render": {"episode_steps": "2", "width": "64", "height": "48"},
 }
+FILE_OR_NUMBER = re.compile(r"[\w/]+(?=\.\w+$)|[\d.,]+$")
 METRICS = {"train/return", "eval/return", "eval/policy_return"}  # of the small run
 
 
@@ -30,7 +31,7 @@ def test_other_commands_have_the_arguments_of_the_page(page):
 def programs():
     """(command, its arguments) of the pages, in their order, each as often as it differs.
 
-    A name of a file makes no difference, but its suffix does.
+    A number or a name of a file makes no difference, but the file's suffix does.
     """
     found = {}
     for page in [*commands.LIBRARY, *commands.RESULTS]:
@@ -42,7 +43,7 @@ def programs():
             if name == "evaluate":  # the small run is one of another task
                 given = {key: each for key, each in given.items() if not key.startswith("env.")}
             given |= SMALL.get(name, {})
-            kind = given | {"out": Path(given.get("out", "")).suffix}
+            kind = {key: FILE_OR_NUMBER.sub("", each) for key, each in given.items()}
             found.setdefault((name, *sorted(kind.items())), (name, given))
     return list(found.values())
 
