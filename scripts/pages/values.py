@@ -138,6 +138,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "count": lambda x: np.asarray(x).size,
     "first": lambda x, n: x[: int(n)],
     "iqm": lambda x: float(iqm_of(np.asarray(x))),
+    "last": lambda x, n: x[..., -int(n) :],
     "join": lambda *x: np.concatenate(x),
     "max": lambda *x: max(np.max(one) for one in x),
     "mean": np.mean,
