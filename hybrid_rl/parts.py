@@ -27,7 +27,7 @@ TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
 ROOMS = (  # folders of hybrid_rl that hold parts
     *("beliefs", "controllers", "core", "critics", "data", "envs", "features", "learners"),
-    *("maps", "models", "objectives", "policies", "proposals", "rewards", "targets", "training"),
+    *("models", "objectives", "policies", "proposals", "rewards", "targets", "training"),
 )
 NONE = "is no part of hybrid_rl"
 OTHER = f"{NONE}; put its folder on PYTHONPATH if it is yours"

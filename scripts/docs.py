@@ -49,7 +49,7 @@ PACKAGES = {  # page of the reference -> folders and modules
     "Data structures": ("types", "errors"),
     "Protocols": ("protocols",),
     "Core mathematics": ("core",),
-    "Models, maps and features": ("models", "maps", "features", "beliefs", "networks"),
+    "Models, maps and features": ("models", "features", "beliefs", "networks"),
     "Policies and critics": ("policies", "critics"),
     "Objectives, targets and proposals": ("objectives", "targets", "proposals"),
     "Controllers": ("controllers",),

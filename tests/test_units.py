@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from hybrid_rl import config
+from hybrid_rl.beliefs.maps.known import KnownMap
 from hybrid_rl.core import poses
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
-from hybrid_rl.maps.known import KnownMap
 from hybrid_rl.training.loop import Loop
 
 OBJECTS = ((0.3, 0.6, 0.0, 0.12, 0.12, 0.12), (0.7, 0.4, 0.4, 0.1, 0.08, 0.02))

@@ -27,8 +27,7 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core.solving import log_det_one_plus
-from hybrid_rl.protocols import Model
-from hybrid_rl.types import Path, Spec
+from hybrid_rl.types import Path
 
 CRITERIA = ("A_step", "A", "D", "T", "full")
 KINDS = ("step", "path")
@@ -112,29 +111,3 @@ def criterion(name: str, F: Array, sigma: Array, prior: Array) -> Array:
     if name == "D":
         return jnp.sum(jnp.log1p(total / prior))
     return jnp.log(jnp.sum(total + prior))
-
-
-def require_parameters(name: str, model: Model, spec: Spec) -> None:
-    """Raise ValueError unless `model`, a field of the part `name`, learns by gradients."""
-    shapes: Any = jax.eval_shape(lambda: model.init(jax.random.key(0), spec))
-    if not (isinstance(shapes, dict) and "net" in shapes.get("weights", ())):
-        raise ValueError(
-            f"{name}.model={type(model).__name__}: has no weights whose information could be "
-            "measured; choose model=gaussian"
-        )
-
-
-def weights_of(params: Any) -> Any:
-    """theta of a model with `params`: the weights of its mean."""
-    return params["weights"]["net"]
-
-
-def with_weights(params: Any, theta: Any) -> Any:
-    """The model's parameters with theta for the weights of its mean."""
-    return {**params, "weights": {**params["weights"], "net": theta}}
-
-
-def noise_of(model: Any, params: Any, x: Array, sigma: float | None) -> Array:
-    """sigma [n] in units of x [n]; given in running deviations of the change, None: the model's."""
-    of_change = model.std(params, x) if sigma is None else sigma
-    return of_change * params["change"].scale

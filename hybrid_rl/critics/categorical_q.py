@@ -19,8 +19,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import unit_networks
-from hybrid_rl.core.unit_networks import UnitNet
+from hybrid_rl.networks import normalised
+from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.types import Spec
 
 
@@ -40,7 +40,7 @@ class CategoricalQ:
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
-        unit_networks.check("critic", self.hidden)
+        normalised.check("critic", self.hidden)
         for name, least in (("members", 1), ("bins", 2)):
             value = getattr(self, name)
             if not isinstance(value, int) or value < least:
@@ -53,21 +53,21 @@ class CategoricalQ:
         """z [bins]."""
         return jnp.linspace(-self.bound, self.bound, self.bins)
 
-    def _net(self) -> UnitNet:
-        return UnitNet(self.hidden[0], len(self.hidden), self.bins)
+    def _net(self) -> NormalisedNet:
+        return NormalisedNet(self.hidden[0], len(self.hidden), self.bins)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters, members on axis 0. The key is consumed."""
         keys, net = jax.random.split(key, self.members), self._net()
-        return jax.vmap(lambda k: unit_networks.init(net, k, spec.n + spec.act))(keys)
+        return jax.vmap(lambda k: normalised.init(net, k, spec.n + spec.act))(keys)
 
     def constrained(self, params: dict[str, Any]) -> dict[str, Any]:
         """`params` with weights of unit norm."""
-        return {**params, "weights": unit_networks.constrained(params["weights"])}
+        return {**params, "weights": normalised.constrained(params["weights"])}
 
     def all(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Q of every member [members, ...] at x [..., n] and u [..., m]."""
-        logits = jax.vmap(lambda p, xu: unit_networks.apply(self._net(), p, xu))(
+        logits = jax.vmap(lambda p, xu: normalised.apply(self._net(), p, xu))(
             params, self._inputs(x, u)
         )
         return jax.nn.softmax(logits) @ self.atoms
@@ -81,7 +81,7 @@ class CategoricalQ:
 
         Also the parameters with the batch's statistics.
         """
-        logits, params = jax.vmap(lambda p, xu: unit_networks.apply_in_batch(self._net(), p, xu))(
+        logits, params = jax.vmap(lambda p, xu: normalised.apply_in_batch(self._net(), p, xu))(
             params, self._inputs(x, u)
         )
         return jax.nn.log_softmax(logits), params

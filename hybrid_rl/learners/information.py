@@ -18,6 +18,7 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import fisher
+from hybrid_rl.networks import mean_weights
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -67,9 +68,9 @@ class InformationLearner:
 
     def init(self, key: Array, spec: Spec) -> InformationState:
         """No information. The key is not used."""
-        fisher.require_parameters("information_learner", self.model, spec)
+        mean_weights.require("information_learner", self.model, spec)
         model = self.model.init(key, spec)
-        size = ravel_pytree(fisher.weights_of(model))[0].size
+        size = ravel_pytree(mean_weights.of(model))[0].size
         return InformationState(jnp.zeros(size), jnp.zeros(()), jnp.zeros(()))
 
     def params(self, state: InformationState) -> dict[str, Any]:
@@ -84,10 +85,10 @@ class InformationLearner:
 
         def one(x: Array, u: Array) -> Array:
             def f(theta: Any) -> Array:
-                return self.model.step(fisher.with_weights(model, theta), x, u)
+                return self.model.step(mean_weights.replaced(model, theta), x, u)
 
-            F = fisher.jacobian(f, fisher.weights_of(model))
-            return fisher.diagonal(F, fisher.noise_of(self.model, model, x, self.sigma))
+            F = fisher.jacobian(f, mean_weights.of(model))
+            return fisher.diagonal(F, mean_weights.noise(self.model, model, x, self.sigma))
 
         now = jax.vmap(one)(batch.obs, batch.action).mean(0)
         batches = state.batches + 1

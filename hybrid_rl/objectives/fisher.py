@@ -15,6 +15,7 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import fisher
+from hybrid_rl.networks import mean_weights
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -57,22 +58,22 @@ class FisherInformation:
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: what the data say is in `Params`."""
-        fisher.require_parameters("information", self.model, spec)
+        mean_weights.require("information", self.model, spec)
         return ()
 
     def prepare(
         self, params: Params, memory: tuple[()], x: Array, u_before: Array, key: Array
     ) -> tuple[Return, tuple[()]]:
         """J of a path. The key is consumed."""
-        theta = fisher.weights_of(params.model)
+        theta = mean_weights.of(params.model)
         flat, unravel = ravel_pytree(theta)
-        sigma = fisher.noise_of(self.model, params.model, x, self.sigma)
+        sigma = mean_weights.noise(self.model, params.model, x, self.sigma)
         prior = jnp.full_like(flat, self.floor)
         if self.past and params.information is not None:
             prior += params.information.total
 
         def step(theta: object, x: Array, u: Array) -> Array:
-            return self.model.step(fisher.with_weights(params.model, theta), x, u)
+            return self.model.step(mean_weights.replaced(params.model, theta), x, u)
 
         def exact(path: Path) -> Array:
             F = fisher.along(step, theta, path, self.sensitivity)

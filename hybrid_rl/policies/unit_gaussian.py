@@ -2,9 +2,9 @@
 
     log sigma = low + (high - low) (1 + tanh(s(x))) / 2
 
-mu and s are the outputs of one network of hybrid_rl.core.unit_networks. In a batch it is normalised
-by that batch, elsewhere by running statistics. Source: the policy of FlashSAC (Kim et al. 2026),
-with its width, its two blocks and its bounds.
+mu and s are the outputs of one network (hybrid_rl.networks.normalised). In a batch that
+batch normalises it, elsewhere running statistics do. Source: the policy of FlashSAC (Kim et al.
+2026), with its width, its two blocks and its bounds.
 """
 
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import unit_networks
 from hybrid_rl.core.squashing import log_density
-from hybrid_rl.core.unit_networks import UnitNet
+from hybrid_rl.networks import normalised
+from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.types import Spec
 
 
@@ -34,16 +34,16 @@ class UnitGaussian:
     def __post_init__(self) -> None:
         """Check the fields."""
         object.__setattr__(self, "hidden", tuple(self.hidden))
-        unit_networks.check("policy", self.hidden)
+        normalised.check("policy", self.hidden)
         if self.log_std_min >= self.log_std_max:
             raise ValueError(f"policy.log_std_min={self.log_std_min}: must lie below log_std_max")
 
-    def _net(self, out: int) -> UnitNet:
-        return UnitNet(self.hidden[0], len(self.hidden), out)
+    def _net(self, out: int) -> NormalisedNet:
+        return NormalisedNet(self.hidden[0], len(self.hidden), out)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters. The key is consumed."""
-        return unit_networks.init(self._net(2 * spec.act), key, spec.n)
+        return normalised.init(self._net(2 * spec.act), key, spec.n)
 
     def observe(self, params: dict[str, Any], x: Array) -> dict[str, Any]:
         """`params`: the statistics are those of `in_batch`."""
@@ -51,11 +51,11 @@ class UnitGaussian:
 
     def constrained(self, params: dict[str, Any]) -> dict[str, Any]:
         """`params` with weights of unit norm."""
-        return {**params, "weights": unit_networks.constrained(params["weights"])}
+        return {**params, "weights": normalised.constrained(params["weights"])}
 
     def gaussian(self, params: dict[str, Any], x: Array) -> tuple[Array, Array]:
         """The mean mu and standard deviation sigma [..., m] before tanh, at x [..., n]."""
-        return self._split(unit_networks.apply(self._net(unit_networks.outputs(params)), params, x))
+        return self._split(normalised.apply(self._net(normalised.outputs(params)), params, x))
 
     def _split(self, both: Array) -> tuple[Array, Array]:
         mu, s = jnp.split(both, 2, axis=-1)
@@ -82,8 +82,8 @@ class UnitGaussian:
         self, params: dict[str, Any], x: Array, noise: Array
     ) -> tuple[Array, Array, dict[str, Any]]:
         """`sample` at x [B, n], normalised by that batch; parameters with its statistics."""
-        net = self._net(unit_networks.outputs(params))
-        both, params = unit_networks.apply_in_batch(net, params, x)
+        net = self._net(normalised.outputs(params))
+        both, params = normalised.apply_in_batch(net, params, x)
         return *_sampled(*self._split(both), noise), params
 
     def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:

@@ -8,10 +8,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from hybrid_rl.beliefs.maps.known import KnownMap
 from hybrid_rl.beliefs.pose_particles import PoseParticles
 from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
-from hybrid_rl.maps.known import KnownMap
 from hybrid_rl.types import Spec
 
 SPEC = Spec(obs=4, act=2, dt=0.1)

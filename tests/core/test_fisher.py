@@ -12,6 +12,7 @@ from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import adjoint, fisher
 from hybrid_rl.models.gaussian import Gaussian
+from hybrid_rl.networks import mean_weights
 from hybrid_rl.types import Path, Spec
 
 T, N, M = 3, 2, 1
@@ -39,9 +40,9 @@ def network(model: Gaussian = MODEL) -> tuple:
     params = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), params)
 
     def step(theta, x: Array, u: Array) -> Array:
-        return model.step(fisher.with_weights(params, theta), x, u)
+        return model.step(mean_weights.replaced(params, theta), x, u)
 
-    return step, fisher.weights_of(params)
+    return step, mean_weights.of(params)
 
 
 @partial(jax.jit, static_argnums=0)

@@ -15,10 +15,10 @@ import pytest
 from tiny import call, only_line
 
 from hybrid_rl import evaluate, export, trained
+from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive, demonstrations, layers
 from hybrid_rl.errors import UsageError
-from hybrid_rl.maps import learned
 from hybrid_rl.types import Spec, Transition
 
 WEIGHTS = "policy/trunk/params/Dense_0/kernel"

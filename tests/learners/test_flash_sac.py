@@ -10,11 +10,11 @@ from jax import Array
 from scipy.stats import norm
 
 from hybrid_rl.controllers.policy import PolicyController
-from hybrid_rl.core import unit_networks
-from hybrid_rl.core.unit_networks import UnitNet
 from hybrid_rl.critics.categorical_q import CategoricalQ
 from hybrid_rl.learners.flash_sac import FlashSAC
 from hybrid_rl.learners.return_scale import ReturnScale
+from hybrid_rl.networks import normalised
+from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.policies.unit_gaussian import UnitGaussian
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -134,8 +134,8 @@ def test_the_target_is_the_projection_of_bellemare_et_al() -> None:
 
 def test_in_a_batch_the_network_is_normalised_by_it() -> None:
     """Written again in NumPy; the running statistics move by a hundredth of the way."""
-    net = UnitNet(width=4, blocks=1, out=3)
-    params = jax.jit(lambda key: unit_networks.init(net, key, 2))(jax.random.key(0))
+    net = NormalisedNet(width=4, blocks=1, out=3)
+    params = jax.jit(lambda key: normalised.init(net, key, 2))(jax.random.key(0))
     x = np.random.default_rng(1).normal(3, 2, (16, 2))
     kernels = [np.asarray(params["weights"][f"Dense_{i}"]["kernel"], float) for i in range(3)]
 
@@ -146,7 +146,7 @@ def test_in_a_batch_the_network_is_normalised_by_it() -> None:
     h = h + np.maximum(normal(np.maximum(normal(h @ kernels[1]), 0) @ kernels[2]), 0)
     h = h / np.sqrt((h**2).mean(1, keepdims=True) + 1e-6)
     expected = h @ np.asarray(params["weights"]["head"]["kernel"], float)
-    y, after = jax.jit(unit_networks.apply_in_batch, static_argnums=0)(net, params, jnp.float32(x))
+    y, after = jax.jit(normalised.apply_in_batch, static_argnums=0)(net, params, jnp.float32(x))
     np.testing.assert_allclose(y, expected, atol=1e-4)
     first = after["statistics"]["BatchNorm_0"]
     np.testing.assert_allclose(first["mean"], 0.01 * x.mean(0), rtol=1e-4)

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from jax import Array
 
-from hybrid_rl.core import held_out
-from hybrid_rl.learners.model import ModelLearner
+from hybrid_rl.learners.model import ModelLearner, held_out
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.objectives.predicted_return import PredictedReturn

@@ -19,9 +19,9 @@ import numpy as np
 from scipy import ndimage, stats
 
 from hybrid_rl.analysis.recorded import Recorded, labels, matching, one_episode, read
+from hybrid_rl.beliefs.maps.known import KnownMap
 from hybrid_rl.core import poses
 from hybrid_rl.errors import UsageError
-from hybrid_rl.maps.known import KnownMap
 
 TASKS = ("contact_plane", "sprk", "sawyer_probe")
 GRID = 128  # cells a side of a map

@@ -16,6 +16,7 @@ from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import fisher
+from hybrid_rl.networks import mean_weights
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 
@@ -82,15 +83,15 @@ def fitted(run: Run, data: Batch, updates: int, key: Array) -> Any:
 
 def derivatives(model: Any, params: Any, sigma: float, obs: Any, action: Any) -> np.ndarray:
     """F / sigma [B, n, P] of the reference model at transitions [B]."""
-    theta = fisher.weights_of(params)
+    theta = mean_weights.of(params)
 
     @jax.jit
     def chunk(x: Array, u: Array) -> Array:
         def one(x: Array, u: Array) -> Array:
             def f(theta: Any) -> Array:
-                return model.step(fisher.with_weights(params, theta), x, u)
+                return model.step(mean_weights.replaced(params, theta), x, u)
 
-            noise = fisher.noise_of(model, params, x, sigma)
+            noise = mean_weights.noise(model, params, x, sigma)
             return fisher.jacobian(f, theta) / noise[:, None]
 
         return jax.vmap(one)(x, u)

@@ -10,9 +10,9 @@ import pytest
 from tiny import call, only_line
 
 from hybrid_rl import figures
+from hybrid_rl.beliefs.maps.learned import LearnedMap
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
-from hybrid_rl.maps.learned import LearnedMap
 from hybrid_rl.thesis.studies import contact_maps_picture, contact_poses, contacts, false_contacts
 
 pytestmark = pytest.mark.xdist_group("contact_runs")  # their fixture is expensive

@@ -22,9 +22,9 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import held_out
 from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import LearnedReward, Trainable
 from hybrid_rl.types import Batch, Params, Spec
 

@@ -27,7 +27,7 @@ EPSILON = 1e-5  # added to variances
 BEGIN = nn.initializers.normal(1.0)  # `constrained` gives the vectors norm 1
 
 
-class UnitNet(nn.Module):
+class NormalisedNet(nn.Module):
     """`blocks` residual blocks: [..., d] -> [..., out]."""
 
     width: int
@@ -61,20 +61,22 @@ def check(name: str, hidden: tuple[int, ...]) -> None:
         )
 
 
-def init(net: UnitNet, key: Array, size: int) -> dict[str, Any]:
+def init(net: NormalisedNet, key: Array, size: int) -> dict[str, Any]:
     """Parameters for inputs [size]. The key is consumed."""
     made: Any = net.init(key, jnp.zeros(size), False)
     return {"weights": constrained(made["params"]), "statistics": made["batch_stats"]}
 
 
-def apply(net: UnitNet, params: dict[str, Any], x: Array) -> Array:
+def apply(net: NormalisedNet, params: dict[str, Any], x: Array) -> Array:
     """Outputs [..., out] at x [..., d], by the running statistics."""
     read = {"params": params["weights"], "batch_stats": params["statistics"]}
     y: Any = net.apply(read, x, False)
     return y
 
 
-def apply_in_batch(net: UnitNet, params: dict[str, Any], x: Array) -> tuple[Array, dict[str, Any]]:
+def apply_in_batch(
+    net: NormalisedNet, params: dict[str, Any], x: Array
+) -> tuple[Array, dict[str, Any]]:
     """Outputs [B, out] at x [B, d], by the batch's statistics; parameters that include them."""
     read = {"params": params["weights"], "batch_stats": params["statistics"]}
     y, changed = net.apply(read, x, True, mutable=["batch_stats"])

@@ -9,7 +9,7 @@ If the effective number falls below N/2, particles are resampled and made to dif
     manifold    the manifold particle filter, after each contact
     jitter      noise: a plain filter
 
-See core.rejuvenation. A measurement at s informs by
+See `rejuvenation`. A measurement at s informs by
 
     trace   E |dp/dtheta|^2 / (p (1 - p)),  angles in units of 1 / rho
     det     the determinant of E [dp/dtheta dp/dtheta' / (p (1 - p))]
@@ -25,7 +25,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import poses, rejuvenation, resampling
+from hybrid_rl.beliefs.pose_particles import rejuvenation
+from hybrid_rl.core import poses, resampling
 from hybrid_rl.core.branching import when_any
 from hybrid_rl.core.domain import Box
 from hybrid_rl.core.ranges import above_zero

@@ -7,11 +7,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from hybrid_rl.beliefs.maps import learned
+from hybrid_rl.beliefs.maps.known import KnownMap
+from hybrid_rl.beliefs.maps.learned import LearnedMap
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.envs.analytic.point_mass import PointMass
-from hybrid_rl.maps import learned
-from hybrid_rl.maps.known import KnownMap
-from hybrid_rl.maps.learned import LearnedMap
 
 DISC = ContactPlane(objects=((0.5, 0.5, 0.0, 0.2, 0.2, 0.2),))
 

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.core import held_out
+from hybrid_rl.learners.model import held_out
 from hybrid_rl.types import Batch
 
 FULL = 2**32
