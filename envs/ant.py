@@ -22,7 +22,7 @@ Source: Schulman et al. 2015; parameters of Gymnasium's Ant-v5; reward of pybull
 thesis uses (its body weighs 182 kg there because the importer ignores the densities).
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -31,7 +31,7 @@ from jax import Array
 from hybrid_rl.envs.locomotion import pybullet_reward
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
 ASSETS = {  # by contacts and integrator
@@ -44,19 +44,16 @@ STEPS = 5  # physics steps per decision
 DT = 0.05  # [s] of a decision
 
 
-@dataclass(frozen=True)
+@part
 class Ant:
     """Ant; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    reward: str = "pybullet"  # or gymnasium
-    integrator: str = "rk4"  # as Gymnasium; euler, as Brax, costs a quarter
-    contacts: str = "points"  # or capsules, as Gymnasium
+    reward: Literal["pybullet", "gymnasium"] = "pybullet"
+    integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler, as Brax, costs a quarter
+    contacts: Literal["points", "capsules"] = "points"
 
     def __post_init__(self) -> None:
-        one_of("integrator", self.integrator, ("rk4", "euler"))
-        one_of("contacts", self.contacts, ("points", "capsules"))
-        one_of("reward", self.reward, ("pybullet", "gymnasium"))
         check(self.physics)
 
     @property

@@ -15,8 +15,8 @@ Source: pybullet_envs, InvertedPendulumSwingupBulletEnv; Tassa et al. 2018,
 DeepMind Control Suite, cartpole swingup.
 """
 
-from dataclasses import dataclass
 from math import log
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -24,22 +24,21 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "cartpole.xml"
 DT = 0.0165  # [s] of a decision
 
 
-@dataclass(frozen=True)
+@part
 class Cartpole:
     """Cartpole swing-up; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    reward: str = "cos"  # or dm_control
+    reward: Literal["cos", "dm_control"] = "cos"
 
     def __post_init__(self) -> None:
-        one_of("reward", self.reward, ("cos", "dm_control"))
         check(self.physics)
 
     @property

@@ -10,7 +10,7 @@ qpos ~ U(-0.1, 0.1), qvel ~ 0.1 N(0, 1); a decision is 5 steps of 0.01 s; never 
 Source: P. Wawrzynski 2009; parameters of Gymnasium's HalfCheetah-v5; pybullet_envs.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -19,7 +19,7 @@ from jax import Array
 from hybrid_rl.envs.locomotion import pybullet_reward
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
 ASSETS = {"gymnasium": "halfcheetah.xml", "pybullet": "halfcheetah_contact.xml"}  # by reward
@@ -28,15 +28,14 @@ DT = 0.05  # [s] of a decision
 LEGS = ("back_thigh", "back_shin", "front_thigh", "front_shin")
 
 
-@dataclass(frozen=True)
+@part
 class HalfCheetah:
     """Half-cheetah; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    reward: str = "gymnasium"  # or pybullet
+    reward: Literal["gymnasium", "pybullet"] = "gymnasium"
 
     def __post_init__(self) -> None:
-        one_of("reward", self.reward, tuple(ASSETS))
         check(self.physics)
 
     @property

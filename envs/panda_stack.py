@@ -29,8 +29,8 @@ initial pose from Franka; rate and workspace from the author's franka_interface.
 blocks, their initial positions, automatic closing and success are our choice.
 """
 
-from dataclasses import dataclass
 from math import exp, pi
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -39,7 +39,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "panda_stack.xml"
@@ -60,26 +60,26 @@ BLOCK, BASE = slice(9, 12), slice(16, 19)  # positions in qpos
 BLOCK_SPEED = slice(9, 12)  # in qvel
 
 
-@dataclass(frozen=True)
+@part
 class PandaStack:
     """Panda stacks a block; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     speed: float = 0.15  # [m/s] in each direction at a = 1
-    lag: float = 0.2  # [s] time constant of the filter; 0: no filter
-    grip: str = "near"  # closes automatically; action: by a fourth action
+    lag: NotNegative = 0.2  # [s] time constant of the filter; 0: no filter
+    grip: Literal["near", "action"] = "near"  # closes automatically; action: by a fourth action
     reach: float = 0.01  # [m] at which it closes and opens automatically
-    low: tuple[float, ...] = (0.3, -0.3, 0.02)  # [m] lower limit of the workspace
-    high: tuple[float, ...] = (0.55, 0.3, 0.5)  # [m] upper limit
-    block: tuple[float, ...] = (0.45, -0.12)  # [m] centre of its initial positions
+    low: tuple[float, float, float] = (0.3, -0.3, 0.02)  # [m] lower limit of the workspace
+    high: tuple[float, float, float] = (0.55, 0.3, 0.5)  # [m] upper limit
+    block: tuple[float, float] = (0.45, -0.12)  # [m] centre of its initial positions
     block_spread: float = 0.05  # [m] largest offset along x and y
     block_turn: float = 0.1  # [rad] largest initial rotation
-    base: tuple[float, ...] = (0.45, 0.12)  # [m] centre of its initial positions
+    base: tuple[float, float] = (0.45, 0.12)  # [m] centre of its initial positions
     base_spread: float = 0.0  # [m] largest offset along x and y
-    block_mass: float = 0.1  # [kg] of block and base
-    block_friction: float = 1.0  # of all contacts
-    observation: str = "thesis"  # or relative, or stage
-    reward: str = "thesis"  # or joined
+    block_mass: Positive = 0.1  # [kg] of block and base
+    block_friction: Positive = 1.0  # of all contacts
+    observation: Literal["thesis", "relative", "stage"] = "thesis"
+    reward: Literal["thesis", "joined"] = "thesis"
     penalty: float = 1e-6  # weight of wrench and action
     success_distance: float = 0.02  # [m] horizontal, block to base
     terminate: bool = True  # at success
@@ -89,19 +89,6 @@ class PandaStack:
 
     def __post_init__(self) -> None:
         check(self.physics)
-        one_of("grip", self.grip, ("near", "action"))
-        one_of("observation", self.observation, OBSERVATIONS)
-        one_of("reward", self.reward, ("thesis", "joined"))
-        for name, size in (("low", 3), ("high", 3), ("block", 2), ("base", 2)):
-            numbers = tuple(getattr(self, name))
-            if len(numbers) != size:
-                raise ValueError(f"{name}={list(numbers)}: must be {size} numbers")
-            object.__setattr__(self, name, numbers)
-        for name in ("block_mass", "block_friction"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
-        if self.lag < 0:
-            raise ValueError(f"lag={self.lag}: must be 0 or more")
 
     @property
     def spec(self) -> Spec:

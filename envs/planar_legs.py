@@ -12,8 +12,7 @@ Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium; pybullet_envs.
 """
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import jax
 import jax.numpy as jnp
@@ -22,27 +21,24 @@ from jax import Array
 from hybrid_rl.envs.locomotion import pybullet_reward
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 STEPS = 4  # physics steps per decision
 DT = 0.008  # [s] of a decision
 
 
-@dataclass(frozen=True)
+@part
 class PlanarLegs(ABC):
     """A robot by its `asset` and `alive`; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    reward: str = "gymnasium"  # or pybullet
-    velocity_limit: float | None = 10.0  # of observed velocities [m/s, rad/s]
+    reward: Literal["gymnasium", "pybullet"] = "gymnasium"
+    velocity_limit: Positive | None = 10.0  # of observed velocities [m/s, rad/s]
     asset: ClassVar[str]
 
     def __post_init__(self) -> None:
-        one_of("reward", self.reward, ("gymnasium", "pybullet"))
         check(self.physics)
-        if self.velocity_limit is not None and self.velocity_limit <= 0.0:
-            raise ValueError(f"velocity_limit={self.velocity_limit}: must be above 0, or null")
 
     @abstractmethod
     def alive(self, qpos: Array, qvel: Array) -> Array:

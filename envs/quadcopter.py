@@ -17,7 +17,7 @@ from section 6.3.2; the position's weight is our choice. Damping is in the thesi
 its equations.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -26,7 +26,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import inverse, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "quadcopter.xml"
@@ -36,12 +36,12 @@ MAX_CONTROL = 6.0  # of a motor
 SUCCESS_ERROR = 0.01  # squared error below which the task is solved
 
 
-@dataclass(frozen=True)
+@part
 class Quadcopter:
     """Quadcopter; `physics` is native, mjx, warp or auto; mass and inertia come from `asset`."""
 
     physics: str = "auto"
-    task: str = "hover"  # or track
+    task: Literal["hover", "track"] = "hover"
     damping: bool = False  # air drag
     bidirectional: bool = True  # negative thrust, too
     start_speed: float = 2.0  # [m/s, rad/s] largest in each direction
@@ -50,7 +50,6 @@ class Quadcopter:
     asset: str = ASSET  # another file needs the same actuators
 
     def __post_init__(self) -> None:
-        one_of("task", self.task, ("hover", "track"))
         check(self.physics)
 
     @property

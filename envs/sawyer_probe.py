@@ -16,7 +16,6 @@ Source: thesis section 5.3 (a robot that feels contact); arm and servos are thos
 Objects, box, a, b, k and `lead` are our choice.
 """
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -36,6 +35,7 @@ from hybrid_rl.envs.mujoco.kinematics import (
 )
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.sawyer_push import HOME
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "sawyer_probe.xml"
@@ -51,7 +51,7 @@ THREE = (  # a disc, a box and a bar, without symmetry
 )
 
 
-@dataclass(frozen=True)
+@part
 class SawyerProbe:
     """Sawyer among fixed objects; `physics` is native, mjx, warp or auto.
 
@@ -66,18 +66,15 @@ class SawyerProbe:
     low: tuple[float, ...] = (0.35, -0.25)  # [m] of the box: x, y
     high: tuple[float, ...] = (0.75, 0.25)
     theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
-    lead: float = 0.01  # [m] of the command before the tip
-    track: float = 5.0  # [1/s] k
-    hold: float = 10.0  # [1/s] gain on height and orientation
+    lead: Positive = 0.01  # [m] of the command before the tip
+    track: Positive = 5.0  # [1/s] k
+    hold: Positive = 10.0  # [1/s] gain on height and orientation
     posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
-    damping: float = 0.02  # of the least squares, for [m] and [rad]
+    damping: Positive = 0.02  # of the least squares, for [m] and [rad]
     radius: ClassVar[float] = 0.012  # [m] of the rod
 
     def __post_init__(self) -> None:
         check(self.physics)
-        for name in ("lead", "track", "hold", "damping"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
         for name in ("objects", "low", "high", "theta"):
             object.__setattr__(self, name, getattr(self._plane, name))
 

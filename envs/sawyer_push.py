@@ -23,7 +23,7 @@ earlier code for the same robot, as we read its two distances. The initial posit
 block and target are our choice.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -32,7 +32,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import Discount, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "sawyer_push.xml"
@@ -49,48 +49,35 @@ WEIGHTS = {"thesis": (5.0, 10.0), "code": (1.25, 1.0)}  # [1/m] of |b - t| and |
 TIP = Chain(ASSET, "tip")
 
 
-@dataclass(frozen=True)
+@part
 class SawyerPush:
     """Sawyer pushes a block; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    reward: str = "thesis"  # or code
-    extra: tuple[str, ...] = ()  # groups of EXTRA that are observed, too, in that order
+    reward: Literal["thesis", "code"] = "thesis"
+    extra: tuple[Literal["command", "turn", "motion", "tip"], ...] = ()  # of EXTRA, observed too
     state_scale: float = 10.0  # of the observation [1/m]
     speed: float = 0.15  # [m/s] of the tip at a = 1
-    smoothing: float = 0.8  # weight of the previous command in the filter; 0: no filter
-    low: tuple[float, ...] = (0.35, -0.3)  # [m] lower limit of the workspace: x, y
-    high: tuple[float, ...] = (0.75, 0.3)  # [m] upper limit
+    smoothing: Discount = 0.8  # weight of the previous command in the filter; 0: no filter
+    low: tuple[float, float] = (0.35, -0.3)  # [m] lower limit of the workspace: x, y
+    high: tuple[float, float] = (0.75, 0.3)  # [m] upper limit
     success_distance: float = 0.05  # [m] between block and target
     terminate: bool = True  # at success
-    block: tuple[float, ...] = (0.56, 0.12)  # [m] centre of its initial positions
+    block: tuple[float, float] = (0.56, 0.12)  # [m] centre of its initial positions
     block_spread: float = 0.08  # [m] radius of its initial positions
     block_turn: float = 0.2  # [rad] largest initial rotation
-    target_low: tuple[float, ...] = (0.5, -0.2)  # [m]
-    target_high: tuple[float, ...] = (0.7, 0.2)  # [m]
+    target_low: tuple[float, float] = (0.5, -0.2)  # [m]
+    target_high: tuple[float, float] = (0.7, 0.2)  # [m]
     target_clear: float = 0.12  # [m] smallest initial distance from the block
-    block_mass: float = 0.1  # [kg]
-    block_friction: float = 0.4  # on the table and with the rod
+    block_mass: Positive = 0.1  # [kg]
+    block_friction: Positive = 0.4  # on the table and with the rod
     hold: float = 5.0  # [1/s] gain on height and orientation
     posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
     damping: float = 0.02  # of the least squares, for [m] and [rad]
 
     def __post_init__(self) -> None:
         check(self.physics)
-        one_of("reward", self.reward, tuple(WEIGHTS))
-        for name in self.extra:
-            one_of("extra", name, tuple(EXTRA))
         object.__setattr__(self, "extra", tuple(name for name in EXTRA if name in self.extra))
-        for name in ("low", "high", "block", "target_low", "target_high"):
-            pair = tuple(getattr(self, name))
-            if len(pair) != 2:
-                raise ValueError(f"{name}={list(pair)}: must be two numbers, x and y")
-            object.__setattr__(self, name, pair)
-        for name in ("block_mass", "block_friction"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
-        if not 0 <= self.smoothing < 1:
-            raise ValueError(f"smoothing={self.smoothing}: must be in [0, 1)")
 
     @property
     def spec(self) -> Spec:

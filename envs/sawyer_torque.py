@@ -16,7 +16,7 @@ Source: thesis section 7.5.2 and appendix D (rate, path, state); limits of torqu
 Rethink Robotics' sawyer_robot. The reward, the start and the payload are our choice.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -28,8 +28,8 @@ from hybrid_rl.envs import sawyer_reference, sensor_noise
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
 from hybrid_rl.envs.sawyer_reference import ASSET, NEUTRAL, SITE
+from hybrid_rl.fields import Count, Natural, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 SCENE = "sawyer_torque_scene.xml"
@@ -44,26 +44,20 @@ ROD = 0.05  # [kg]
 TIP = Chain(ASSET, SITE)
 
 
-@dataclass(frozen=True)
+@part
 class SawyerTorque:
     """Sawyer with torques as actions; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    damping: str = "none"  # of the joints: none | maker
-    payload: float = 0.0  # [kg] added to the rod
-    learn: int = 2000  # decisions before the reference leaves the neutral pose
-    rounds: int = 2  # of the path
-    start_spread: float = 0.05  # [rad] largest distance of each joint from the neutral pose
-    sensor_noise: float = 0.0  # [rad/s] standard deviation, on q'
+    damping: Literal["none", "maker"] = "none"  # of the joints: none | maker
+    payload: NotNegative = 0.0  # [kg] added to the rod
+    learn: Natural = 2000  # decisions before the reference leaves the neutral pose
+    rounds: Count = 2  # of the path
+    start_spread: NotNegative = 0.05  # [rad] largest distance of each joint from the neutral pose
+    sensor_noise: NotNegative = 0.0  # [rad/s] standard deviation, on q'
 
     def __post_init__(self) -> None:
         check(self.physics)
-        one_of("damping", self.damping, tuple(DAMPING))
-        for name in ("payload", "learn", "start_spread", "sensor_noise"):
-            if getattr(self, name) < 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be 0 or more")
-        if self.rounds < 1:
-            raise ValueError(f"rounds={self.rounds}: must be 1 or more")
 
     @property
     def spec(self) -> Spec:

@@ -21,8 +21,8 @@ quick movements). Radius and mass: those of Sphero's SPRK+, not verified; a, b, 
 the threshold and the contact's stiffness are our choice.
 """
 
-from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -32,7 +32,7 @@ from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane, turned
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 SLIDING, ROLLING = "sprk.xml", "sprk_rolling.xml"
@@ -47,7 +47,7 @@ PLANE = (  # fields that contact_plane has, too
 )
 
 
-@dataclass(frozen=True)
+@part
 class Sprk:
     """A ball among objects; `physics` is native, mjx, warp or auto.
 
@@ -60,26 +60,20 @@ class Sprk:
     acceleration: float = 1.0  # [m/s^2] a
     drag: float = 0.0  # [1/s] b
     radius: float = 0.0365  # [m] of the ball
-    mass: float = 0.18  # [kg] m
-    lag: float = 0.01  # [s] of the motor; 0: none
+    mass: Positive = 0.18  # [kg] m
+    lag: NotNegative = 0.01  # [s] of the motor; 0: none
     rolling: bool = False  # driven by torques on a floor, which it rolls on; else pushed
     low: tuple[float, ...] = (0.0, 0.0)  # [m]
     high: tuple[float, ...] = (1.0, 1.0)
     theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
     spread: tuple[float, ...] = (0.0, 0.0, 0.0)  # of theta at the reset
-    sensor: str = "touch"  # or accelerometer
-    threshold: float = 0.5  # [m/s^2] of the accelerometer
+    sensor: Literal["touch", "accelerometer"] = "touch"
+    threshold: Positive = 0.5  # [m/s^2] of the accelerometer
     false_contact: float = 0.0  # probability for |u - u_before| = 2, besides the sensor's own
     missed: float = 0.0  # probability
 
     def __post_init__(self) -> None:
         check(self.physics)
-        one_of("sensor", self.sensor, ("touch", "accelerometer"))
-        for name in ("mass", "threshold"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
-        if not self.lag >= 0:
-            raise ValueError(f"lag={self.lag}: must be 0 or more")
         for name in PLANE:
             object.__setattr__(self, name, getattr(self._plane, name))
 

@@ -3,14 +3,15 @@
 import inspect
 import math
 from dataclasses import fields, is_dataclass
-from types import NoneType, UnionType
-from typing import Any, Union, get_args, get_origin
+from types import NoneType
+from typing import Any, get_origin
 
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, relative, shown
+from hybrid_rl.fields import choices, plain
 from hybrid_rl.overrides import SHOW, meant
 from hybrid_rl.types import NAME
 
@@ -156,8 +157,7 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     check_fields(node, part, where)
     kinds = {}
     for field in fields(part) if is_dataclass(part) else ():
-        several = get_origin(field.type) in (Union, UnionType)
-        each = get_args(field.type) if several else (field.type,)
+        each = map(plain, choices(field.type))
         wanted = {get_origin(kind) or kind for kind in each}
         if wanted <= set(KINDS):
             kinds[field.name] = wanted

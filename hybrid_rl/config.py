@@ -131,12 +131,12 @@ def build(config: DictConfig) -> Run:
     with _usage(config):
         parts = _on_this_machine(config)
         episode, notes = _episode(parts)
-        controllers = {mode: _instantiate(node) for mode, node in parts.controllers.items()}
+        controllers = {k: _instantiate(v, f"controllers.{k}") for k, v in parts.controllers.items()}
         agent = Agent(
             episode,
             controllers["full"],
-            {name: _instantiate(node) for name, node in parts.learners.items() if node},
-            _instantiate(parts.replay).within(rounds, config.num_envs),
+            {k: _instantiate(v, f"learners.{k}") for k, v in parts.learners.items() if v},
+            _instantiate(parts.replay, "replay").within(rounds, config.num_envs),
             config.num_envs,
             config.random_steps,
             config.pretrain,
@@ -178,7 +178,7 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
 
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
-    env, notes = _instantiate(parts.env), ()
+    env, notes = _instantiate(parts.env, "env"), ()
     if not type(env).__module__.startswith("hybrid_rl."):
         notes = check_world(env)
         if "steps" not in parts.episode:
@@ -187,7 +187,7 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
                 f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",
             )
     check_fields(parts.episode, Episode, "episode.")
-    given = _instantiate(parts.episode)
+    given = _instantiate(parts.episode, "episode")
     if isinstance(env, External):
         given |= _on_host(env, given)
     return Episode(env, **given), notes
@@ -222,7 +222,7 @@ def expert(config: DictConfig) -> Controller:
         )
     check_kinds(config.expert, "expert.")
     with _usage(config, "its expert"):
-        return _instantiate(config.expert)
+        return _instantiate(config.expert, "expert")
 
 
 def physics(config: DictConfig) -> str | None:
@@ -250,9 +250,10 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
     return parts
 
 
-def _instantiate(node: Any) -> Any:
+def _instantiate(node: Any, where: str) -> Any:
+    """The part at the key `where`."""
     plain = isinstance(node, (DictConfig, ListConfig))
-    return built(OmegaConf.to_container(node, resolve=True) if plain else node)
+    return built(OmegaConf.to_container(node, resolve=True) if plain else node, where=where)
 
 
 @contextmanager
@@ -269,12 +270,25 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
             if needs in line:
                 names = ", ".join(tasks_with(method))
                 line = f"task={config.task}: {who or config.algo} {needs}; choose one of {names}"
-        field = line.partition("=")[0]  # a field of the world is typed as env.FIELD
-        raise UsageError(f"env.{line}" if _of_world(config, field) else line) from error
+        field, equals, rest = line.partition("=")
+        if field in config.env and field not in config:  # of a world of the user's
+            line = f"env.{line}"
+        elif equals and "." in field:
+            line = f"{_shortest(config, field)}={rest}"
+        raise UsageError(line) from error
 
 
-def _of_world(config: DictConfig, field: str) -> bool:
-    return field in config.env and field not in config
+def _shortest(config: DictConfig, key: str) -> str:
+    """The shortest key of the same field: policy_learner.tau for learners.policy.tau.
+
+    A part stands in the configuration as often as others refer to it.
+    """
+    where, _, field = key.rpartition(".")
+    part: Any = OmegaConf.select(config, where)
+    if not isinstance(part, DictConfig):
+        return key
+    same = [name for name, node in config.items() if node == part]
+    return f"{same[0] if same else where}.{field}"
 
 
 def tasks_with(method: str, conf: Path = CONF) -> list[str]:

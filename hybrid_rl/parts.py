@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.errors import GYMNASIUM, in_user_code, relative, shown
+from hybrid_rl.fields import FieldError
 
 TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
@@ -87,28 +88,32 @@ def part_class(target: Any, near: Path | None = None) -> Any:
     return found
 
 
-def built(node: Any, near: Path | None = None) -> Any:
+def built(node: Any, near: Path | None = None, where: str = "") -> Any:
     """The part that `node` describes, with the parts in it; what is no part stays as it is.
+
+    where: key of `node` in its configuration, which messages about a field begin with.
 
     Raises:
         ValueError: for a name that is no part's, or fields that a part does not have or accept.
     """
     if isinstance(node, (dict, list)):
         check(node, near)
-    return _made(node, near)
+    return _made(node, near, where)
 
 
-def _made(node: Any, near: Path | None) -> Any:
+def _made(node: Any, near: Path | None, where: str) -> Any:
     if isinstance(node, list):
-        return [_made(each, near) for each in node]
+        return [_made(each, near, where) for each in node]
     if not isinstance(node, dict):
         return node
-    fields = {key: _made(value, near) for key, value in node.items() if key != TARGET}
+    fields = {k: _made(v, near, where and f"{where}.{k}") for k, v in node.items() if k != TARGET}
     if TARGET not in node:
         return fields
     kind = part_class(node[TARGET], near)
     try:
         return kind(**fields)
+    except FieldError as error:
+        raise ValueError(f"{where}.{error.line}" if where else str(error)) from error
     except ValueError:
         raise
     except Exception as error:  # such as a field that it does not have

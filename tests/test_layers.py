@@ -1,6 +1,6 @@
 """Which layers import which, and the size of files.
 
-types, errors, parts
+types, errors, fields, parts
       ^
 core, networks
       ^
@@ -9,7 +9,7 @@ models controllers ... data <- training <- config <- run <- trained <- analysis 
 parts never import each other: YAML files combine them; some read files by data/archive
 a part may be a folder, whose files import each other
 
-envs -> types, protocols, errors; benchmark -> all but parts
+envs -> types, fields, protocols, errors; benchmark -> all but parts
 """
 
 import ast
@@ -23,9 +23,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PATTERNS = ("hybrid_rl/**/*.py", "envs/**/*.py", "thesis/*.py", "thesis/studies/*.py")
 FILES = sorted(file for pattern in PATTERNS for file in ROOT.glob(pattern))
-LAYER_FILES = {"types", "errors", "checks", "composition", "config", "overrides"}
+LAYER_FILES = {"types", "errors", "fields", "checks", "composition", "config", "overrides"}
 LAYER_FILES |= {"parts", "renamed", "trained"}
-SHARED = {"types", "protocols", "core", "networks"}
+SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
     *("types", "protocols", "errors", "parts", "envs", "training"),
     *("checks", "composition", "config", "overrides", "renamed"),
@@ -33,11 +33,12 @@ CONFIG = {
 ALLOWED = {
     "types": set(),
     "errors": set(),
-    "parts": {"errors"},  # judges names, and builds what they name
+    "fields": set(),
+    "parts": {"errors", "fields"},  # judges names, and builds what they name
     "protocols": {"types", "protocols"},
-    "core": {"types", "protocols", "core"},
+    "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "protocols", "core", "networks"},
-    "envs": {"types", "protocols", "errors", "envs"},
+    "envs": {"types", "fields", "protocols", "errors", "envs"},
     "training": {*SHARED, "envs", "data", "training"},
     "archive": {"types", "protocols"},
     "data": {*SHARED, "parts", "archive"},
@@ -45,7 +46,7 @@ ALLOWED = {
     "policies": {*SHARED, "archive"},
     "renamed": {"errors"},
     "overrides": {"errors"},
-    "checks": {"types", "errors", "overrides", "parts", "envs"},
+    "checks": {"types", "errors", "fields", "overrides", "parts", "envs"},
     "composition": {"errors", "checks", "overrides", "parts", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints

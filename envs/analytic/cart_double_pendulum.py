@@ -14,7 +14,7 @@ Source: masses and lengths from Bogdanov 2004 (the thesis gives none); start fro
 6.3.1.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -24,7 +24,7 @@ from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.options import one_of
+from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
 DT, FORCE, G = 0.01, 40.0, 9.81  # [s], [N], [m/s^2]
@@ -32,14 +32,11 @@ M0, M1, M2 = 1.5, 0.5, 0.75  # [kg]
 L1, L2 = 0.5, 0.75  # [m]
 
 
-@dataclass(frozen=True)
+@part
 class CartDoublePendulum:
     """Cart and double pendulum; `reward` is hills or upright."""
 
-    reward: str = "hills"  # or upright
-
-    def __post_init__(self) -> None:
-        one_of("reward", self.reward, ("hills", "upright"))
+    reward: Literal["hills", "upright"] = "hills"
 
     @property
     def spec(self) -> Spec:

@@ -14,8 +14,6 @@ pybullet's inverted pendulum, as in assets/cartpole.xml, with a thin rod. Limits
 are our choice.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -23,29 +21,25 @@ from jax import Array
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 G = 9.81  # [m/s^2]
 SUBSTEPS = 4  # Runge-Kutta steps of a decision
 
 
-@dataclass(frozen=True)
+@part
 class CartPendulum:
     """A rod on a cart, to be balanced."""
 
-    cart_mass: float = 10.472  # [kg] M
-    rod_mass: float = 5.019  # [kg] m
-    length: float = 0.6  # [m] l
-    force: float = 100.0  # [N] at a = 1
-    dt: float = 0.02  # [s] of a decision
-    start: float = 0.1  # [rad, m, rad/s, m/s] largest initial value of each entry
-    angle_limit: float = 0.5  # [rad]
-    position_limit: float = 2.0  # [m]
-
-    def __post_init__(self) -> None:
-        for name in self.__dataclass_fields__:
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
+    cart_mass: Positive = 10.472  # [kg] M
+    rod_mass: Positive = 5.019  # [kg] m
+    length: Positive = 0.6  # [m] l
+    force: Positive = 100.0  # [N] at a = 1
+    dt: Positive = 0.02  # [s] of a decision
+    start: Positive = 0.1  # [rad, m, rad/s, m/s] largest initial value of each entry
+    angle_limit: Positive = 0.5  # [rad]
+    position_limit: Positive = 2.0  # [m]
 
     @property
     def spec(self) -> Spec:

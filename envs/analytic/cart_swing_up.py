@@ -15,14 +15,13 @@ code for hybrid learning (custom_cartpoleswingup), where th > 0 leans to the lef
 is given, is our choice.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 G = 9.81  # [m/s^2]
@@ -31,7 +30,7 @@ SUBSTEPS = 2  # Euler steps of a decision
 UPRIGHT = 0.9  # least cos th of a success
 
 
-@dataclass(frozen=True)
+@part
 class CartSwingUp:
     """A rod on a cart, to be swung up.
 
@@ -39,24 +38,15 @@ class CartSwingUp:
         ValueError: for numbers out of range.
     """
 
-    length: float = 0.6  # [m] l, to the rod's mass
-    acceleration: float = 10.0  # [m/s^2] at a = 1
-    damping: float = 0.2  # [1/s] d
-    friction: float = 0.1  # [1/s] c
-    start: float = 0.2  # [rad, m, rad/s, m/s] standard deviation of each entry at the start
-    rail: float | None = None  # [m] |x| that ends an episode; None: none does
-    turns: float | None = None  # of the rod, in either direction, that end one; None: none do
+    length: Positive = 0.6  # [m] l, to the rod's mass
+    acceleration: Positive = 10.0  # [m/s^2] at a = 1
+    damping: NotNegative = 0.2  # [1/s] d
+    friction: NotNegative = 0.1  # [1/s] c
+    start: NotNegative = 0.2  # [rad, m, rad/s, m/s] standard deviation of each entry at the start
+    rail: Positive | None = None  # [m] |x| that ends an episode; None: none does
+    turns: Positive | None = None  # of the rod, in either direction, that end one; None: none do
 
     spec = Spec(obs=4, act=1, dt=SUBSTEPS * DT)
-
-    def __post_init__(self) -> None:
-        for name in ("length", "acceleration", "rail", "turns"):
-            value = getattr(self, name)
-            if value is not None and not value > 0:
-                raise ValueError(f"{name}={value}: must be above 0")
-        for name in ("damping", "friction", "start"):
-            if getattr(self, name) < 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be 0 or more")
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state: the rod hangs."""

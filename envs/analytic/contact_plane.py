@@ -20,7 +20,6 @@ quick movements. Objects, their sizes, a, b and the error rates are our choice.
 """
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import jax
@@ -31,6 +30,7 @@ from jax import Array
 from hybrid_rl.envs.analytic import arrangements
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 SUBSTEPS, CORNER = 10, 2  # steps of a decision; projections of a step, for corners of two objects
@@ -52,7 +52,7 @@ class Body(NamedTuple):
     noise: Array  # [2] uint32, a key for the sensor's errors
 
 
-@dataclass(frozen=True)
+@part
 class ContactPlane:
     """A ball among objects, with a binary contact sensor.
 
@@ -62,41 +62,24 @@ class ContactPlane:
     """
 
     objects: tuple[tuple[float, ...], ...] = THREE
-    acceleration: float = 1.0  # [m/s^2] a
-    drag: float = 0.0  # [1/s] b
-    radius: float = 0.03  # [m] of the ball
-    low: tuple[float, ...] = (0.0, 0.0)  # [m]
-    high: tuple[float, ...] = (1.0, 1.0)
-    theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
-    spread: tuple[float, ...] = (0.0, 0.0, 0.0)  # of theta at the reset
-    false_contact: float = 0.0  # probability for |u - u_before| = 2
-    missed: float = 0.0  # probability
+    acceleration: Positive = 1.0  # [m/s^2] a
+    drag: NotNegative = 0.0  # [1/s] b
+    radius: Positive = 0.03  # [m] of the ball
+    low: tuple[float, float] = (0.0, 0.0)  # [m]
+    high: tuple[float, float] = (1.0, 1.0)
+    theta: tuple[float, float, float] | None = None  # [m, m, rad]; None: the reference arrangement
+    spread: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of theta at the reset
+    false_contact: Discount = 0.0  # probability for |u - u_before| = 2
+    missed: Discount = 0.0  # probability
 
     def __post_init__(self) -> None:
-        for name in ("low", "high", "spread"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
-        object.__setattr__(self, "objects", tuple(tuple(each) for each in self.objects))
-        if self.theta is not None:
-            object.__setattr__(self, "theta", tuple(self.theta))
-        for name in ("acceleration", "radius"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
-        if not self.drag >= 0:
-            raise ValueError(f"drag={self.drag}: must be 0 or more")
-        for name in ("false_contact", "missed"):
-            if not 0 <= getattr(self, name) < 1:
-                raise ValueError(f"{name}={getattr(self, name)}: must lie in [0, 1)")
-        if len(self.low) != 2 or len(self.high) != 2 or not _below(self.low, self.high):
-            raise ValueError(f"low={list(self.low)}: needs two numbers below high")
-        if len(self.spread) != 3 or len(self.theta or self.spread) != 3:
-            raise ValueError("theta, spread: each needs three numbers: x, y and the angle")
+        if not _below(self.low, self.high):
+            raise FieldError(self, "low", "needs two numbers below high")
         for shape in self.objects:
             _check(shape, self.low, self.high)
         if self._free() < FREE:
-            raise ValueError(
-                f"objects={[list(shape) for shape in self.objects]}: leave no room to start; "
-                f"{FREE:.0%} of the box must be free for a ball of radius {self.radius}"
-            )
+            words = f"{FREE:.0%} of the box must be free for a ball of radius {self.radius}"
+            raise FieldError(self, "objects", f"leave no room to start; {words}")
 
     def _free(self) -> float:
         """Share of the box in which the ball can start, with the objects as listed."""

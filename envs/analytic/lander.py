@@ -19,7 +19,7 @@ has none.
 """
 
 import math
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -27,6 +27,7 @@ from jax import Array
 
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import FieldError, part
 from hybrid_rl.types import EnvState, Spec
 
 DT = 0.1  # [s] of a decision
@@ -37,7 +38,7 @@ LARGEST = 0.9999  # |a| in the cost of u, which is infinite at 1
 TASKS = ("hover", "flip")
 
 
-@dataclass(frozen=True)
+@part
 class Lander:
     """A lander with two thrusters.
 
@@ -45,15 +46,13 @@ class Lander:
         ValueError: for an unknown task, or turns that are not 0.5 or 1.
     """
 
-    task: str = "flip"  # or hover
+    task: Literal["hover", "flip"] = "flip"
     turns: float = 0.5  # of a flip: 0.5 or 1
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.task not in TASKS:
-            raise ValueError(f"task={self.task}: choose {', '.join(TASKS)}")
+        """Check the number of turns."""
         if self.turns not in (0.5, 1.0):
-            raise ValueError(f"turns={self.turns}: choose 0.5 or 1.0")
+            raise FieldError(self, "turns", "choose 0.5 or 1.0")
 
     @property
     def spec(self) -> Spec:

@@ -9,14 +9,13 @@ decision is 0.1 s; never terminates; there are no walls.
 Source: thesis sections 5.3 and 6.1.1; a and b are our choice.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 DT = 0.1  # [s] of a decision
@@ -24,7 +23,7 @@ ACCELERATION = 2.0  # [m/s^2] at u = 1
 MIDDLE = (0.5, 0.5)  # [m]
 
 
-@dataclass(frozen=True)
+@part
 class PointMass:
     """Double integrator on the plane.
 
@@ -32,14 +31,8 @@ class PointMass:
         ValueError: for an acceleration that is not positive, or a drag below 0.
     """
 
-    acceleration: float = ACCELERATION  # [m/s^2] a
-    drag: float = 0.0  # [1/s] b
-
-    def __post_init__(self) -> None:
-        if not self.acceleration > 0:
-            raise ValueError(f"acceleration={self.acceleration}: must be above 0")
-        if not self.drag >= 0:
-            raise ValueError(f"drag={self.drag}: must be 0 or more")
+    acceleration: Positive = ACCELERATION  # [m/s^2] a
+    drag: NotNegative = 0.0  # [1/s] b
 
     @property
     def spec(self) -> Spec:

@@ -17,8 +17,6 @@ Source: thesis appendix D; parameters from the author's active-learning-koopman;
 section 7.3; sensor noise, wind and rotor loss are our choice.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -27,6 +25,7 @@ from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import FieldError, Fraction, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 DT, THRUST, G, MASS = 0.005, 6.0, 9.81, 0.6  # [s], u at a = 1, [m/s^2], [kg]
@@ -36,30 +35,23 @@ DRAG_V, DRAG_W = (0.4, 0.4, 2.0), (2.0, 2.0, 0.4)  # [1/s]
 CLOCK = "clock"  # in `info`: decisions since the reset
 
 
-@dataclass(frozen=True)
+@part
 class QuadcopterSE3:
     """Quadcopter that hovers at the origin, or flies there from up to `away` metres."""
 
     drag: bool = True
-    twist: float = 0.5  # [m/s, rad/s] largest initial velocity in each direction
-    away: float = 0.0  # [m] largest initial distance in each direction
-    turn: float = 0.0  # [rad] largest initial Euler angle
+    twist: NotNegative = 0.5  # [m/s, rad/s] largest initial velocity in each direction
+    away: NotNegative = 0.0  # [m] largest initial distance in each direction
+    turn: NotNegative = 0.0  # [rad] largest initial Euler angle
     terminate: bool = True  # upside down
-    sensor_noise: tuple[float, ...] = (0.0,)  # std of the observation: one for all, or [18]
+    sensor_noise: tuple[NotNegative, ...] = (0.0,)  # std of the observation: one for all, or [18]
     wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
-    rotor_loss: float = 0.0  # share of rotor 1's thrust
-    fault_time: float = 2.0  # [s] of an episode at which wind and loss begin
+    rotor_loss: Fraction = 0.0  # share of rotor 1's thrust
+    fault_time: NotNegative = 2.0  # [s] of an episode at which wind and loss begin
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "sensor_noise", tuple(self.sensor_noise))
-        if len(self.sensor_noise) not in (1, 18) or not all(std >= 0 for std in self.sensor_noise):
-            given = list(self.sensor_noise)
-            raise ValueError(f"sensor_noise={given}: must be 1 or 18 numbers, each 0 or more")
-        for name in ("twist", "away", "turn", "fault_time"):
-            if not getattr(self, name) >= 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be 0 or more")
-        if not 0 <= self.rotor_loss <= 1:
-            raise ValueError(f"rotor_loss={self.rotor_loss}: must be in [0, 1]")
+        if len(self.sensor_noise) not in (1, 18):
+            raise FieldError(self, "sensor_noise", "must be 1 or 18 numbers")
 
     @property
     def spec(self) -> Spec:

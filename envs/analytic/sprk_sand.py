@@ -20,7 +20,6 @@ moves. The thesis gives nothing about the robot and the sand: the dynamics, thei
 noise are our choice, a stand-in for its experiment.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import jax
@@ -30,6 +29,7 @@ from jax import Array
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import Discount, Natural, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 DT, SUBSTEPS = 1 / 30, 4  # [s] of a decision, its Runge-Kutta steps
@@ -46,24 +46,15 @@ class Ball(NamedTuple):
     c: Array  # [2] filtered command
 
 
-@dataclass(frozen=True)
+@part
 class SprkSand:
     """A ball in sand."""
 
-    learn: int = 600  # decisions before the reference moves
-    sensor_noise: float = 0.003  # [m] std of each coordinate
-    start: float = 0.1  # [m] largest initial distance from the reference in each direction
+    learn: Natural = 600  # decisions before the reference moves
+    sensor_noise: NotNegative = 0.003  # [m] std of each coordinate
+    start: NotNegative = 0.1  # [m] largest initial distance from the reference in each direction
     slip: float = 0.15  # [rad] from the command to the force
-    variation: float = 0.2  # of k with the position, a share
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.learn, int) or self.learn < 0:
-            raise ValueError(f"learn={self.learn}: must be a whole number, 0 or more")
-        for name in ("sensor_noise", "start"):
-            if not getattr(self, name) >= 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be 0 or more")
-        if not 0 <= self.variation < 1:
-            raise ValueError(f"variation={self.variation}: must be in [0, 1)")
+    variation: Discount = 0.2  # of k with the position, a share
 
     @property
     def spec(self) -> Spec:

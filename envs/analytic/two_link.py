@@ -15,14 +15,13 @@ part of the second link) and torque of pybullet's Reacher, with thin rods. Frict
 targets are our choice: without friction random torques let the arm spin ever faster.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 DT, SUBSTEPS = 0.01, 4  # [s] of a decision, its Runge-Kutta steps
@@ -32,20 +31,13 @@ M1, M2 = 0.0356, 0.0398  # [kg]
 WEIGHTS = (10.0, 1.0, 20.0, 1.0)  # of (e1, q1', e2, q2') in the reward
 
 
-@dataclass(frozen=True)
+@part
 class TwoLink:
     """An arm of two links without gravity."""
 
-    friction: float = 1e-4  # [N m s] d, of each joint
-    reach: float = 2.6  # [rad] largest target of each joint
-    success_distance: float = 0.05  # [rad]
-
-    def __post_init__(self) -> None:
-        if not self.friction >= 0:
-            raise ValueError(f"friction={self.friction}: must be 0 or more")
-        for name in ("reach", "success_distance"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name}={getattr(self, name)}: must be above 0")
+    friction: NotNegative = 1e-4  # [N m s] d, of each joint
+    reach: Positive = 2.6  # [rad] largest target of each joint
+    success_distance: Positive = 0.05  # [rad]
 
     @property
     def spec(self) -> Spec:

@@ -11,8 +11,6 @@ Source: thesis section 7.1, whose weights are those of r; time step from the aut
 active-learning-koopman; scale of the action and start are our choice.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -20,21 +18,18 @@ from jax import Array
 from hybrid_rl.envs.analytic.integrate import rk4
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 DT = 0.01  # [s] of a decision
 FORCE = 20.0  # u at a = 1
 
 
-@dataclass(frozen=True)
+@part
 class VanDerPol:
     """Van der Pol's oscillator, to be stopped at the origin."""
 
-    start: float = 2.0  # largest initial |x1| and |x2|
-
-    def __post_init__(self) -> None:
-        if not self.start > 0:
-            raise ValueError(f"start={self.start}: must be above 0")
+    start: Positive = 2.0  # largest initial |x1| and |x2|
 
     @property
     def spec(self) -> Spec:

@@ -10,13 +10,13 @@ hand closes and opens within 8 mm. The expert uses only the observation, so that
 cloned from it.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.options import one_of
-from hybrid_rl.envs.panda_stack import OBSERVATIONS, SIDE, PandaStack
+from hybrid_rl.envs.panda_stack import SIDE, PandaStack
+from hybrid_rl.fields import part
 from hybrid_rl.types import Params, Spec
 
 GAIN = 2.0  # [1/s]
@@ -28,7 +28,7 @@ CLEARANCE = 0.04  # [m] height of a block above the table before it moves sidewa
 LIFT_SPEED = 0.02  # [m/s] at the beginning of a lift
 
 
-@dataclass(frozen=True)
+@part
 class StackController:
     """Acts on the observation of `panda_stack`; the fields are those of the environment.
 
@@ -36,17 +36,12 @@ class StackController:
         ValueError: for a base that is not two numbers, or an unknown grip or observation.
     """
 
-    base: tuple[float, ...] = PandaStack.base  # [m] its position, unless it is observed
+    base: tuple[float, float] = PandaStack.base  # [m] its position, unless it is observed
     speed: float = PandaStack.speed  # [m/s] at a = 1
-    grip: str = PandaStack.grip  # near or action
-    observation: str = PandaStack.observation  # thesis, relative or stage
-
-    def __post_init__(self) -> None:
-        one_of("expert.grip", self.grip, ("near", "action"))
-        one_of("expert.observation", self.observation, OBSERVATIONS)
-        object.__setattr__(self, "base", tuple(self.base))
-        if len(self.base) != 2:
-            raise ValueError(f"expert.base={list(self.base)}: must be 2 numbers")
+    grip: Literal["near", "action"] = PandaStack.grip
+    observation: Literal["thesis", "relative", "stage"] = (
+        PandaStack.observation
+    )  # thesis, relative or stage
 
     def init(self, spec: Spec) -> tuple[()]:
         """No state."""

@@ -10,20 +10,19 @@ compensates gravity. The gains are our choice.
 Source: Siciliano et al. 2009, "Robotics", section 8.5 (inverse dynamics control, PD control).
 """
 
-from dataclasses import dataclass
-
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs import sawyer_torque
 from hybrid_rl.envs.mujoco import inverse_dynamics
 from hybrid_rl.envs.sawyer_torque import DT, LIMITS, SawyerTorque
+from hybrid_rl.fields import FieldError, NotNegative, Positive, part
 from hybrid_rl.types import Params, Spec
 
 Nothing = tuple[()]
 
 
-@dataclass(frozen=True)
+@part
 class ComputedTorque:
     """Feedback linearisation of `sawyer_torque`.
 
@@ -32,13 +31,11 @@ class ComputedTorque:
     """
 
     world: SawyerTorque
-    frequency: float = 20.0  # [rad/s] w of the errors
+    frequency: Positive = 20.0  # [rad/s] w of the errors
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check the world."""
         _check(self.world)
-        if self.frequency <= 0:
-            raise ValueError(f"expert.frequency={self.frequency}: must be above 0")
 
     def init(self, spec: Spec) -> Nothing:
         """No state."""
@@ -59,7 +56,7 @@ class ComputedTorque:
         return self
 
 
-@dataclass(frozen=True)
+@part
 class JointPD:
     """Proportional and derivative feedback at each joint of `sawyer_torque`.
 
@@ -68,17 +65,15 @@ class JointPD:
     """
 
     world: SawyerTorque
-    stiffness: tuple[float, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
-    damping: tuple[float, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
+    stiffness: tuple[NotNegative, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
+    damping: tuple[NotNegative, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
 
     def __post_init__(self) -> None:
         """Check the fields."""
         _check(self.world)
         for name in ("stiffness", "damping"):
-            gains = tuple(getattr(self, name))
-            object.__setattr__(self, name, gains)
-            if len(gains) != 7 or not all(gain >= 0 for gain in gains):
-                raise ValueError(f"expert.{name}={list(gains)}: must be 7 numbers, 0 or more")
+            if len(getattr(self, name)) != 7:
+                raise FieldError(self, name, "must be 7 numbers")
 
     def init(self, spec: Spec) -> Nothing:
         """No state."""

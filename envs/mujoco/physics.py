@@ -29,7 +29,6 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf, native
-from hybrid_rl.envs.options import one_of
 
 NATIVE_PER_CORE = 40  # environments per core of the host up to which auto is native
 IMPLEMENTATIONS = ("auto", "native", "mjx", "warp")
@@ -54,7 +53,9 @@ class PhysicsState:
 
 def check(implementation: str) -> None:
     """Raise ValueError if `implementation` is unknown or cannot run on this machine."""
-    one_of("physics", implementation, IMPLEMENTATIONS)
+    if implementation not in IMPLEMENTATIONS:
+        known = ", ".join(IMPLEMENTATIONS)
+        raise ValueError(f"physics={implementation}: choose one of {known}")
     if implementation != "warp":
         return
     if find_spec("warp") is None:

@@ -7,7 +7,6 @@ Empty slots of the ring are treated as independent of everything, so that shapes
 Source: Rasmussen and Williams 2006, algorithm 2.1; thesis section 6.3.1.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import jax
@@ -15,7 +14,7 @@ import jax.numpy as jnp
 from jax import Array
 from jax.scipy.linalg import solve_triangular
 
-from hybrid_rl.core.ranges import above_zero
+from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.types import Spec
 
 
@@ -29,7 +28,7 @@ class GPState(NamedTuple):
     weights: Array  # [C] K^-1 y
 
 
-@dataclass(frozen=True)
+@part
 class GaussianProcess:
     """A belief about a function of `size` variables.
 
@@ -37,15 +36,11 @@ class GaussianProcess:
         ValueError: for fields that are not positive.
     """
 
-    size: int = 1  # v
-    capacity: int = 100  # C
-    length: float = 0.2  # l, in units of s
-    signal: float = 0.5  # a
-    noise: float = 0.02  # e
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        above_zero(self, "belief", "size", "capacity", "length", "signal", "noise")
+    size: Count = 1  # v
+    capacity: Count = 100  # C
+    length: Positive = 0.2  # l, in units of s
+    signal: Positive = 0.5  # a
+    noise: Positive = 0.02  # e
 
     def init(self, key: Array, spec: Spec) -> GPState:
         """The belief before any measurement; the key is not used."""

@@ -10,21 +10,21 @@ prints, is 0 for one measurement of two or more coordinates. A fixed slope repla
 which degenerates where labels separate. Source: thesis section 5.3; core.support_vectors.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import support_vectors as svm
-from hybrid_rl.core.ranges import above_zero
 from hybrid_rl.core.support_vectors import Machine
+from hybrid_rl.fields import Count, NotNegative, Positive, part
 from hybrid_rl.types import Spec
 
 MEASURES = ("transition", "fisher")
 
 
-@dataclass(frozen=True)
+@part
 class SupportVectors:
     """A belief about the probability that a binary measurement is 1.
 
@@ -34,22 +34,14 @@ class SupportVectors:
         ValueError: for numbers out of range, or an unknown measure of information.
     """
 
-    size: int = 2  # d, coordinates of s
-    capacity: int = 512  # measurements that are further apart than `apart`
-    length: float = 0.08  # l, in units of s
-    cost: float = 10.0  # C
-    slope: float = 3.0  # of the sigmoid
-    apart: float = 0.01  # in units of s
-    iterations: int = 60  # of sequential minimal optimisation, per measurement
-    measure: str = "transition"  # or fisher
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        above_zero(self, "belief", "size", "capacity", "length", "cost", "slope", "iterations")
-        if self.apart < 0:
-            raise ValueError(f"belief.apart={self.apart}: must be 0 or more")
-        if self.measure not in MEASURES:
-            raise ValueError(f"belief.measure={self.measure}: choose {' or '.join(MEASURES)}")
+    size: Count = 2  # d, coordinates of s
+    capacity: Count = 512  # measurements that are further apart than `apart`
+    length: Positive = 0.08  # l, in units of s
+    cost: Positive = 10.0  # C
+    slope: Positive = 3.0  # of the sigmoid
+    apart: NotNegative = 0.01  # in units of s
+    iterations: Count = 60  # of sequential minimal optimisation, per measurement
+    measure: Literal["transition", "fisher"] = "transition"
 
     def init(self, key: Array, spec: Spec) -> Machine:
         """The belief before any measurement; the key is not used."""

@@ -14,13 +14,14 @@ Algorithm 6 and eq. 6.10). `apply` chooses the time tau and the duration lambda 
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, decay, lyapunov, sampling
+from hybrid_rl.fields import Count, FieldError, Positive, Share, part
 from hybrid_rl.protocols import Model, Objective, Policy, StabilizingPolicy
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -37,7 +38,7 @@ class AdjointState(NamedTuple):
     memory: Any  # of the objective
 
 
-@dataclass(frozen=True)
+@part
 class AdjointController:
     """A gradient-based planner around a policy, or around zero.
 
@@ -48,33 +49,21 @@ class AdjointController:
     model: Model
     objective: Objective
     policy: Policy | None = None  # None: corrections of a zero action
-    horizon: int = 5  # T [decisions]
-    iterations: int = 1
+    horizon: Count = 5  # T [decisions]
+    iterations: Count = 1
     warm_start: bool = False  # from the last correction, shifted
-    gain: float | None = None  # W [u^2 / J]; None: the policy's variance
-    gain_decay: float = 1.0  # of W, per decision of the episode
-    run_decay: float = 1.0  # of W, per decision of the run; where they are not counted, W = 0
+    gain: Positive | None = None  # W [u^2 / J]; None: the policy's variance
+    gain_decay: Share = 1.0  # of W, per decision of the episode
+    run_decay: Share = 1.0  # of W, per decision of the run; where they are not counted, W = 0
     normalise: bool = False  # g by its root mean square over the horizon; W is then [u]
     costate_bound: float | None = None  # clip of rho; the thesis' author used 1
-    apply: str = "first"  # first | horizon | search
+    apply: Literal["first", "horizon", "search"] = "first"
     lyapunov: StabilizingPolicy | None = None  # whose V is logged; None: no log
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        for name in ("horizon", "iterations"):
-            value = getattr(self, name)
-            if not isinstance(value, int) or value < 1:
-                raise ValueError(f"adjoint planner: {name}={value}: must be a whole number >= 1")
+        """Check the gain."""
         if self.gain is None and self.policy is None:
-            raise ValueError("adjoint planner: gain=null needs a policy, whose variance it takes")
-        if self.gain is not None and not self.gain > 0:
-            raise ValueError(f"adjoint planner: gain={self.gain}: must be above 0")
-        for name in ("gain_decay", "run_decay"):
-            if not 0 < getattr(self, name) <= 1:
-                value = getattr(self, name)
-                raise ValueError(f"adjoint planner: {name}={value}: must lie in (0, 1]")
-        if self.apply not in APPLY:
-            raise ValueError(f"adjoint planner: apply={self.apply}: choose {', '.join(APPLY)}")
+            raise FieldError(self, "gain", "needs a policy, whose variance it takes")
 
     def init(self, spec: Spec) -> AdjointState:
         """No correction, and the objective's initial memory."""

@@ -1,14 +1,13 @@
 """u = constant: motor babble with noise around it, and nothing else without."""
 
-from dataclasses import dataclass
-
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import FieldError, part
 from hybrid_rl.types import Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class ConstantController:
     """The same action at every decision.
 
@@ -21,7 +20,7 @@ class ConstantController:
     def __post_init__(self) -> None:
         """Check the field."""
         if not -1 <= self.action <= 1:
-            raise ValueError(f"constant.action={self.action}: must lie in [-1, 1]")
+            raise FieldError(self, "action", "must lie in [-1, 1]")
 
     def init(self, spec: Spec) -> Array:
         """The action [m]."""

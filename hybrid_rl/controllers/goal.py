@@ -10,7 +10,6 @@ With `ahead` T > 0 the target instead values the way to s_i: its T positions on 
 the last one s_i (thesis section 5.3.3).
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple, cast
 
 import jax
@@ -18,6 +17,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.domain import Box
+from hybrid_rl.fields import Count, FieldError, NotNegative, Positive, part
 from hybrid_rl.protocols import PathTarget, StabilizingPolicy, Target
 from hybrid_rl.types import Params, Spec
 
@@ -29,7 +29,7 @@ class GoalState(NamedTuple):
     age: Array  # [] decisions since it was chosen; 0: choose a new one
 
 
-@dataclass(frozen=True)
+@part
 class GoalController:
     """Drives to the maximum of a target.
 
@@ -41,24 +41,17 @@ class GoalController:
     target: Target  # with `ahead` a PathTarget
     domain: Box
     policy: StabilizingPolicy | None = None  # None: the action is the goal
-    samples: int = 1000  # N candidates
-    every: int = 20  # [decisions]
-    near: float | None = None  # distance at which a new goal is chosen; None: only every `every`
-    ahead: int = 0  # T positions on the way to a candidate; 0: the candidate alone
+    samples: Count = 1000  # N candidates
+    every: Count = 20  # [decisions]
+    near: Positive | None = None  # distance at which a new goal is chosen; None: only every `every`
+    ahead: NotNegative = 0  # T positions on the way to a candidate; 0: the candidate alone
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.samples < 1 or self.every < 1:
-            raise ValueError("goal: samples and every must be 1 or more")
-        if self.near is not None and not self.near > 0:
-            raise ValueError(f"goal.near={self.near}: must be above 0, or null")
-        if self.ahead < 0:
-            raise ValueError(f"goal.ahead={self.ahead}: must be 0 or more")
+        """Check the target."""
         if self.ahead and not hasattr(self.target, "along"):
             kind = type(self.target).__name__
-            raise ValueError(
-                f"goal.ahead={self.ahead}: {kind} values no ways; target=entropy_reduction does"
-            )
+            words = f"{kind} values no ways; target=entropy_reduction does"
+            raise FieldError(self, "ahead", words)
 
     def init(self, spec: Spec) -> GoalState:
         """No goal yet."""

@@ -10,14 +10,14 @@ The baselines of ergodic exploration (thesis section 6.3.2), the exploration of 
 policy gradients (Lillicrap et al. 2016), and the executed noise of thesis Algorithm 2.
 """
 
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import decay
+from hybrid_rl.fields import Count, NotNegative, Share, part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
@@ -33,7 +33,7 @@ class NoisyState(NamedTuple):
     inner: Any
 
 
-@dataclass(frozen=True)
+@part
 class NoisyController:
     """`controller` with noise during training, without noise in evaluation.
 
@@ -42,25 +42,12 @@ class NoisyController:
     """
 
     controller: Controller
-    kind: str = "normal"
-    level: float = 0.1  # [u], of ou [u / sqrt(s)]
-    theta: float = 0.15  # [1/s] of ou
-    hold: int = 1  # [decisions] of held
-    decay: float = 1.0  # factor per decision of the run
-    until: int | None = None  # decisions of the run until the noise is 0; None: never
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.kind not in KINDS:
-            raise ValueError(f"noisy.kind={self.kind}: choose {', '.join(KINDS)}")
-        if self.level < 0 or self.theta < 0:
-            raise ValueError("noisy: level and theta must be 0 or more")
-        if self.hold < 1:
-            raise ValueError(f"noisy.hold={self.hold}: must be 1 or more")
-        if not 0 < self.decay <= 1:
-            raise ValueError(f"noisy.decay={self.decay}: must lie in (0, 1]")
-        if self.until is not None and self.until < 1:
-            raise ValueError(f"noisy.until={self.until}: must be 1 or more")
+    kind: Literal["normal", "uniform", "ou", "held"] = "normal"
+    level: NotNegative = 0.1  # [u], of ou [u / sqrt(s)]
+    theta: NotNegative = 0.15  # [1/s] of ou
+    hold: Count = 1  # [decisions] of held
+    decay: Share = 1.0  # factor per decision of the run
+    until: Count | None = None  # decisions of the run until the noise is 0; None: never
 
     def init(self, spec: Spec) -> NoisyState:
         """No noise yet."""

@@ -5,7 +5,7 @@ most noise lasts one decision and some lasts long, which explores further than w
 (Dabney et al. 2021; FlashSAC, Kim et al. 2026, with 16).
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import jax
@@ -13,6 +13,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.lifting import lift
+from hybrid_rl.fields import Count, part
 from hybrid_rl.protocols import Model, Policy
 from hybrid_rl.types import Params, Spec
 
@@ -24,7 +25,7 @@ class Held(NamedTuple):
     left: Array  # [] decisions for which it still holds
 
 
-@dataclass(frozen=True)
+@part
 class PolicyController:
     """Actions of the policy: samples if `explore` is true, else its mean.
 
@@ -35,12 +36,7 @@ class PolicyController:
     policy: Policy
     model: Model | None = None  # lifts observations to planning states; None: they are the same
     explore: bool = True
-    hold: int = 1  # [decisions] longest that noise is held
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if not isinstance(self.hold, int) or self.hold < 1:
-            raise ValueError(f"actor.hold={self.hold}: must be a whole number, 1 or more")
+    hold: Count = 1  # [decisions] longest that noise is held
 
     @property
     def _holds(self) -> bool:

@@ -10,15 +10,16 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, lifting, sampling
+from hybrid_rl.fields import Count, FieldError, Positive, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
@@ -35,7 +36,7 @@ class SamplingState(NamedTuple):
     memory: Any  # of the objective
 
 
-@dataclass(frozen=True)
+@part
 class SamplingController:
     """A planner over K candidates and T decisions.
 
@@ -48,30 +49,20 @@ class SamplingController:
     objective: Objective
     proposal: Proposal
     policy: Policy | None = None  # only for metrics that compare it with the plan
-    horizon: int = 5  # T [decisions]
-    samples: int = 20  # K
-    temperature: float = 0.1  # lambda [return]; [std of returns] with normalise
+    horizon: Count = 5  # T [decisions]
+    samples: Count = 20  # K
+    temperature: Positive = 0.1  # lambda [return]; [std of returns] with normalise
     normalise: bool = False
     log_density: bool = False  # the thesis' p(v) in the weight
-    execute: str = "mean"
+    execute: Literal["mean", "sample"] = "mean"
     rest: float = 0.0  # [u] initial plan, and the last action of a shifted one
-    agreement_every: int = 1  # decisions between comparisons with `policy`
+    agreement_every: Count = 1  # decisions between comparisons with `policy`
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        for name in ("horizon", "samples", "agreement_every"):
-            value = getattr(self, name)
-            if not isinstance(value, int) or value < 1:
-                raise ValueError(f"planner.{name}={value}: must be a whole number, 1 or more")
-        if not self.temperature > 0:
-            raise ValueError(f"planner.temperature={self.temperature}: must be above 0")
-        if self.execute not in EXECUTE:
-            raise ValueError(f"planner.execute={self.execute}: choose {' or '.join(EXECUTE)}")
+        """Check the proposal."""
         if self.log_density and not getattr(self.proposal, "density", True):
-            raise ValueError(
-                "planner.log_density=True: needs candidates with a density; "
-                "choose proposal=policy or proposal=noise, or false"
-            )
+            words = "needs candidates with a density; choose proposal=policy or proposal=noise"
+            raise FieldError(self, "log_density", f"{words}, or false")
 
     @property
     def needs_world(self) -> bool:

@@ -8,18 +8,19 @@ an observation varies alone, so entries that depend on one another, such as thos
 also make candidates that no motion reaches.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import Count, NotNegative, part
 from hybrid_rl.protocols import Controller, GoalPolicy, Uncertain
 from hybrid_rl.types import Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class VisitController:
     """`controller`, whose policy aims at a new uncertain state at every decision.
 
@@ -30,16 +31,8 @@ class VisitController:
     controller: Controller
     model: Uncertain
     policy: GoalPolicy
-    radius: tuple[float, ...] = (0.5,)  # [unit of o] one for all entries, or one each
-    samples: int = 100  # candidates
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "radius", tuple(self.radius))
-        if self.samples < 1:
-            raise ValueError(f"visit.samples={self.samples}: must be 1 or more")
-        if not all(radius >= 0 for radius in self.radius):
-            raise ValueError(f"visit.radius={list(self.radius)}: must be 0 or more")
+    radius: tuple[NotNegative, ...] = (0.5,)  # [unit of o] one for all entries, or one each
+    samples: Count = 100  # candidates
 
     def init(self, spec: Spec) -> Any:
         """The initial state of the inner controller.

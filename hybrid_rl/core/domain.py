@@ -1,6 +1,5 @@
 """A box in some coordinates of a state: the region that a method explores."""
 
-from dataclasses import dataclass
 from math import prod
 
 import jax
@@ -8,8 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.fields import FieldError, part
 
-@dataclass(frozen=True)
+
+@part
 class Box:
     """The points s [v] with low <= s <= high, where s are `coordinates` of a state x [n].
 
@@ -28,13 +29,10 @@ class Box:
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        for name in ("coordinates", "low", "high"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
         if not len(self.coordinates) == len(self.low) == len(self.high) or not self.coordinates:
             raise ValueError("domain: coordinates, low and high must have one length, 1 or more")
         if not all(a < b for a, b in zip(self.low, self.high, strict=True)):
-            low, high = list(self.low), list(self.high)
-            raise ValueError(f"domain.low={low}: must lie below domain.high={high}")
+            raise FieldError(self, "low", f"must lie below high={list(self.high)}")
 
     @property
     def size(self) -> int:

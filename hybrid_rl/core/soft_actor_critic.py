@@ -116,9 +116,3 @@ def temperature_and_target(part: Any, state: SACState, entropy: Array, actions: 
     )
     target = statistics.following(state.target, state.critic, part.tau)
     return state.replace(target=target, log_alpha=log_alpha, alpha_optimiser=optimiser)
-
-
-def check_limit(limit: float | None) -> None:
-    """Raise ValueError for a limit of gradients that is not positive."""
-    if limit is not None and not limit > 0:
-        raise ValueError(f"policy_learner.max_grad_norm={limit}: must be above 0, or null")

@@ -12,19 +12,19 @@ Returns must be scaled to the bounds (hybrid_rl.learners.return_scale). Source: 
 FlashSAC (Kim et al. 2026), with its width, blocks, atoms and bound.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import Count, Positive, Several, part
 from hybrid_rl.networks import normalised
 from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class CategoricalQ:
     """`members` independent distributions over returns.
 
@@ -33,20 +33,13 @@ class CategoricalQ:
     """
 
     hidden: tuple[int, ...] = (256, 256)  # the width, once for each residual block
-    members: int = 2
-    bins: int = 101  # atoms
-    bound: float = 5.0  # of scaled returns
+    members: Count = 2
+    bins: Several = 101  # atoms
+    bound: Positive = 5.0  # of scaled returns
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
+        """Check the network."""
         normalised.check("critic", self.hidden)
-        for name, least in (("members", 1), ("bins", 2)):
-            value = getattr(self, name)
-            if not isinstance(value, int) or value < least:
-                raise ValueError(f"critic.{name}={value}: must be a whole number, {least} or more")
-        if not self.bound > 0:
-            raise ValueError(f"critic.bound={self.bound}: must be above 0")
 
     @property
     def atoms(self) -> Array:

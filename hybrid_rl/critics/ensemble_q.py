@@ -10,7 +10,6 @@ layer starts at zero. With `normalise` their inputs are states divided by their 
 deviation in the learner's data.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -18,11 +17,12 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.fields import Count, NotNegative, part
 from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class EnsembleQ:
     """`members` independent action-value networks.
 
@@ -32,20 +32,15 @@ class EnsembleQ:
 
     hidden: tuple[int, ...] = (256, 256)
     activation: str = "relu"
-    members: int = 2
+    members: Count = 2
     layer_norm: bool | str = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
-    pessimism: float | None = None  # [std of the members]; None: their minimum
+    pessimism: NotNegative | None = None  # [std of the members]; None: their minimum
     normalise: bool = False
     scale: bool = False
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
+        """Check the network."""
         check("critic", self.hidden, self.activation, self.layer_norm)
-        if self.members < 1:
-            raise ValueError(f"critic.members={self.members}: must be at least 1")
-        if self.pessimism is not None and self.pessimism < 0:
-            raise ValueError(f"critic.pessimism={self.pessimism}: must be 0 or more, or null")
 
     def _net(self) -> MLP:
         return MLP(self.hidden, 1, self.activation, self.layer_norm, zero=self.scale)

@@ -5,13 +5,14 @@ environment one decision later, and is not stored twice. The memory starts with 
 demonstrations, if there are any.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import jax
 import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
+from hybrid_rl.fields import Count, FieldError, part
 from hybrid_rl.protocols import Demonstrations
 from hybrid_rl.types import Batch, Spec, Transition
 
@@ -24,7 +25,7 @@ class Memory:
     count: Array  # [] int32 decisions of each environment added so far
 
 
-@dataclass(frozen=True)
+@part
 class Replay:
     """A memory of `capacity` decisions, over all environments of one learner.
 
@@ -33,18 +34,14 @@ class Replay:
             demonstrations.
     """
 
-    capacity: int = 1_000_000
+    capacity: Count = 1_000_000
     demonstrations: Demonstrations | None = None  # the initial contents
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        if not isinstance(self.capacity, int) or self.capacity < 1:
-            raise ValueError(f"replay.capacity={self.capacity}: must be a whole number, 1 or more")
+        """Check the demonstrations."""
         if self.capacity < self.num_demonstrated(1):
-            raise ValueError(
-                f"replay.capacity={self.capacity}: the demonstrations alone have "
-                f"{self.num_demonstrated(1)} decisions"
-            )
+            words = f"the demonstrations alone have {self.num_demonstrated(1)} decisions"
+            raise FieldError(self, "capacity", words)
 
     def num_demonstrated(self, num_envs: int) -> int:
         """Demonstrated decisions of each of `num_envs` environments in the initial memory."""

@@ -4,18 +4,18 @@ y are coordinates of the observation. They are part of z, since a network alone 
 model exact by z = 0. Source: thesis section 7.4, eq. (7.12).
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.lifting import check_coordinates, select
+from hybrid_rl.fields import Count, part
 from hybrid_rl.networks import MLP, check
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class Network:
     """Coordinates of the observation, and `size` outputs of a network.
 
@@ -24,19 +24,14 @@ class Network:
     """
 
     coordinates: tuple[int, ...] | None = None  # of the observation; None: all
-    size: int = 40  # outputs of the network
+    size: Count = 40  # outputs of the network
     hidden: tuple[int, ...] = (20,)
     activation: str = "tanh"
     include_state: bool = True  # false: z = net(y), whose trivial solution is z = 0
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
-        if self.coordinates is not None:
-            object.__setattr__(self, "coordinates", tuple(self.coordinates))
+        """Check the network."""
         check("features", self.hidden, self.activation)
-        if self.size < 1:
-            raise ValueError(f"features.size={self.size}: must be 1 or more")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights. The key is consumed.

@@ -8,7 +8,6 @@ appendix C trains its backflip expert by a policy gradient and gives the rate of
 our choice.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -19,6 +18,7 @@ from jax import Array
 
 from hybrid_rl.core import adjoint
 from hybrid_rl.core.lifting import lifted_spec
+from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.protocols import Env, LearnedPolicy, Model, Objective
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -31,7 +31,7 @@ class AnalyticState:
     optimiser: Any
 
 
-@dataclass(frozen=True)
+@part
 class AnalyticGradient:
     """Gradient ascent on the return of imagined paths, one Adam step per decision of the run.
 
@@ -43,25 +43,14 @@ class AnalyticGradient:
     model: Model
     objective: Objective
     world: Env  # its first states begin the paths
-    horizon: int = 100  # T [decisions]
-    starts: int = 64  # paths of a step
-    learning_rate: float = 3e-3
-    clip: float = 1.0  # largest norm of the gradient
+    horizon: Count = 100  # T [decisions]
+    starts: Count = 64  # paths of a step
+    learning_rate: Positive = 3e-3
+    clip: Positive = 1.0  # largest norm of the gradient
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
     every: ClassVar[int] = 1
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        for name in ("horizon", "starts"):
-            value = getattr(self, name)
-            if value < 1:
-                raise ValueError(f"analytic_learner.{name}={value}: must be 1 or more")
-        for name in ("learning_rate", "clip"):
-            value = getattr(self, name)
-            if not value > 0:
-                raise ValueError(f"analytic_learner.{name}={value}: must be above 0")
 
     @property
     def _optimiser(self) -> optax.GradientTransformation:

@@ -12,7 +12,6 @@ Actions are clipped to [-edge, edge], since the density of a squashed Gaussian i
 and 1.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -24,6 +23,7 @@ from jax import Array
 from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lift
 from hybrid_rl.core.ranges import edge_and_saturation
+from hybrid_rl.fields import Inside, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -37,7 +37,7 @@ class CloningState:
     average: Any = None  # of `policy` over the steps; None: `policy` itself acts
 
 
-@dataclass(frozen=True)
+@part
 class BehaviourCloning:
     """Gradient steps on the log-likelihood of demonstrated actions.
 
@@ -51,12 +51,12 @@ class BehaviourCloning:
     policy: LearnedPolicy
     demonstrations: Demonstrations | None
     model: Model | None = None  # lifts the demonstrations to planning states; None: as they are
-    learning_rate: float = 3e-3
-    edge: float = 0.99  # bound of the imitated actions
+    learning_rate: Positive = 3e-3
+    edge: Inside = 0.99  # bound of the imitated actions
     batch_size: int = 128
     updates: float = 0.25  # per decision
-    weight_decay: float = 0.0  # of the layers' matrices, per unit of learning rate
-    average: float | None = None  # share of the new weights in the mean that acts; None: no mean
+    weight_decay: NotNegative = 0.0  # of the layers' matrices, per unit of learning rate
+    average: Share | None = None  # share of the new weights in the mean that acts; None: no mean
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
@@ -64,15 +64,7 @@ class BehaviourCloning:
     during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.learning_rate <= 0:
-            raise ValueError(f"cloning_learner.learning_rate={self.learning_rate}: must be above 0")
-        if not 0 < self.edge < 1:
-            raise ValueError(f"cloning_learner.edge={self.edge}: must lie in (0, 1)")
-        if self.weight_decay < 0:
-            raise ValueError(f"cloning_learner.weight_decay={self.weight_decay}: must be 0 or more")
-        if self.average is not None and not 0 < self.average <= 1:
-            raise ValueError(f"cloning_learner.average={self.average}: must lie in (0, 1], or null")
+        """Check the saturation."""
         edge_and_saturation(self, "cloning_learner")
 
     def init(self, key: Array, spec: Spec) -> CloningState:

@@ -1,17 +1,17 @@
 """Update a belief with measurements of the reward, y = r at s (thesis Algorithm 9, lines 15-20)."""
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
 from jax import Array
 
 from hybrid_rl.core.domain import Box
+from hybrid_rl.fields import Count, part
 from hybrid_rl.protocols import Belief
 from hybrid_rl.types import Batch, Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class BeliefLearner:
     """Adds the reward of the latest decision, measured at the state s after it, to a belief.
 
@@ -21,15 +21,10 @@ class BeliefLearner:
 
     belief: Belief
     domain: Box  # s: these coordinates of the observation
-    every: int = 20  # decisions between two measurements
+    every: Count = 20  # decisions between two measurements
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("belief",)
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.every < 1:
-            raise ValueError(f"belief_learner.every={self.every}: must be 1 or more")
 
     def check(self, decisions: int) -> None:
         """Raise ValueError if the belief has no room for the measurements of an episode."""

@@ -8,7 +8,6 @@ pi is the mean of any policy; the controller explores. Q is the minimum over the
 the original has one. A time limit does not terminate the task.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -19,7 +18,7 @@ from jax import Array
 
 from hybrid_rl.core import soft_actor_critic as steps
 from hybrid_rl.core import statistics
-from hybrid_rl.core.ranges import above_zero, discount_and_tau
+from hybrid_rl.fields import Discount, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -36,7 +35,7 @@ class DDPGState:
     critic_optimiser: Any
 
 
-@dataclass(frozen=True)
+@part
 class DDPG:
     """Deterministic policy gradients on the mean of a policy and a critic.
 
@@ -46,10 +45,10 @@ class DDPG:
 
     policy: LearnedPolicy
     critic: Critic
-    policy_learning_rate: float = 1e-4
-    critic_learning_rate: float = 1e-3
-    discount: float = 0.99
-    tau: float = 0.01
+    policy_learning_rate: Positive = 1e-4
+    critic_learning_rate: Positive = 1e-3
+    discount: Discount = 0.99
+    tau: Share = 0.01
     batch_size: int = 128
     updates: float = 1  # per decision
 
@@ -57,11 +56,6 @@ class DDPG:
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     batches: ClassVar[int] = 1
     during_random: ClassVar[bool] = False  # starts after the random decisions
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        discount_and_tau(self)
-        above_zero(self, "policy_learner", "policy_learning_rate", "critic_learning_rate")
 
     def init(self, key: Array, spec: Spec) -> DDPGState:
         """Initial parameters, optimisers and targets. The key is consumed."""

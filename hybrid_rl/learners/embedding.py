@@ -10,8 +10,7 @@ Source: thesis section 7.4. With H = 1 and K by Adam the loss is eq. (7.12); sev
 squares and its prior are ours.
 """
 
-from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -20,7 +19,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import least_squares
-from hybrid_rl.core.ranges import above_zero
+from hybrid_rl.fields import Count, FieldError, Natural, Positive, part
 from hybrid_rl.protocols import LatestLearner, LinearModel
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -48,7 +47,7 @@ class EmbeddingState:
     metrics: dict[str, Array]  # of the regulator's last solution
 
 
-@dataclass(frozen=True)
+@part
 class EmbeddingLearner:
     """Features and K of a linear model and, with a regulator, its policy.
 
@@ -61,29 +60,23 @@ class EmbeddingLearner:
     model: LinearModel
     regulator: LatestLearner | None = None  # solves for the policy after each fit
     interval: int = 200  # decisions of an iteration
-    fit: str = "least_squares"  # of K; adam: as printed
-    window: int = 5  # H [decisions]
-    steps: int = 100  # of Adam in an iteration
-    learning_rate: float = 1e-3
-    batch_size: int = 128  # windows in a step
-    prior: float = 10.0  # weight of K_0 = [I 0] in the regression
+    fit: Literal["least_squares", "adam"] = "least_squares"  # of K; adam: as printed
+    window: Count = 5  # H [decisions]
+    steps: Natural = 100  # of Adam in an iteration
+    learning_rate: Positive = 1e-3
+    batch_size: Count = 128  # windows in a step
+    prior: Positive = 10.0  # weight of K_0 = [I 0] in the regression
     capacity: int = 20_000  # decisions in the memory
 
     data: ClassVar[str] = "latest"
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.fit not in FITS:
-            raise ValueError(f"model_learner.fit={self.fit}: choose {', '.join(FITS)}")
-        least = {"window": 1, "batch_size": 1, "steps": int(self.fit == "adam")}
-        for name, low in {**least, "interval": self.window, "capacity": self.interval}.items():
-            value = getattr(self, name)
-            if not isinstance(value, int) or value < low:
-                raise ValueError(
-                    f"model_learner.{name}={value}: must be a whole number, {low} or more"
-                )
-        above_zero(self, "model_learner", "learning_rate", "prior")
+        """Check what depends on two fields."""
+        steps = ("steps", int(self.fit == "adam"))
+        for name, low in (steps, ("interval", self.window), ("capacity", self.interval)):
+            if getattr(self, name) < low:
+                raise FieldError(self, name, f"must be a whole number, {low} or more")
 
     @property
     def owns(self) -> tuple[str, ...]:

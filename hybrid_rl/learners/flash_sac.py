@@ -14,7 +14,6 @@ learning rate falls by half over 1,000,000 decisions, here it is constant.
 """
 
 import math
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -23,8 +22,8 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.core.soft_actor_critic import adam
+from hybrid_rl.fields import Count, Discount, Positive, Share, part
 from hybrid_rl.protocols import BatchPolicy, CategoricalCritic
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -42,7 +41,7 @@ class FlashSACState:
     alpha_optimiser: Any
 
 
-@dataclass(frozen=True)
+@part
 class FlashSAC:
     """Soft actor-critic on a batch normalised policy and a categorical critic.
 
@@ -54,27 +53,18 @@ class FlashSAC:
 
     policy: BatchPolicy
     critic: CategoricalCritic
-    learning_rate: float = 3e-4
-    alpha: float = 0.01  # initial temperature, for scaled rewards
-    target_sigma: float = 0.15  # of the normal distribution with the entropy that is aimed at
-    discount: float = 0.99
-    tau: float = 0.01
+    learning_rate: Positive = 3e-4
+    alpha: Positive = 0.01  # initial temperature, for scaled rewards
+    target_sigma: Positive = 0.15  # of the normal distribution with the entropy that is aimed at
+    discount: Discount = 0.99
+    tau: Share = 0.01
     batch_size: int = 512
-    batches: int = 2  # steps of the critic for each step of the policy
+    batches: Count = 2  # steps of the critic for each step of the policy
     updates: float = 0.5  # steps of the policy per decision
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     during_random: ClassVar[bool] = False  # starts after the random decisions
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        discount_and_tau(self)
-        above_zero(self, "policy_learner", "learning_rate", "alpha", "target_sigma")
-        if not isinstance(self.batches, int) or self.batches < 1:
-            raise ValueError(
-                f"policy_learner.batches={self.batches}: must be a whole number, 1 or more"
-            )
 
     def init(self, key: Array, spec: Spec) -> FlashSACState:
         """Initial parameters, optimisers and target. The key is consumed."""

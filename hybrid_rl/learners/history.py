@@ -3,7 +3,6 @@
 The last checkpoint then has the models of the whole run. A ring keeps the last `copies` of them.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -11,6 +10,7 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
+from hybrid_rl.fields import Count, part
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -23,7 +23,7 @@ class HistoryState:
     count: Array  # [] copies made
 
 
-@dataclass(frozen=True)
+@part
 class ModelHistory:
     """A copy of the model's parameters before decision 0, `every`, 2 `every`, ...
 
@@ -32,17 +32,11 @@ class ModelHistory:
     """
 
     model: Model
-    every: int = 100  # decisions between two copies
-    copies: int = 10
+    every: Count = 100  # decisions between two copies
+    copies: Count = 10
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ()
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        for name in ("every", "copies"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"history.{name}={getattr(self, name)}: must be 1 or more")
 
     def init(self, key: Array, spec: Spec) -> HistoryState:
         """No copies. The key is not used."""

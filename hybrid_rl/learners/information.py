@@ -8,7 +8,6 @@ the model's running deviation. I is kept in `belief`; a method has one. The mode
 one-step transitions, so F is the derivative by step (core/fisher.py).
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -18,6 +17,7 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import fisher
+from hybrid_rl.fields import Positive, Share, part
 from hybrid_rl.networks import mean_weights
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Batch, Params, Spec
@@ -37,7 +37,7 @@ class InformationState:
         return self.decisions * self.mean
 
 
-@dataclass(frozen=True)
+@part
 class InformationLearner:
     """The diagonal of the information of all decisions.
 
@@ -46,9 +46,9 @@ class InformationLearner:
     """
 
     model: Model
-    sigma: float | None = 0.1  # of the change, in running deviations; None: the model's
-    floor: float = 0.01  # entries below it are counted in the metric information/floored
-    rate: float = 0.05  # of the running mean, per batch; exact over the first 1 / rate batches
+    sigma: Positive | None = 0.1  # of the change, in running deviations; None: the model's
+    floor: Positive = 0.01  # entries below it are counted in the metric information/floored
+    rate: Share = 0.05  # of the running mean, per batch; exact over the first 1 / rate batches
     batch_size: int = 64
     updates: float = 1  # batches per decision
 
@@ -56,15 +56,6 @@ class InformationLearner:
     owns: ClassVar[tuple[str, ...]] = ("information",)
     batches: ClassVar[int] = 1
     during_random: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        for name in ("sigma", "floor"):
-            value = getattr(self, name)
-            if value is not None and not value > 0:
-                raise ValueError(f"information_learner.{name}={value}: must be above 0")
-        if not 0 < self.rate <= 1:
-            raise ValueError(f"information_learner.rate={self.rate}: must lie in (0, 1]")
 
     def init(self, key: Array, spec: Spec) -> InformationState:
         """No information. The key is not used."""

@@ -8,8 +8,7 @@ continuous time: K_0 = [I 0] + s N(0, 1) dt. Source: thesis eq. (2.11) and Algor
 and prior are ours.
 """
 
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import jax
 import jax.numpy as jnp
@@ -18,6 +17,7 @@ from jax import Array
 
 from hybrid_rl.core import least_squares
 from hybrid_rl.core.least_squares import Factor
+from hybrid_rl.fields import Natural, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LinearModel
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -33,7 +33,7 @@ class RegressionState:
     model: dict[str, Any]
 
 
-@dataclass(frozen=True)
+@part
 class LeastSquares:
     """Recursive least squares on a linear model.
 
@@ -42,29 +42,16 @@ class LeastSquares:
     """
 
     model: LinearModel
-    forgetting: float = 1.0  # f per decision
-    prior: float = 0.01  # lam
-    mean: str = "identity"  # K_0 = [I 0], or zero
-    deviation: float = 0.0  # s [1/s] of K_0
-    until: int | None = None  # decisions of the run until learning ends; None: never
+    forgetting: Share = 1.0  # f per decision
+    prior: Positive = 0.01  # lam
+    mean: Literal["identity", "zero"] = "identity"  # K_0 = [I 0], or zero
+    deviation: NotNegative = 0.0  # s [1/s] of K_0
+    until: Natural | None = None  # decisions of the run until learning ends; None: never
     demonstrations: Demonstrations | None = None  # decisions that are learned before the first one
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("model",)
     every: ClassVar[int] = 1
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if not 0 < self.forgetting <= 1:
-            raise ValueError(f"model_learner.forgetting={self.forgetting}: must lie in (0, 1]")
-        if not self.prior > 0:
-            raise ValueError(f"model_learner.prior={self.prior}: must be above 0")
-        if self.mean not in MEANS:
-            raise ValueError(f"model_learner.mean={self.mean}: choose {', '.join(MEANS)}")
-        if self.deviation < 0:
-            raise ValueError(f"model_learner.deviation={self.deviation}: must be 0 or more")
-        if self.until is not None and self.until < 0:
-            raise ValueError(f"model_learner.until={self.until}: must be 0 or more, or null")
 
     def init(self, key: Array, spec: Spec) -> RegressionState:
         """K_0, then what the recorded decisions add. The key is consumed.

@@ -6,7 +6,6 @@ for each branch, drawn at each step. These are the branched rollouts of Janner e
 drawn for each update instead of stored.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -14,11 +13,12 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import branches
+from hybrid_rl.fields import Count, Fraction, part
 from hybrid_rl.protocols import Policy, Reward, Trainable, UniformLearner
 from hybrid_rl.types import Batch, Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class MBPO:
     """`learner` with data imagined by `model`, `reward` and `policy`.
 
@@ -30,18 +30,10 @@ class MBPO:
     model: Trainable
     reward: Reward
     policy: Policy
-    imagined_fraction: float = 0.9
-    steps: int = 1  # maximum length of a branch [decisions]
+    imagined_fraction: Fraction = 0.9
+    steps: Count = 1  # maximum length of a branch [decisions]
 
     data: ClassVar[str] = "uniform"
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if not 0 <= self.imagined_fraction <= 1:
-            line = "must lie in [0, 1]"
-            raise ValueError(f"mbpo.imagined_fraction={self.imagined_fraction}: {line}")
-        if not isinstance(self.steps, int) or self.steps < 1:
-            raise ValueError(f"mbpo.steps={self.steps}: must be a whole number, 1 or more")
 
     @property
     def owns(self) -> tuple[str, ...]:

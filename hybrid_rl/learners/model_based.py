@@ -12,7 +12,6 @@ MAAC (Clavera et al. 2020), model-based value expansion (Feinberg et al. 2018), 
 2019).
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -23,8 +22,8 @@ from jax import Array
 from hybrid_rl.core import branches, soft_return
 from hybrid_rl.core import soft_actor_critic as steps
 from hybrid_rl.core.branches import Branches
-from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.core.soft_actor_critic import SACState
+from hybrid_rl.fields import Discount, FieldError, Natural, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy, Reward, Trainable
 from hybrid_rl.types import Batch, Imagined, Params, Spec
 
@@ -37,7 +36,7 @@ class ModelBasedState:
     branches: Branches | None  # None: none are kept
 
 
-@dataclass(frozen=True)
+@part
 class ModelBased:
     """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model.
 
@@ -49,42 +48,33 @@ class ModelBased:
     critic: Critic
     model: Trainable
     reward: Reward
-    steps: int = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
+    steps: Natural = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
     value_expansion: bool = True  # the critic learns from the H decisions, too
-    branch_steps: int = 20  # longest branch [decisions]; 0: starts at the states of the batch
+    branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
-    policy_learning_rate: float = 3e-4
-    critic_learning_rate: float = 3e-4
+    policy_learning_rate: Positive = 3e-4
+    critic_learning_rate: Positive = 3e-4
     alpha_learning_rate: float = 3e-4
-    alpha: float = 0.1  # initial temperature
+    alpha: Positive = 0.1  # initial temperature
     target_entropy: float | None = None  # [nat]; None: -m
-    discount: float = 0.995
-    tau: float = 0.005
+    discount: Discount = 0.995
+    tau: Share = 0.005
     batch_size: int = 256
     updates: float = 2  # per decision
     during_random: bool = True  # whether it also learns while decisions are random
-    max_grad_norm: float | None = 10.0  # of the policy's gradient; None: no limit
+    max_grad_norm: Positive | None = 10.0  # of the policy's gradient; None: no limit
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     batches: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        discount_and_tau(self)
-        above_zero(self, "policy_learner", "policy_learning_rate", "critic_learning_rate", "alpha")
-        steps.check_limit(self.max_grad_norm)
-        for name in ("steps", "branch_steps"):
-            value = getattr(self, name)
-            if not isinstance(value, int) or value < 0:
-                raise ValueError(
-                    f"policy_learner.{name}={value}: must be a whole number, 0 or more"
-                )
+        """Check what depends on two fields."""
         if self.value_expansion and not self.steps:
-            raise ValueError("policy_learner.value_expansion=true: needs steps of 1 or more")
+            raise FieldError(self, "value_expansion", "needs steps of 1 or more")
         if self.branch_memory % self.batch_size:
-            line = f"must be 0 or a multiple of the batch, {self.batch_size}"
-            raise ValueError(f"policy_learner.branch_memory={self.branch_memory}: {line}")
+            words = f"must be 0 or a multiple of the batch, {self.batch_size}"
+            raise FieldError(self, "branch_memory", words)
 
     def init(self, key: Array, spec: Spec) -> ModelBasedState:
         """Initial parameters, without branches. The key is consumed."""

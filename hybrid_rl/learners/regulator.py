@@ -10,7 +10,6 @@ and the last one kept. Source: thesis eq. (7.4) and Algorithm 7, line 5; `thomps
 draws of the model (Thompson sampling; Abeille and Lazaric 2017).
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -21,6 +20,7 @@ from hybrid_rl.core import riccati
 from hybrid_rl.core.analytic import linearise, require_equilibrium
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.solving import solve
+from hybrid_rl.fields import Count, FieldError, NotNegative, Positive, part
 from hybrid_rl.protocols import BalancedEnv, GoalPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -33,7 +33,7 @@ class SolutionState:
     rejected: Array  # []
 
 
-@dataclass(frozen=True)
+@part
 class RegulatorLearner:
     """A linear policy that regulates a model to the equilibrium of `world`.
 
@@ -44,35 +44,24 @@ class RegulatorLearner:
     model: Model
     policy: GoalPolicy
     world: BalancedEnv
-    state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: of the first entries of x; 1: of all
-    action_weights: tuple[float, ...] = (1.0,)  # diagonal of R: one for all actions, or one each
-    horizon: int = 128  # T [decisions]
+    state_weights: tuple[NotNegative, ...] = (
+        1.0,
+    )  # diagonal of Q: of the first entries of x; 1: of all
+    action_weights: tuple[Positive, ...] = (1.0,)  # diagonal of R: one for all actions, or one each
+    horizon: Count = 128  # T [decisions]
     feedforward: bool = True  # false: hold = 0
     thompson: float = 0.0  # noise of the data: solve for a draw of the model; 0: for its mean
-    every: int = 1  # decisions between two solutions
+    every: Count = 1  # decisions between two solutions
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("policy",)
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        for name in ("state_weights", "action_weights"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+        """Check the environment and the model."""
         require_equilibrium("policy_learner", self.world)
-        if not all(weight >= 0 for weight in self.state_weights):
-            weights = list(self.state_weights)
-            raise ValueError(f"policy_learner.state_weights={weights}: must be 0 or more")
-        if not all(weight > 0 for weight in self.action_weights):
-            weights = list(self.action_weights)
-            raise ValueError(f"policy_learner.action_weights={weights}: must be above 0")
         if self.thompson < 0 or (self.thompson and not hasattr(self.model, "draw_model")):
-            raise ValueError(
-                f"policy_learner.thompson={self.thompson}: must be 0 or more; above 0 only with "
-                "a linear model"
-            )
-        for name in ("horizon", "every"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"policy_learner.{name}={getattr(self, name)}: must be 1 or more")
+            words = "must be 0 or more; above 0 only with a linear model"
+            raise FieldError(self, "thompson", words)
 
     def init(self, key: Array, spec: Spec) -> SolutionState:
         """No gain yet. The key is consumed.

@@ -7,7 +7,6 @@ G is the discounted sum of past rewards in each environment and starts at 0 in e
 FlashSAC (Kim et al. 2026).
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -15,6 +14,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.fields import Count, Discount, Positive, part
 from hybrid_rl.types import Batch, Params, Spec
 
 
@@ -27,7 +27,7 @@ class ScaleState:
     largest: Array  # [] |G|
 
 
-@dataclass(frozen=True)
+@part
 class ReturnScale:
     """The running scale of discounted returns.
 
@@ -35,22 +35,13 @@ class ReturnScale:
         ValueError: for a discount, a bound or a number of environments out of range.
     """
 
-    discount: float = 0.99
-    bound: float = 5.0  # of scaled returns
-    num_envs: int = 1
+    discount: Discount = 0.99
+    bound: Positive = 5.0  # of scaled returns
+    num_envs: Count = 1
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("scale",)
     every: ClassVar[int] = 1
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if not 0 <= self.discount < 1:
-            raise ValueError(f"return_scale.discount={self.discount}: must lie in [0, 1)")
-        if not self.bound > 0:
-            raise ValueError(f"return_scale.bound={self.bound}: must be above 0")
-        if self.num_envs < 1:
-            raise ValueError(f"return_scale.num_envs={self.num_envs}: must be 1 or more")
 
     def init(self, key: Array, spec: Spec) -> ScaleState:
         """No rewards yet. The key is not used."""

@@ -8,7 +8,6 @@
 A time limit does not terminate the task: `truncated` is not used.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -16,13 +15,13 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import soft_actor_critic as steps
-from hybrid_rl.core.ranges import above_zero, discount_and_tau
 from hybrid_rl.core.soft_actor_critic import SACState
+from hybrid_rl.fields import Discount, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class SAC:
     """Soft actor-critic on a policy and a critic.
 
@@ -32,27 +31,21 @@ class SAC:
 
     policy: LearnedPolicy
     critic: Critic
-    policy_learning_rate: float = 3e-4
-    critic_learning_rate: float = 3e-4
+    policy_learning_rate: Positive = 3e-4
+    critic_learning_rate: Positive = 3e-4
     alpha_learning_rate: float = 3e-4
-    alpha: float = 1.0  # initial temperature
+    alpha: Positive = 1.0  # initial temperature
     target_entropy: float | None = None  # [nat]; None: -m
-    discount: float = 0.99
-    tau: float = 0.005
+    discount: Discount = 0.99
+    tau: Share = 0.005
     batch_size: int = 256
     updates: float = 1  # per decision
     during_random: bool = False  # whether it also learns while decisions are random
-    max_grad_norm: float | None = None  # of the policy's gradient; None: no limit
+    max_grad_norm: Positive | None = None  # of the policy's gradient; None: no limit
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     batches: ClassVar[int] = 1
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        discount_and_tau(self)
-        above_zero(self, "policy_learner", "policy_learning_rate", "critic_learning_rate", "alpha")
-        steps.check_limit(self.max_grad_norm)
 
     def init(self, key: Array, spec: Spec) -> SACState:
         """Initial parameters, optimisers and target. The key is consumed."""

@@ -8,18 +8,18 @@ Janner et al. 2019), without a bootstrapped data set for each member. With `elit
 drawn only from the members whose loss on held-out decisions is least, as in MBPO.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import Count, FieldError, part
 from hybrid_rl.protocols import Trainable
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class Ensemble:
     """`members` copies of `model`, each with its own "weights", with shared statistics.
 
@@ -29,18 +29,14 @@ class Ensemble:
     """
 
     model: Trainable
-    members: int = 5
+    members: Count = 5
     elites: int | None = None  # members that `draw` uses; None: all
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        if not isinstance(self.members, int) or self.members < 1:
-            raise ValueError(f"model.members={self.members}: must be a whole number, 1 or more")
+        """Check the elites."""
         if self.elites is not None and self.elites not in range(1, self.members + 1):
-            raise ValueError(
-                f"model.elites={self.elites}: must be a whole number from 1 to "
-                f"model.members={self.members}, or null for all"
-            )
+            words = f"must be a whole number from 1 to members={self.members}, or null for all"
+            raise FieldError(self, "elites", words)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters; weights have a first axis [members]. The key is consumed."""

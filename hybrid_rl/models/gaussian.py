@@ -13,7 +13,6 @@ which does not enlarge the noise of small changes (Barkley and Fridovich-Keil 20
 Lunch). The loss is the same likelihood in the same units, so the two can be compared by it.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -21,13 +20,14 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.fields import FieldError, part
 from hybrid_rl.networks import MLP, check
 from hybrid_rl.types import Spec
 
 PREDICT = ("change", "state")
 
 
-@dataclass(frozen=True)
+@part
 class Gaussian:
     """A one-step Gaussian model; the planning state is the observation.
 
@@ -48,13 +48,10 @@ class Gaussian:
     members: ClassVar[int] = 1  # an ensemble has more
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
+        """Check the network."""
         check("model", self.hidden, self.activation, self.layer_norm)
-        if self.inputs is not None:
-            object.__setattr__(self, "inputs", tuple(self.inputs))
         if self.predict not in PREDICT:
-            raise ValueError(f"model.predict={self.predict}: choose {' or '.join(PREDICT)}")
+            raise FieldError(self, "predict", f"choose {' or '.join(PREDICT)}")
 
     def _net(self, out: int) -> MLP:
         return MLP(self.hidden, out, self.activation, self.layer_norm)

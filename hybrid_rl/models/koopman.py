@@ -6,7 +6,6 @@ K is discrete in time, so that it needs no matrix logarithm. With products x_i u
 Source: thesis eq. (2.9)-(2.11) and (7.2).
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -14,11 +13,12 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import least_squares
+from hybrid_rl.fields import Natural, Positive, part
 from hybrid_rl.protocols import Features
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class Koopman:
     """A linear model of `features`.
 
@@ -27,16 +27,8 @@ class Koopman:
     """
 
     features: Features
-    products: tuple[int, ...] = ()  # i of the regressors x_i u; (): linear
-    bound: float = 1e4  # of |x_i|: predictions of a poor K stay finite
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "products", tuple(self.products))
-        if not self.bound > 0:
-            raise ValueError(f"model.bound={self.bound}: must be above 0")
-        if min(self.products, default=0) < 0:
-            raise ValueError(f"model.products={list(self.products)}: indices must be 0 or more")
+    products: tuple[Natural, ...] = ()  # i of the regressors x_i u; (): linear
+    bound: Positive = 1e4  # of |x_i|: predictions of a poor K stay finite
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed.

@@ -5,17 +5,16 @@ model's posterior and their predictions are Gaussian with noise sigma. Source: S
 Optimistic Active Exploration of Dynamical Systems, there with learned noise; Shyam et al. 2019.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import EnsembleModel
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
-@dataclass(frozen=True)
+@part
 class Disagreement:
     """Expected information about an ensemble of models along a path.
 
@@ -24,15 +23,13 @@ class Disagreement:
     """
 
     model: EnsembleModel
-    noise: float = 0.1  # sigma, in running standard deviations of the change
+    noise: Positive = 0.1  # sigma, in running standard deviations of the change
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check the model."""
         if not hasattr(self.model, "disagreement"):
             kind = type(self.model).__name__
             raise ValueError(f"objective.model={kind}: needs an ensemble; choose model=ensemble")
-        if not self.noise > 0:
-            raise ValueError(f"objective.noise={self.noise}: must be above 0")
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: what the data say is in the model's parameters."""

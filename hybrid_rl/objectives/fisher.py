@@ -7,7 +7,7 @@ without the data so far: A_step, path, past=false. D by step, with the data so f
 It is the term without the task; `weighted_sum` adds one.
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -15,12 +15,13 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import fisher
+from hybrid_rl.fields import FieldError, Natural, Positive, part
 from hybrid_rl.networks import mean_weights
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
-@dataclass(frozen=True)
+@part
 class FisherInformation:
     """Information along a path about the weights of the model in `Params`.
 
@@ -33,28 +34,17 @@ class FisherInformation:
     """
 
     model: Model
-    criterion: str = "D"  # A_step | A | D | T | full
-    sensitivity: str = "step"  # step | path
-    sigma: float | None = 0.1  # of the change, in running deviations; None: the model's
-    floor: float = 0.01  # of the diagonal [1/theta^2]
+    criterion: Literal["A_step", "A", "D", "T", "full"] = "D"  # A_step | A | D | T | full
+    sensitivity: Literal["step", "path"] = "step"  # step | path
+    sigma: Positive | None = 0.1  # of the change, in running deviations; None: the model's
+    floor: Positive | None = 0.01  # of the diagonal [1/theta^2]
     past: bool = True  # count the data so far, if a learner does
-    probes: int = 0  # directions that estimate T; 0: exact
+    probes: Natural = 0  # directions that estimate T; 0: exact
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        for name, known in (("criterion", fisher.CRITERIA), ("sensitivity", fisher.KINDS)):
-            if getattr(self, name) not in known:
-                raise ValueError(
-                    f"information.{name}={getattr(self, name)}: choose {', '.join(known)}"
-                )
-        for name in ("sigma", "floor"):
-            value = getattr(self, name)
-            if value is not None and not value > 0:
-                raise ValueError(f"information.{name}={value}: must be above 0")
-        if self.probes < 0:
-            raise ValueError(f"information.probes={self.probes}: must be 0 or more")
+        """Check the estimate."""
         if self.probes and self.criterion != "T":
-            raise ValueError(f"information.probes={self.probes}: only criterion=T is estimated")
+            raise FieldError(self, "probes", "only criterion=T is estimated")
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: what the data say is in `Params`."""

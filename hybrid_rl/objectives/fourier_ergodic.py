@@ -6,7 +6,6 @@ uniform points as the KL-ergodic measure. The volume of the domain makes J a pur
 core.fourier.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import jax
@@ -15,6 +14,7 @@ from jax import Array
 
 from hybrid_rl.core import fourier
 from hybrid_rl.core.domain import Box
+from hybrid_rl.fields import Count, Fraction, NotNegative, part
 from hybrid_rl.protocols import Target
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -26,7 +26,7 @@ class FourierState(NamedTuple):
     count: Array  # []
 
 
-@dataclass(frozen=True)
+@part
 class FourierErgodic:
     """Minus the Fourier ergodic metric of a path in a domain.
 
@@ -36,19 +36,11 @@ class FourierErgodic:
 
     target: Target
     domain: Box
-    samples: int = 1000  # N
-    modes: int = 5  # K for each coordinate
-    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
-    share: float = 0.0  # of the uniform density in p; 1: coverage
-    forget: float = 1.0  # f, the weight that earlier states keep per decision
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.samples < 1 or self.modes < 1 or self.barrier < 0:
-            raise ValueError("exploration: samples and modes 1 or more, barrier 0 or more")
-        for name in ("share", "forget"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise ValueError(f"exploration.{name}={getattr(self, name)}: must lie in [0, 1]")
+    samples: Count = 1000  # N
+    modes: Count = 5  # K for each coordinate
+    barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
+    share: Fraction = 0.0  # of the uniform density in p; 1: coverage
+    forget: Fraction = 1.0  # f, the weight that earlier states keep per decision
 
     def init(self, spec: Spec) -> FourierState:
         """An empty memory."""

@@ -7,21 +7,21 @@ Under the norm no data count, and a state far from zero is informative. Source: 
 the gain is ours, that of a Bayesian linear regression (D-optimality; Chaloner and Verdinelli 1995).
 """
 
-from dataclasses import dataclass
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import least_squares
-from hybrid_rl.core.ranges import above_zero
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import LinearModel
 from hybrid_rl.types import Params, Path, Return, Spec
 
 CRITERIA = ("gain", "norm")
 
 
-@dataclass(frozen=True)
+@part
 class Information:
     """Information along a path about the model in `Params`.
 
@@ -30,15 +30,9 @@ class Information:
     """
 
     model: LinearModel
-    criterion: str = "gain"  # or norm
-    noise: float = 0.1  # sigma of gain
-    floor: float = 1e-5  # eps of norm
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.criterion not in CRITERIA:
-            raise ValueError(f"objective.criterion={self.criterion}: choose {', '.join(CRITERIA)}")
-        above_zero(self, "objective", "noise", "floor")
+    criterion: Literal["gain", "norm"] = "gain"
+    noise: Positive = 0.1  # sigma of gain
+    floor: Positive = 1e-5  # eps of norm
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: what the data say is in the model's parameters."""

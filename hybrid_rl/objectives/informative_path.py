@@ -11,19 +11,18 @@ the belief to know what was measured. Source: informative path planning, Krause 
 Near-optimal Observation Selection using Submodular Functions; Singh et al. 2009.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import ergodic
 from hybrid_rl.core.domain import Box
+from hybrid_rl.fields import Count, Fraction, NotNegative, Positive, part
 from hybrid_rl.protocols import Target
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
-@dataclass(frozen=True)
+@part
 class InformativePath:
     """The information, by a target, that a path gathers in a domain.
 
@@ -33,19 +32,11 @@ class InformativePath:
 
     target: Target
     domain: Box
-    samples: int = 1000  # N
-    width: float = 0.05  # w, as a share of the domain's sides
-    forget: float = 1.0  # f
-    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
-    share: float = 0.0  # of the uniform density in g; 1: coverage
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.samples < 1 or not self.width > 0 or self.barrier < 0:
-            raise ValueError("information: samples 1 or more, width above 0, barrier 0 or more")
-        for name in ("forget", "share"):
-            if not 0 <= getattr(self, name) <= 1:
-                raise ValueError(f"information.{name}={getattr(self, name)}: must lie in [0, 1]")
+    samples: Count = 1000  # N
+    width: Positive = 0.05  # w, as a share of the domain's sides
+    forget: Fraction = 1.0  # f
+    barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
+    share: Fraction = 0.0  # of the uniform density in g; 1: coverage
 
     @property
     def points(self) -> Array:

@@ -18,6 +18,7 @@ from jax import Array
 
 from hybrid_rl.core import ergodic
 from hybrid_rl.core.domain import Box
+from hybrid_rl.fields import Count, FieldError, Fraction, Natural, NotNegative, Positive, part
 from hybrid_rl.protocols import Target
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -29,7 +30,7 @@ class KLState(NamedTuple):
     count: Array  # [] decisions so far
 
 
-@dataclass(frozen=True)
+@part
 class KLErgodic:
     """Minus the KL-ergodic measure of a path in a domain.
 
@@ -39,24 +40,17 @@ class KLErgodic:
 
     target: Target
     domain: Box
-    samples: int = 100  # N
-    variance: tuple[float, ...] = (0.1,)  # diagonal of Sigma: one for all, or [v]
-    memory: int = 0  # M [decisions]
-    floor: float = 0.0  # added to q [uniform density]: distant regions attract less
-    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
-    share: float = 0.0  # of the uniform density in p; 1: coverage
+    samples: Count = 100  # N
+    variance: tuple[Positive, ...] = (0.1,)  # diagonal of Sigma: one for all, or [v]
+    memory: Natural = 0  # M [decisions]
+    floor: NotNegative = 0.0  # added to q [uniform density]: distant regions attract less
+    barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
+    share: Fraction = 0.0  # of the uniform density in p; 1: coverage
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "variance", tuple(self.variance))
-        if self.samples < 1 or self.memory < 0:
-            raise ValueError("exploration: samples must be 1 or more, memory 0 or more")
-        if len(self.variance) not in (1, self.domain.size) or min(self.variance) <= 0:
-            raise ValueError(f"exploration.variance={list(self.variance)}: 1 or v numbers above 0")
-        if self.floor < 0 or self.barrier < 0:
-            raise ValueError("exploration: floor and barrier must be 0 or more")
-        if not 0 <= self.share <= 1:
-            raise ValueError(f"exploration.share={self.share}: must lie in [0, 1]")
+        """Check the number of variances."""
+        if len(self.variance) not in (1, self.domain.size):
+            raise FieldError(self, "variance", "must be 1 or v numbers")
 
     @property
     def _variance(self) -> Array:

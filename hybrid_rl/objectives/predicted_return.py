@@ -6,7 +6,6 @@ c_t is the discount so far, times the probability that the episode continues if 
 it: without it a planner expects rewards after a robot has fallen.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -15,11 +14,12 @@ from jax import Array
 
 from hybrid_rl.core import returns
 from hybrid_rl.core.lifting import seen
+from hybrid_rl.fields import Share, part
 from hybrid_rl.protocols import Critic, Policy, Reward
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
-@dataclass(frozen=True)
+@part
 class PredictedReturn:
     """The discounted sum of `reward` along a path, plus the critic's value of the last state.
 
@@ -28,16 +28,14 @@ class PredictedReturn:
     """
 
     reward: Reward
-    discount: float = 1.0  # per decision
+    discount: Share = 1.0  # per decision
     critic: Critic | None = None  # with `policy`: adds the value of the last state
     policy: Policy | None = None
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check the critic and the policy."""
         if (self.critic is None) != (self.policy is None):
             raise ValueError("objective.critic and objective.policy: give both or neither")
-        if not 0 < self.discount <= 1:
-            raise ValueError(f"objective.discount={self.discount}: must lie in (0, 1]")
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: earlier rewards do not affect decisions."""

@@ -8,19 +8,17 @@ deviations of the model's states. D is the KL-ergodic measure itself: the bound 
 the thesis uses for speed, depends on p only through its mean.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import ergodic
-from hybrid_rl.core.ranges import above_zero
+from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.protocols import Critic, Policy, Trainable
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
-@dataclass(frozen=True)
+@part
 class UtilityErgodic:
     """Minus the KL-ergodic measure of states and actions under a critic.
 
@@ -31,14 +29,10 @@ class UtilityErgodic:
     model: Trainable  # its parameters hold "state", statistics of the states
     policy: Policy
     critic: Critic
-    samples: int = 20  # N
-    variance: float = 0.1  # of Sigma = variance I, in squared units
-    reach: float = 0.5  # [units], of actions [u]
-    sharpness: float = 1.0  # c [1/Q]
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        above_zero(self, "utility", "samples", "variance", "reach", "sharpness")
+    samples: Count = 20  # N
+    variance: Positive = 0.1  # of Sigma = variance I, in squared units
+    reach: Positive = 0.5  # [units], of actions [u]
+    sharpness: Positive = 1.0  # c [1/Q]
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory."""

@@ -13,7 +13,6 @@ so the error counts on one side only (a censored regression, as in Tobin 1958, b
 the mean of their mu (an ensemble: Dietterich 2000, without bootstrap samples).
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -21,6 +20,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.fields import FieldError, Inside, Positive, Several, part
 from hybrid_rl.networks import ACTIVATIONS, MLP, Perceptron, check, perceptron, side_by_side
 from hybrid_rl.types import Spec
 
@@ -28,7 +28,7 @@ SQUASHES = ("tanh", "clip")
 ACTS = ("first", "mean")
 
 
-@dataclass(frozen=True)
+@part
 class Deterministic:
     """A network with a standard deviation that is not learned.
 
@@ -40,21 +40,16 @@ class Deterministic:
 
     hidden: tuple[int, ...] = (32, 32)
     activation: str = "relu"
-    sigma: float = 1.0  # of z
+    sigma: Positive = 1.0  # of z
     squash: str = "tanh"  # or clip
     normalise: bool = False
-    saturation: float | None = None  # [u] actions of this size or more count as clipped
+    saturation: Inside | None = None  # [u] actions of this size or more count as clipped
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
+        """Check the network."""
         check("policy", self.hidden, self.activation)
-        if not self.sigma > 0:
-            raise ValueError(f"policy.sigma={self.sigma}: must be above 0")
         if self.squash not in SQUASHES:
-            raise ValueError(f"policy.squash={self.squash}: choose {' or '.join(SQUASHES)}")
-        if self.saturation is not None and not 0 < self.saturation < 1:
-            raise ValueError(f"policy.saturation={self.saturation}: must lie in (0, 1), or null")
+            raise FieldError(self, "squash", f"choose {' or '.join(SQUASHES)}")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters. The key is consumed."""
@@ -125,7 +120,7 @@ class Deterministic:
         return -jnp.sum(0.5 * noise**2 + constant, axis=-1)
 
 
-@dataclass(frozen=True)
+@part
 class Clones(Deterministic):
     """`members` networks that learn from the same data.
 
@@ -135,16 +130,14 @@ class Clones(Deterministic):
         ValueError: for fewer than two members, or an unknown `acts`.
     """
 
-    members: int = 5
+    members: Several = 5
     acts: str = "first"  # or mean: mu is the mean over the members
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check the network."""
         super().__post_init__()
-        if self.members < 2:
-            raise ValueError(f"policy.members={self.members}: must be 2 or more")
         if self.acts not in ACTS:
-            raise ValueError(f"policy.acts={self.acts}: choose {' or '.join(ACTS)}")
+            raise FieldError(self, "acts", f"choose {' or '.join(ACTS)}")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters, different for each member. The key is consumed."""

@@ -7,19 +7,19 @@ batch normalises it, elsewhere running statistics do. Source: the policy of Flas
 2026), with its width, its two blocks and its bounds.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.squashing import log_density
+from hybrid_rl.fields import FieldError, part
 from hybrid_rl.networks import normalised
 from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class UnitGaussian:
     """A stochastic policy on [-1, 1]^m.
 
@@ -32,11 +32,10 @@ class UnitGaussian:
     log_std_max: float = 2.0
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
+        """Check the network."""
         normalised.check("policy", self.hidden)
         if self.log_std_min >= self.log_std_max:
-            raise ValueError(f"policy.log_std_min={self.log_std_min}: must lie below log_std_max")
+            raise FieldError(self, "log_std_min", "must lie below log_std_max")
 
     def _net(self, out: int) -> NormalisedNet:
         return NormalisedNet(self.hidden[0], len(self.hidden), out)

@@ -10,19 +10,19 @@ Source: splines as plans are MuJoCo MPC's (Howell et al. 2022, predictive sampli
 noise around the plan, which keeps its own shape.
 """
 
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.types import Params, Spec
 
 ORDERS = ("linear", "cubic")
 
 
-@dataclass(frozen=True)
+@part
 class KnotsProposal:
     """Candidates around the warm-started plan, smooth over the horizon.
 
@@ -31,19 +31,10 @@ class KnotsProposal:
             unknown order.
     """
 
-    knots: int = 5  # n
-    order: str = "linear"  # or cubic
-    std: float = 0.7  # s of a knot, of full actuation
+    knots: Count = 5  # n
+    order: Literal["linear", "cubic"] = "linear"
+    std: Positive = 0.7  # s of a knot, of full actuation
     density: ClassVar[bool] = False  # the noise of a decision follows from its neighbours
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if not isinstance(self.knots, int) or self.knots < 1:
-            raise ValueError(f"proposal.knots={self.knots}: must be a whole number, 1 or more")
-        if self.order not in ORDERS:
-            raise ValueError(f"proposal.order={self.order}: choose {' or '.join(ORDERS)}")
-        if self.std <= 0:
-            raise ValueError(f"proposal.std={self.std}: must be positive")
 
     def init(self, spec: Spec, quantile: Array) -> tuple[()]:
         """No carry."""

@@ -10,18 +10,18 @@ which is left out. Planners refuse `log_density` with this proposal, since it wo
 densities of different distributions.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import sampling
+from hybrid_rl.fields import Fraction, part
 from hybrid_rl.protocols import Proposal
 from hybrid_rl.types import Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class MixtureProposal:
     """The first `share` of the K candidates from `first`, the others from `second`.
 
@@ -31,13 +31,8 @@ class MixtureProposal:
 
     first: Proposal
     second: Proposal
-    share: float = 0.5
+    share: Fraction = 0.5
     density: ClassVar[bool] = False  # densities of two distributions cannot be compared
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if not 0 <= self.share <= 1:
-            raise ValueError(f"proposal.share={self.share}: must lie in [0, 1]")
 
     def init(self, spec: Spec, quantile: Array) -> tuple[Array, Any, Any]:
         """Whether `first` draws this path, and the carries of both."""

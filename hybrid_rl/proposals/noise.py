@@ -5,12 +5,12 @@ executed. c = 0 gives the candidates of MPPI without its control cost (Williams 
 alpha = 1); c > 0 correlates them in time.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import Discount, Positive, part
 from hybrid_rl.types import Params, Spec
 
 
@@ -21,7 +21,7 @@ class NoiseState(NamedTuple):
     correlation: Array  # [] with the next noise; 0 before the first decision
 
 
-@dataclass(frozen=True)
+@part
 class NoiseProposal:
     """Candidates around the warm-started plan.
 
@@ -29,15 +29,8 @@ class NoiseProposal:
         ValueError: for a standard deviation that is not positive or a correlation outside [0, 1).
     """
 
-    std: float = 0.3  # of full actuation
-    correlation: float = 0.0  # of the noise of successive decisions
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if self.std <= 0:
-            raise ValueError(f"proposal.std={self.std}: must be positive")
-        if not 0 <= self.correlation < 1:
-            raise ValueError(f"proposal.correlation={self.correlation}: must lie in [0, 1)")
+    std: Positive = 0.3  # of full actuation
+    correlation: Discount = 0.0  # of the noise of successive decisions
 
     def init(self, spec: Spec, quantile: Array) -> NoiseState:
         """No noise before the first action."""

@@ -14,7 +14,6 @@ to learn the dynamics again.
 Ends are learned as a second output, or known by the rule of a task, from its next observation.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -22,13 +21,14 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.fields import Count, part
 from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
 from hybrid_rl.types import Params, Spec
 
 CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
 
 
-@dataclass(frozen=True)
+@part
 class RewardNetwork:
     """A reward, and with `ends` the probability that the episode ends.
 
@@ -43,15 +43,12 @@ class RewardNetwork:
     rule: Any = None  # an EndingEnv, whose rule gives the ends; others, and None: they are learned
     layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
     scale: bool = False  # targets by their running statistics
-    members: int = 1  # networks, whose mean is used
+    members: Count = 1  # networks, whose mean is used
     next_state: bool = False  # x' is an input, too
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
+        """Check the network."""
         check("reward", self.hidden, self.activation, self.layer_norm)
-        if not isinstance(self.members, int) or self.members < 1:
-            raise ValueError(f"reward.members={self.members}: must be a whole number, 1 or more")
 
     @property
     def _known(self) -> bool:

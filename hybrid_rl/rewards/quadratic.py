@@ -4,18 +4,18 @@ e are the local coordinates of the next state; with a model, e = x' - z(o_0), in
 states. Nothing is learned.
 """
 
-from dataclasses import dataclass
 from typing import cast
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import analytic
+from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.protocols import AnalyticEnv, BalancedEnv, Model
 from hybrid_rl.types import Params
 
 
-@dataclass(frozen=True)
+@part
 class QuadraticReward:
     """Minus the squared distance to the equilibrium, for episodes that do not end.
 
@@ -25,21 +25,16 @@ class QuadraticReward:
     """
 
     world: BalancedEnv  # an AnalyticEnv, if there is no model
-    state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or the first of e
-    action_weights: tuple[float, ...] = (0.0,)  # diagonal of R: one for all, or [m]
+    state_weights: tuple[NotNegative, ...] = (1.0,)  # diagonal of Q: one for all, or the first of e
+    action_weights: tuple[NotNegative, ...] = (0.0,)  # diagonal of R: one for all, or [m]
     model: Model | None = None  # e in its planning states; None: in local coordinates
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check the environment."""
         if self.model is None:
             analytic.require("reward", cast(AnalyticEnv, self.world))
         else:
             analytic.require_equilibrium("reward", self.world)
-        for name in ("state_weights", "action_weights"):
-            weights = tuple(getattr(self, name))
-            object.__setattr__(self, name, weights)
-            if not all(weight >= 0 for weight in weights):
-                raise ValueError(f"reward.{name}={list(weights)}: must be 0 or more")
 
     def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """The reward [] of u [m], which led to `after` [n]; no end."""

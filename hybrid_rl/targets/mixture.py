@@ -1,15 +1,14 @@
 """p(s) = sum_j w_j N(s; m_j, s_j^2 I): a known target."""
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import FieldError, Positive, part
 from hybrid_rl.types import Params
 
 
-@dataclass(frozen=True)
+@part
 class Mixture:
     """A mixture of any number of Gaussians, of any dimension.
 
@@ -18,17 +17,14 @@ class Mixture:
     """
 
     means: tuple[tuple[float, ...], ...] = ((0.3, 0.3), (0.7, 0.7))  # [J, v]
-    stds: tuple[float, ...] = (0.1, 0.1)  # [J]
-    weights: tuple[float, ...] = (0.5, 0.5)  # [J], up to a factor
+    stds: tuple[Positive, ...] = (0.1, 0.1)  # [J]
+    weights: tuple[Positive, ...] = (0.5, 0.5)  # [J], up to a factor
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "means", tuple(tuple(mean) for mean in self.means))
+        """Check the numbers."""
         for name in ("stds", "weights"):
-            numbers = tuple(getattr(self, name))
-            object.__setattr__(self, name, numbers)
-            if len(numbers) != len(self.means) or not all(number > 0 for number in numbers):
-                raise ValueError(f"target.{name}={list(numbers)}: one number above 0 for each mean")
+            if len(getattr(self, name)) != len(self.means):
+                raise FieldError(self, name, "one number above 0 for each mean")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v]; the last entry of a shorter mean is repeated."""

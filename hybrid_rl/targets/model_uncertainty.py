@@ -4,18 +4,17 @@ sigma is a vector in the thesis; here the exponent is its mean over the entries,
 standard deviations of its change. Coordinates that the domain lacks have their equilibrium values.
 """
 
-from dataclasses import dataclass
-
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import analytic
 from hybrid_rl.core.domain import Box
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import AnalyticEnv, Uncertain
 from hybrid_rl.types import Params
 
 
-@dataclass(frozen=True)
+@part
 class ModelUncertainty:
     """Proportional to the exponential of the predictive standard deviation.
 
@@ -26,13 +25,11 @@ class ModelUncertainty:
     model: Uncertain
     world: AnalyticEnv
     domain: Box
-    sharpness: float = 10.0  # c [1/std]
+    sharpness: Positive = 10.0  # c [1/std]
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check the environment."""
         analytic.require("target", self.world)
-        if not self.sharpness > 0:
-            raise ValueError(f"target.sharpness={self.sharpness}: must be above 0")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v], up to a constant."""

@@ -6,16 +6,15 @@ Source: the doubt of EnsembleDAgger (Menda, Driggs-Campbell and Kochenderfer 201
 there who acts; as a choice of queries it is query by committee (Seung, Opper and Sompolinsky 1992).
 """
 
-from dataclasses import dataclass
-
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import Committee
 from hybrid_rl.types import Params
 
 
-@dataclass(frozen=True)
+@part
 class PolicyDisagreement:
     """Proportional to the variance of the clones' actions.
 
@@ -24,14 +23,12 @@ class PolicyDisagreement:
     """
 
     policy: Committee
-    floor: float = 1e-8  # of the variance
+    floor: Positive = 1e-8  # of the variance
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check the policy."""
         if not hasattr(self.policy, "each"):
             raise ValueError(f"target.policy={type(self.policy).__name__}: needs policy=clones")
-        if not self.floor > 0:
-            raise ValueError(f"target.floor={self.floor}: must be above 0")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at the planning state s [n], up to a constant."""

@@ -12,7 +12,6 @@ eq. (4.5)-(4.6) (`inverse`) and (6.28) (`trace`), with sigma^-2 where the thesis
 is ours.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
@@ -21,14 +20,14 @@ from jax import Array
 from hybrid_rl.core import fisher
 from hybrid_rl.core.analytic import require_equilibrium
 from hybrid_rl.core.domain import Box
-from hybrid_rl.core.ranges import above_zero
+from hybrid_rl.fields import FieldError, Positive, part
 from hybrid_rl.protocols import BalancedEnv, UnsquashedPolicy
 from hybrid_rl.types import Params
 
 CRITERIA = ("trace", "inverse", "gain")
 
 
-@dataclass(frozen=True)
+@part
 class PolicyInformation:
     """Proportional to a criterion of the information that a demonstration has.
 
@@ -44,14 +43,13 @@ class PolicyInformation:
     world: BalancedEnv | None = None  # of the equilibrium
     domain: Box | None = None
     criterion: str = "gain"
-    sigma: float = 1.0  # of mu
-    floor: float = 0.01  # [1/weight^2]
+    sigma: Positive = 1.0  # of mu
+    floor: Positive = 0.01  # [1/weight^2]
 
     def __post_init__(self) -> None:
         """Check the fields."""
         if self.criterion not in CRITERIA:
-            raise ValueError(f"target.criterion={self.criterion}: choose {', '.join(CRITERIA)}")
-        above_zero(self, "target", "sigma", "floor")
+            raise FieldError(self, "criterion", f"choose {', '.join(CRITERIA)}")
         if not hasattr(self.policy, "unsquashed"):
             kind = type(self.policy).__name__
             raise ValueError(f"target.policy={kind}: needs policy=deterministic")

@@ -8,18 +8,16 @@ needs many gradient steps. As a choice of queries it is ours: where the two disa
 not learned what the labels show, or there is no label nearby.
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.ranges import above_zero
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import Policy
 from hybrid_rl.types import Params
 
 
-@dataclass(frozen=True)
+@part
 class PolicyResidual:
     """Proportional to the squared difference to a kernel regression of the labels.
 
@@ -28,12 +26,8 @@ class PolicyResidual:
     """
 
     policy: Policy
-    bandwidth: float = 0.5  # h, in standard deviations of the first demonstration
-    floor: float = 1e-6
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        above_zero(self, "target", "bandwidth", "floor")
+    bandwidth: Positive = 0.5  # h, in standard deviations of the first demonstration
+    floor: Positive = 1e-6
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at the planning state s [n], up to a constant; needs params.labels."""

@@ -4,7 +4,6 @@ d is the signed distance of the world's objects in their reference arrangement, 
 the robot: a robot in contact is at d = r, so that the step lies a width w outside.
 """
 
-from dataclasses import dataclass
 from functools import cache
 
 import jax
@@ -12,13 +11,14 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.fields import FieldError, Positive, part
 from hybrid_rl.protocols import ContactEnv
 
 OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
 NEWTON, NEAR = 20, 1e-4  # iterations; |d - r| of a solution, in the box's shorter side
 
 
-@dataclass(frozen=True)
+@part
 class KnownMap:
     """The map of a world whose objects are known.
 
@@ -27,7 +27,7 @@ class KnownMap:
     """
 
     world: ContactEnv
-    width: float = 0.008  # w [m]
+    width: Positive = 0.008  # w [m]
     low: float = 0.01  # lo: at least twice the sensor's rate of false contacts
     high: float = 0.99  # hi
 
@@ -35,10 +35,8 @@ class KnownMap:
         """Check the fields."""
         if not hasattr(self.world, "distance"):
             raise ValueError(f"map.world={type(self.world).__name__}: needs contacts")
-        if not self.width > 0:
-            raise ValueError(f"map.width={self.width}: must be above 0")
         if not 0 < self.low < self.high < 1:
-            raise ValueError(f"map.low={self.low}: must lie between 0 and map.high={self.high}")
+            raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
 
     @property
     def middle(self) -> tuple[float, float]:

@@ -18,8 +18,7 @@ See `rejuvenation`. A measurement at s informs by
 Source: thesis eq. (5.1) and section 5.3.2, with the information at s~ instead of s.
 """
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -29,7 +28,7 @@ from hybrid_rl.beliefs.pose_particles import rejuvenation
 from hybrid_rl.core import poses, resampling
 from hybrid_rl.core.branching import when_any
 from hybrid_rl.core.domain import Box
-from hybrid_rl.core.ranges import above_zero
+from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.protocols import ContactMap
 from hybrid_rl.types import Spec
 
@@ -50,7 +49,7 @@ class Particles(NamedTuple):
     accepted: Array  # [] share of the last moves
 
 
-@dataclass(frozen=True)
+@part
 class PoseParticles:
     """A belief about the pose of objects.
 
@@ -63,25 +62,20 @@ class PoseParticles:
 
     map: ContactMap
     domain: Box  # bounds of t
-    particles: int = 1000  # N
-    capacity: int = 400  # C
-    moves: int = 4  # Metropolis steps after a resampling
-    every: int = 10  # measurements between two looks at the effective number
-    kind: str = "metropolis"  # or local, manifold, jitter
-    trust: float = 1.0  # power of the likelihood
-    measure: str = "trace"  # or det, mutual
-    subset: int = 64  # particles in the information
-    length: float = 0.3  # rho [m]
+    particles: Count = 1000  # N
+    capacity: Count = 400  # C
+    moves: Count = 4  # Metropolis steps after a resampling
+    every: Count = 10  # measurements between two looks at the effective number
+    kind: Literal["metropolis", "local", "manifold", "jitter"] = (
+        "metropolis"  # or local, manifold, jitter
+    )
+    trust: Positive = 1.0  # power of the likelihood
+    measure: Literal["trace", "det", "mutual"] = "trace"
+    subset: Count = 64  # particles in the information
+    length: Positive = 0.3  # rho [m]
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        above_zero(
-            self, "belief", "particles", "capacity", "moves", "every", "trust", "subset", "length"
-        )
-        for name, choices in (("kind", KINDS), ("measure", MEASURES)):
-            if getattr(self, name) not in choices:
-                words = ", ".join(choices)
-                raise ValueError(f"belief.{name}={getattr(self, name)}: choose {words}")
+        """Check the domain."""
         if self.domain.size != 2:
             raise ValueError(f"domain.coordinates: poses need a plane, not {self.domain.size}")
 

@@ -13,7 +13,6 @@ a running mean over the updates, is logged and ranks the members of an ensemble 
 decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -24,6 +23,7 @@ from jax import Array
 
 from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import LearnedReward, Trainable
 from hybrid_rl.types import Batch, Params, Spec
@@ -49,7 +49,7 @@ class ModelState:
     held_out: Any = None  # HeldOut, or None without
 
 
-@dataclass(frozen=True)
+@part
 class ModelLearner:
     """Gradient steps on a model and, unless it is None, a reward.
 
@@ -60,39 +60,30 @@ class ModelLearner:
 
     model: Trainable
     reward: LearnedReward | None = None
-    learning_rate: float = 3e-3
+    learning_rate: Positive = 3e-3
     batch_size: int = 128
     updates: float = 2  # per decision
-    reward_discount: float = 0.0
+    reward_discount: Discount = 0.0
     max_grad_norm: float | None = None
-    weight_decay: float = 0.0  # of the layers' matrices, per unit of learning rate
+    weight_decay: NotNegative = 0.0  # of the layers' matrices, per unit of learning rate
     holdout: float = 0.0  # share of the decisions
 
     data: ClassVar[str] = "uniform"
     during_random: ClassVar[bool] = True  # random decisions inform the model
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check what depends on the model."""
         if not hasattr(self.model, "loss"):
-            raise ValueError(
-                f"model_learner.model={type(self.model).__name__}: has no weights to learn; "
-                "choose model=gaussian or model=ensemble"
-            )
-        if not 0 <= self.reward_discount < 1:
-            raise ValueError(
-                f"model_learner.reward_discount={self.reward_discount}: must lie in [0, 1)"
-            )
+            kind = type(self.model).__name__
+            words = "has no weights to learn; choose model=gaussian or model=ensemble"
+            raise ValueError(f"model_learner.model={kind}: {words}")
         if self.reward_discount and getattr(self.reward, "next_state", False):
             raise ValueError(
                 "reward.next_state=true: the value of x' would need the state after it; give "
                 "model_learner.reward_discount=0"
             )
-        if self.learning_rate <= 0:
-            raise ValueError(f"model_learner.learning_rate={self.learning_rate}: must be above 0")
-        if self.weight_decay < 0:
-            raise ValueError(f"model_learner.weight_decay={self.weight_decay}: must be 0 or more")
         if not 0 <= self.holdout <= 0.5:
-            raise ValueError(f"model_learner.holdout={self.holdout}: must lie in [0, 0.5]")
+            raise FieldError(self, "holdout", "must lie in [0, 0.5]")
         if self._elites is not None and not self.holdout:
             raise ValueError(
                 f"model.elites={self._elites}: needs decisions that rank the members; give "

@@ -1,0 +1,130 @@
+"""Parts check their own fields: what a field accepts is declared beside it.
+
+    @part
+    class Noise:
+        std: Positive = 0.3
+        order: Literal["zero", "cubic"] = "cubic"
+        hidden: tuple[Count, ...] = (256, 256)
+
+Noise(std=0.0) raises `Noise: std=0.0: must be above 0`; a run names the key of its configuration
+instead, `proposal.std=0.0: must be above 0`. Lists become tuples, so that parts can be hashed.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from types import NoneType, UnionType
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    TypeVar,
+    Union,
+    dataclass_transform,
+    get_args,
+    get_origin,
+)
+
+Class = TypeVar("Class", bound=type)
+
+
+class FieldError(ValueError):
+    """A field of a part is out of its range; `line` is FIELD=VALUE: what it must be."""
+
+    def __init__(self, part: Any, name: str, words: str) -> None:
+        self.line = f"{name}={_shown(getattr(part, name))}: {words}"
+        super().__init__(f"{type(part).__name__}: {self.line}")
+
+
+@dataclass(frozen=True)
+class Must:
+    """What the values of a field are like."""
+
+    hold: Callable[[Any], bool]
+    words: str
+
+
+def _whole(value: Any) -> bool:
+    return hasattr(value, "__index__") and not isinstance(value, bool)
+
+
+Count = Annotated[int, Must(lambda n: _whole(n) and n >= 1, "be a whole number, 1 or more")]
+Several = Annotated[int, Must(lambda n: _whole(n) and n >= 2, "be a whole number, 2 or more")]
+Natural = Annotated[int, Must(lambda n: _whole(n) and n >= 0, "be a whole number, 0 or more")]
+Positive = Annotated[float, Must(lambda x: x > 0, "be above 0")]
+NotNegative = Annotated[float, Must(lambda x: x >= 0, "be 0 or more")]
+Share = Annotated[float, Must(lambda x: 0 < x <= 1, "lie in (0, 1]")]
+Inside = Annotated[float, Must(lambda x: 0 < x < 1, "lie in (0, 1)")]
+Discount = Annotated[float, Must(lambda x: 0 <= x < 1, "lie in [0, 1)")]
+Fraction = Annotated[float, Must(lambda x: 0 <= x <= 1, "lie in [0, 1]")]
+
+
+@dataclass_transform(frozen_default=True)
+def part(cls: Class) -> Class:
+    """A frozen dataclass whose fields check themselves, before its own `__post_init__`.
+
+    Creating one raises FieldError, a ValueError, if a field is out of its range.
+    """
+    own: Any = cls.__dict__.get("__post_init__")
+
+    def checked(self: Any) -> None:
+        _check(self)
+        if own is not None:
+            own(self)
+
+    if own is not None or not hasattr(cls, "__post_init__"):
+        cls.__post_init__ = checked
+    return dataclass(frozen=True)(cls)
+
+
+def plain(kind: Any) -> Any:
+    """A type without its ranges: `int` for `Count`."""
+    return get_args(kind)[0] if get_origin(kind) is Annotated else kind
+
+
+def choices(kind: Any) -> tuple[Any, ...]:
+    """The types of a field of several types; one otherwise."""
+    return get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
+
+
+def _check(self: Any) -> None:
+    """Make tuples, and raise FieldError for a field that is out of its range."""
+    for field in fields(self):
+        kinds = [kind for kind in choices(field.type) if kind is not NoneType]
+        value = getattr(self, field.name)
+        if value is None and len(kinds) < len(choices(field.type)):
+            continue
+        for kind in kinds:
+            if get_origin(plain(kind)) is tuple:
+                value = _tuples(kind, value)
+                object.__setattr__(self, field.name, value)
+            if wrong := _wrong(kind, value):
+                null = ", or null" if len(kinds) < len(choices(field.type)) else ""
+                raise FieldError(self, field.name, wrong + null)
+
+
+def _wrong(kind: Any, value: Any) -> str:
+    """What a value of this type must be, "" if it is."""
+    of = get_args(kind)
+    if get_origin(kind) is Annotated:
+        must: Must = of[1]
+        return "" if must.hold(value) else f"must {must.words}"
+    if get_origin(kind) is Literal:
+        return "" if value in of else f"choose one of {', '.join(map(str, of))}"
+    if get_origin(kind) is not tuple:
+        return ""
+    each = of[:1] * len(value) if of[-1] is Ellipsis else of
+    if len(each) != len(value):
+        return f"must be {len(each)} numbers"
+    return next(filter(None, map(_wrong, each, value)), "")
+
+
+def _tuples(kind: Any, value: Any) -> Any:
+    """A value of this type with tuples for its lists and arrays."""
+    if get_origin(kind) is not tuple:
+        return value
+    return tuple(_tuples(get_args(kind)[0], each) for each in value)
+
+
+def _shown(value: Any) -> Any:
+    """A value as configurations write it: tuples are lists."""
+    return [_shown(each) for each in value] if isinstance(value, tuple) else value
