@@ -1,12 +1,13 @@
 # make train    half-cheetah by settings=light, with its curve; make train ARGS="task=cartpole": whatever ARGS says
-# make test [ARGS="-k sac"]
+# make test [ARGS="-k sac"]     the library
+# make test-thesis              the thesis' studies, experiments and pages
 # Needs python3 >= 3.11; another one: make PYTHON=python3.12 ...
 
 PYTHON ?= python3
 WORKERS ?= 2
 RUN := .venv/bin/python -m
 
-.PHONY: setup train test lint format pages docs lock dist clean
+.PHONY: setup train test test-thesis lint format pages docs lock dist clean
 
 setup: .venv/.installed
 
@@ -19,7 +20,10 @@ train: setup
 	$(RUN) hybrid_rl.train $(or $(ARGS),settings=light)
 
 test: setup
-	$(RUN) pytest -n $(WORKERS) --dist loadgroup $(ARGS)
+	$(RUN) pytest -n $(WORKERS) --dist loadgroup tests $(ARGS)
+
+test-thesis: setup
+	$(RUN) pytest -n $(WORKERS) --dist loadgroup thesis/tests $(ARGS)
 
 lint: setup
 	$(RUN) ruff check

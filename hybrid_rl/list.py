@@ -24,6 +24,10 @@ from hybrid_rl.errors import UsageError
 HAS = {"equilibrium": "equilibrium", "reference": "reference", "dynamics": "analytic"}
 NEEDS = "# Needs "  # begins the comment of a method that not every task fits
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
+FIRST = (  # of the methods; the others are baselines and the thesis' own
+    *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "nn_mppi", "hybrid_bc"),
+    *("kle3", "koopman_active"),
+)
 ARGUMENTS = (Argument("config_dir", "", "folder with configuration groups of yours"),)
 
 
@@ -64,6 +68,11 @@ def needs(path: Path) -> str:
     return ""
 
 
+def _mark(needed: str | None) -> str:
+    """What a task has or a method needs, in brackets."""
+    return f"[{needed}]" if needed else ""
+
+
 def main() -> None:
     """The command."""
     line = sys.argv[1:]
@@ -79,12 +88,15 @@ def main() -> None:
     listed = [(listing(folder), marks(folder)) for folder in folders]
     width = max(len(name) for names, _ in listed for group in GROUPS for name in names[group])
     for group, title in GROUPS.items():
-        print(f"{title}  ({group}=NAME)")
-        for names, restricted in listed:
-            for name, text in names[group].items():
-                mark = restricted[group].get(name)
-                print(f"  {name:{width}}  {text} {f'[{mark}]' if mark else ''}".rstrip())
-        print()
+        rows = {
+            name: f"  {name:{width}}  {text} {_mark(restricted[group].get(name))}".rstrip()
+            for names, restricted in listed
+            for name, text in names[group].items()
+        }
+        first = [name for name in FIRST if name in rows] if group == "algo" else []
+        print(f"{title}  ({group}=NAME{'; start with these eight' if first else ''})")
+        print(*(rows.pop(name) for name in first), *[""] * bool(first), sep="\n", end="")
+        print(*rows.values(), "", sep="\n")
     print("python -m hybrid_rl.train task=NAME algo=NAME [experiment=NAME] [key=value ...]")
 
 
