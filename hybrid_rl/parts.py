@@ -147,9 +147,10 @@ def _ours(names: list[str]) -> Path:
     if len(names) < 2 or names[0] not in ROOMS:
         raise ValueError(NONE)
     for parent in (PACKAGE, PACKAGE.parent) if names[0] == "envs" else (PACKAGE,):
-        source = parent.joinpath(*names).with_suffix(".py")
-        if source.is_file():
-            return source.resolve()
+        path = parent.joinpath(*names)
+        for source in (path.with_suffix(".py"), path / "__init__.py"):  # a part may be a folder
+            if source.is_file():
+                return source.resolve()
     raise ValueError(NONE)
 
 

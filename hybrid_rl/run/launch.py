@@ -252,7 +252,7 @@ def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
         "diverged": list(session.diverged.ends.values()),
         "wall_s": session.wall_s,
         "compile_s": session.loop.compile_s,
-        "env_steps_per_s": session.learning.rate,
+        "env_steps_per_s": session.record.learning.rate,
         "physics": configuration.physics(config),
         "device": provenance.device(),
         "matmul_precision": config.matmul_precision,

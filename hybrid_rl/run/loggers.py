@@ -1,4 +1,4 @@
-"""Copies of a run's rows for other tools, next to metrics.jsonl and tensorboard/.
+"""Where a run's rows go: metrics.jsonl, and copies of it for other tools beside tensorboard/.
 
     csv      metrics.csv, a line step,seed,wall_s,metric,value for each number
     wandb    Weights & Biases, a run of theirs for each seed, in a group for each run folder
@@ -8,15 +8,17 @@ A resumed run continues the runs of W&B, which drop steps that they have already
 """
 
 import csv
+import json
+import os
 import uuid
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
-from hybrid_rl.errors import UsageError
-from hybrid_rl.run.reading import appended, text
-from hybrid_rl.run.records import COORDINATES, Row
+from hybrid_rl.errors import CheckpointError, UsageError
+from hybrid_rl.run.reading import appended, lines, text
+from hybrid_rl.run.records import COORDINATES, Row, row_of
 
 HEADER = (*COORDINATES, "metric", "value")
 NAMES = ("csv", "wandb")
@@ -24,10 +26,10 @@ INSTALL = 'not installed; pip install "hybrid_rl[wandb]"'
 
 
 class Logger(Protocol):
-    """A copy of the rows."""
+    """Where rows go. Subclasses leave out what they have nothing to do for."""
 
-    def rewind(self, rows: Iterable[Row]) -> None:
-        """Keep these rows only: the run continues after them."""
+    def rewind(self, rows: Iterable[Row], step: int) -> None:
+        """Keep these rows only: the run continues after them, at `step`."""
 
     def write(self, row: Row) -> None:
         """Add a row."""
@@ -36,7 +38,7 @@ class Logger(Protocol):
         """Pass on all rows."""
 
     def close(self) -> None:
-        """End the copy."""
+        """End it."""
 
 
 def scalars(row: Row) -> dict[str, float]:
@@ -48,7 +50,51 @@ def scalars(row: Row) -> dict[str, float]:
     }
 
 
-class CSV:
+class Lines(Logger):
+    """metrics.jsonl in `folder`, an object of JSON for each row."""
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / "metrics.jsonl"
+        self._file = appended(self.path)
+
+    @property
+    def size(self) -> int:
+        """[bytes] of all rows so far."""
+        return self._file.tell()
+
+    def cut(self, size: int) -> list[Row | None]:
+        """The rows among the first `size` bytes, None for a damaged one; all others are deleted."""
+        whole = [line for line in lines(self.path, size) if line.endswith(b"\n")]
+        rows = list(map(row_of, whole))  # before anything is cut
+        self._file.truncate(sum(map(len, whole)))
+        self._file.seek(0, os.SEEK_END)
+        return rows
+
+    def write(self, row: Row) -> None:
+        """Add a line."""
+        self._file.write(json.dumps(row, allow_nan=False).encode("ascii") + b"\n")
+        self._file.flush()
+
+    def check(self) -> None:
+        """Raise CheckpointError if the file is no longer the one that is open here."""
+        ours = os.fstat(self._file.fileno())
+        if not self.path.exists() or not os.path.samestat(self.path.stat(), ours):
+            raise CheckpointError(
+                f"{self.path}: moved, deleted or replaced while the run wrote it; the run has "
+                "stopped, resume it where its folder is now"
+            )
+
+    def flush(self) -> None:
+        """Force all lines to the disk; raise as `check`."""
+        self.check()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+class CSV(Logger):
     """metrics.csv in `folder`."""
 
     def __init__(self, folder: Path) -> None:
@@ -59,7 +105,7 @@ class CSV:
         if new:
             self._lines.writerow(HEADER)
 
-    def rewind(self, rows: Iterable[Row]) -> None:
+    def rewind(self, rows: Iterable[Row], step: int) -> None:
         """Write the file again, with these rows."""
         self._file.truncate(0)
         self._lines.writerow(HEADER)
@@ -71,15 +117,12 @@ class CSV:
         at = [row[name] for name in COORDINATES]
         self._lines.writerows([*at, name, value] for name, value in scalars(row).items())
 
-    def flush(self) -> None:
-        """Nothing: the file has each line when it is written."""
-
     def close(self) -> None:
         """Close the file."""
         self._file.close()
 
 
-class WandB:
+class WandB(Logger):
     """Runs of Weights & Biases for `seeds`, with the settings `config`; started by their first row.
 
     folder: of the run; it holds what they write, and an id for each of them.
@@ -88,9 +131,6 @@ class WandB:
     def __init__(self, folder: Path, seeds: Sequence[int], config: dict[str, Any]) -> None:
         self._folder, self._config, self._several = folder, config, len(seeds) > 1
         self._runs: dict[int, Any] = {}  # by seed
-
-    def rewind(self, rows: Iterable[Row]) -> None:
-        """Nothing: they drop steps that they have."""
 
     def write(self, row: Row) -> None:
         """Log the numbers of a row at its step."""
@@ -123,9 +163,6 @@ class WandB:
             file.write_text(uuid.uuid4().hex[:12], encoding="ascii")
         return text(file)
 
-    def flush(self) -> None:
-        """Nothing: they send rows from a process of their own."""
-
     def close(self) -> None:
         """End the runs."""
         for run in self._runs.values():
@@ -133,7 +170,7 @@ class WandB:
         self._runs.clear()
 
 
-class Function:
+class Function(Logger):
     """A function of the user's, which is called with every new row, a dictionary.
 
     Where it returns False, `ask` is called with 0, and it gets the rows up to the end. Where it
@@ -144,9 +181,6 @@ class Function:
         self._function, self._asked = function, False
         self.ask: Callable[[int], None] = lambda number: None
         self.problem: Exception | None = None
-
-    def rewind(self, rows: Iterable[Row]) -> None:
-        """Nothing: it had them before the run was stopped."""
 
     def write(self, row: Row) -> None:
         """Call the function."""
@@ -159,12 +193,6 @@ class Function:
         if ends and not self._asked:
             self._asked = True
             self.ask(0)
-
-    def flush(self) -> None:
-        """Nothing: it has each row when it is written."""
-
-    def close(self) -> None:
-        """Nothing."""
 
 
 def check(given: Any) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ uninterrupted one.
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from time import monotonic, perf_counter
 from types import MappingProxyType
 from typing import Any
@@ -25,7 +25,7 @@ from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import DRAWN, Progress
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
-from hybrid_rl.run.store import Store
+from hybrid_rl.run.store import Record, Store
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
@@ -45,14 +45,8 @@ class Session:
     duration: Duration
     settings: Mapping[str, Any]  # config.yaml by full keys
     state: Any = None  # AgentState [S, ...], once begun
-    step: int = 0  # decisions of each learner
-    before_s: float = 0.0  # [s] in earlier sessions
     began: float = field(default_factory=monotonic)
-    returns: list[list[tuple[int, float]]] = field(default_factory=list)  # per seed: (step, return)
-    final_eval: list[float | None] = field(default_factory=list)  # per seed: the latest
-    learning: Speed = field(default_factory=Speed)  # over all sessions of the run
     stop: int | None = None  # the signal that asked for an end; 0: the program did
-    unevaluated: bool = False  # an evaluation is due at this step
     saved: tuple[int, bool] | None = None  # step and `unevaluated` of the newest checkpoint
     gathered: rows.Gathered = field(default_factory=rows.Gathered)  # since the last row of means
     recent: Speed = field(default_factory=Speed)  # since then
@@ -61,27 +55,32 @@ class Session:
     evaluations: Evaluations | None = None  # compiled
 
     def __post_init__(self) -> None:
-        """Create the store and the record of diverged learners."""
+        """Create the record, the store, and the list of learners that diverged."""
+        seeds = self.loop.seeds
+        self.record = Record([[] for _ in seeds], [None for _ in seeds])
         folder = self.log.run_dir / "checkpoints"
         self.store = Store(folder, self.loop, self.schedule.checkpoint_replay, self.settings)
         self.diverged = Diverged(self.loop, self.store)
 
     @property
+    def step(self) -> int:
+        """Decisions of each learner."""
+        return self.record.step
+
+    @property
     def wall_s(self) -> float:
         """[s] over all sessions of the run."""
-        return self.before_s + monotonic() - self.began
+        return self.record.wall_s + monotonic() - self.began
 
     @property
     def finished(self) -> bool:
         """Whether all decisions are made, and evaluated."""
-        return self.step >= self.schedule.total_steps and not self.unevaluated
+        return self.step >= self.schedule.total_steps and not self.record.unevaluated
 
     def begin(self) -> None:
         """Start from the first state."""
         with self.progress.doing("starting"):
             self.state = self.loop.init()
-        self.returns = [[] for _ in self.loop.seeds]
-        self.final_eval = [None for _ in self.loop.seeds]
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint.
@@ -89,19 +88,15 @@ class Session:
         Raises:
             CheckpointError: if there is none, or it belongs to another run.
         """
-        self.state, self.gathered, meta, notes = self.store.restore()
-        self.step = self.progress.step = meta["step"]
+        self.state, self.gathered, self.record, notes = self.store.restore()
+        self.progress.step = self.step
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
-        self.before_s = meta["wall_s"]
-        self.returns = [[(at, value) for at, value in pairs] for pairs in meta["returns"]]
-        self.final_eval = meta.get("final_eval", [None for _ in self.loop.seeds])
-        self.learning = Speed(**meta.get("learning", {}))
-        self.unevaluated = meta.get("unevaluated", False)
-        self.saved = self.step, self.unevaluated
-        self.diverged.resume(meta.get("diverged", []))
-        for note in [*notes, *self.loop.notes, *self.log.rewind(meta["metrics_bytes"], self.step)]:
+        self.saved = self.step, self.record.unevaluated
+        self.diverged.resume(self.record.ends)
+        notes += [*self.loop.notes, *self.log.rewind(self.record.metrics_bytes, self.step)]
+        for note in notes:
             self.progress.note(note)
         self.progress.note(f"continuing from step {self.step:,}")
 
@@ -117,16 +112,11 @@ class Session:
         if plan.total_steps <= random:
             decisions = f"all {plan.total_steps:,} decisions are random"
             self.progress.note(f"{decisions}: random_steps={random}")
-        with self.progress.doing("tracing"):
-            traced, left = self.loop.trace(self.state), plan.total_steps - max(self.step, random)
-        rounds = -(-left // self.loop.agent.num_envs)
-        if note := self.duration.before(self.loop.operations(traced), rounds):
-            self.progress.note(note)
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle_note}")
         with self.progress.doing("compiling"):
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
 
-            self.program = self.loop.compile(self.state, traced)
+            self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
             began = perf_counter()
             modes = {mode: self.controllers[mode] for mode in plan.eval_modes}
@@ -149,13 +139,13 @@ class Session:
         """
         plan, worlds = self.schedule, self.loop.agent.num_envs
         while not self.finished and self.stop is None:
-            if not self.unevaluated:
+            if not self.record.unevaluated:
                 self._advance()
-            if self.unevaluated:
+            if self.record.unevaluated:
                 self._evaluate()
-            if not self.unevaluated and plan.due(plan.checkpoint_every, self.step, worlds):
+            if not self.record.unevaluated and plan.due(plan.checkpoint_every, self.step, worlds):
                 self._save()
-        if self.saved != (self.step, self.unevaluated):
+        if self.saved != (self.step, self.record.unevaluated):
             self._save()
 
     def _advance(self) -> None:
@@ -167,7 +157,7 @@ class Session:
         self.state, metrics = self.program(self.state, jnp.int32(start), jnp.int32(rounds))
         metrics = {name: np.asarray(m)[:rounds] for name, m in metrics.items()}
         took = perf_counter() - began
-        self.step += rounds * worlds
+        self.record.step += rounds * worlds
         self.pace.took(rounds, took)
         if any(start < change <= self.step for change in changes):
             self.pace = Pace()
@@ -175,13 +165,13 @@ class Session:
             self._count(rounds * worlds * self.diverged.left, took)
         self._record(metrics, start)
         due = plan.due(plan.eval_every, self.step, worlds)
-        self.unevaluated = bool(plan.eval_modes) and due
-        self._show(say=False if self.unevaluated else None)
+        self.record.unevaluated = bool(plan.eval_modes) and due
+        self._show(say=False if self.record.unevaluated else None)
 
     def _count(self, decisions: int, seconds: float) -> None:
         """Measure the speed of learning; print one estimate of the total time."""
         self.recent.add(decisions, seconds)
-        self.learning.add(decisions, seconds)
+        self.record.learning.add(decisions, seconds)
         learners = self.diverged.left
         left = (self.schedule.total_steps - self.step) * learners
         if note := self.duration.after(decisions, seconds, learners, left, self.wall_s):
@@ -195,7 +185,7 @@ class Session:
         episodes = rows.episodes(metrics, seeds, start, worlds, self.diverged.steps)
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
-            self.returns[seeds.index(row["seed"])].append(pair)
+            self.record.returns[seeds.index(row["seed"])].append(pair)
         self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["seed"])))
         self._continue(bool(infinite))
         self.gathered.add(metrics)
@@ -221,7 +211,7 @@ class Session:
             outcomes = self.evaluations(self._params(), lambda: self.stop is not None)
         if outcomes is None:
             return
-        self.unevaluated = False
+        self.record.unevaluated = False
         infinite = {
             s: (self.step, name)
             for s, outcome in enumerate(outcomes)
@@ -236,7 +226,7 @@ class Session:
         self._continue(bool(ended))
         result = next(key for key in RETURNS if key in outcomes[0])
         for s, outcome in left.items():
-            self.final_eval[s] = outcome[result]
+            self.record.final_eval[s] = outcome[result]
         means = {n: float(np.mean([each[n] for each in left.values()])) for n in outcomes[0]}
         self._show({**means, DRAWN: means[result]}, say=True)
 
@@ -262,26 +252,21 @@ class Session:
         """Write a checkpoint."""
         self._write(self._end(divergence.unsound(self.state.learners, self.step)))
         self._continue(True)
-        meta = {
-            "wall_s": self.wall_s,
-            "metrics_bytes": self.log.flush(),
-            "returns": self.returns,
-            "final_eval": self.final_eval,
-            "learning": asdict(self.learning),
-            "unevaluated": self.unevaluated,
-            "diverged": list(self.diverged.ends.values()),
-        }
+        written, ends = self.log.flush(), list(self.diverged.ends.values())
+        now = replace(self.record, wall_s=self.wall_s, metrics_bytes=written, ends=ends)
         with self.progress.doing("saving"):
-            notes = self.store.save(self.step, self.state, self.gathered, meta)
+            notes = self.store.save(self.state, self.gathered, now)
         for note in notes:
             self.progress.note(note)
-        self.saved = self.step, self.unevaluated
+        self.saved = self.step, self.record.unevaluated
 
     def _write(self, new: list[rows.Row]) -> None:
         self.log.write([{**row, "wall_s": self.wall_s} for row in new])
 
     def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:
-        newest = [p[-1][1] for s, p in enumerate(self.returns) if p and s not in self.diverged.ends]
+        newest = [
+            p[-1][1] for s, p in enumerate(self.record.returns) if p and s not in self.diverged.ends
+        ]
         shown = {"train/return": float(np.mean(newest))} if newest else {}
         self.progress.update(self.step, {**shown, **self._speed(), **scalars}, say)
 
@@ -289,7 +274,7 @@ class Session:
         """Mean training return over the last tenth, per seed; None if it diverged."""
         tail = self.step - 0.1 * self.schedule.total_steps
         means = []
-        for s, pairs in enumerate(self.returns):
+        for s, pairs in enumerate(self.record.returns):
             values = [value for at, value in pairs if at > tail] or [v for _, v in pairs[-1:]]
             sound = bool(values) and s not in self.diverged.ends
             means.append(float(np.mean(values)) if sound else None)
@@ -297,4 +282,6 @@ class Session:
 
     def final_evaluations(self) -> list[float | None]:
         """Last evaluation per seed, of mode full if it was evaluated; None if it diverged."""
-        return [v if s not in self.diverged.ends else None for s, v in enumerate(self.final_eval)]
+        return [
+            v if s not in self.diverged.ends else None for s, v in enumerate(self.record.final_eval)
+        ]

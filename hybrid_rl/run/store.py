@@ -1,7 +1,7 @@
-"""The checkpoints of a run: the learners' state, and the metrics since the last row."""
+"""The checkpoints of a run: the learners' state, its record, and the metrics since the last row."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,22 @@ import numpy as np
 
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.rows import Gathered
+from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.loop import Loop
+
+
+@dataclass
+class Record:
+    """What a run has done so far; a checkpoint holds it whole."""
+
+    returns: list[list[tuple[int, float]]]  # per seed: (step, return)
+    final_eval: list[float | None]  # per seed: the latest
+    step: int = 0  # decisions of each learner
+    wall_s: float = 0.0  # [s] in earlier sessions; of a checkpoint: until then
+    metrics_bytes: int = 0  # of a checkpoint: the size of metrics.jsonl then
+    learning: Speed = field(default_factory=Speed)  # over all sessions
+    unevaluated: bool = False  # an evaluation is due at `step`
+    ends: list[dict[str, Any]] = field(default_factory=list)  # of learners that diverged
 
 
 @dataclass
@@ -29,7 +44,7 @@ class Store:
     known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
     noted: set[Path] = field(default_factory=set)  # leftovers that a note has named
 
-    def save(self, step: int, state: Any, gathered: Gathered, meta: dict) -> list[str]:
+    def save(self, state: Any, gathered: Gathered, record: Record) -> list[str]:
         """Write a checkpoint of the run; a note for each new leftover that cannot be deleted.
 
         Raises:
@@ -39,19 +54,19 @@ class Store:
         leaves = {part.name: getattr(state, part.name) for part in fields(state)}
         leaves |= {} if self.replay else {"memory": None}
         leaves |= {} if array is None else {"gathered": array}
-        shape = [] if array is None else list(array.shape)
-        here = {"step": step, "seeds": list(self.loop.seeds)}
-        here |= {"capacity": self.loop.agent.replay.capacity, "settings": dict(self.settings)}
-        here |= {"gathered": {"names": names, "shape": shape}}
-        checkpoint.save(self.folder, step, leaves, here | meta, known=self.known)
+        shape, step = [] if array is None else list(array.shape), record.step
+        meta = {"seeds": list(self.loop.seeds), "capacity": self.loop.agent.replay.capacity}
+        meta |= {"settings": dict(self.settings), "gathered": {"names": names, "shape": shape}}
+        meta |= {"record": asdict(record)}
+        checkpoint.save(self.folder, step, leaves, meta, known=self.known)
         self.known.add(step)
         self.newest = step
         stuck = [path for path in checkpoint.leftovers(self.folder) if path not in self.noted]
         self.noted.update(stuck)
         return [f"{path}: cannot be deleted, and is left there" for path in stuck]
 
-    def restore(self) -> tuple[Any, Gathered, dict, list[str]]:
-        """(state, metrics since the last row, meta, notes) of the newest sound checkpoint.
+    def restore(self) -> tuple[Any, Gathered, Record, list[str]]:
+        """(state, metrics since the last row, record, notes) of the newest sound checkpoint.
 
         The replay memory is empty if checkpoints do not hold it.
 
@@ -66,7 +81,9 @@ class Store:
         if packed.get("names"):
             array = jax.ShapeDtypeStruct(tuple(packed["shape"]), np.float32)
             gathered.unpack(packed["names"], self._read({"gathered": array})["gathered"])
-        return self.loop.on_devices(state.replace(memory=memory)), gathered, meta, notes
+        record = Record(**meta["record"])
+        record.learning = Speed(**meta["record"]["learning"])
+        return self.loop.on_devices(state.replace(memory=memory)), gathered, record, notes
 
     def learner(self, number: int) -> Any:
         """AgentState [...] of one learner in the newest checkpoint, or else its first one."""

@@ -16,7 +16,6 @@ from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from hybrid_rl.training.agent import Agent, AgentState, trace_once
-from hybrid_rl.training.operations import operations
 
 # On a CPU, matrix products of Eigen are a sixth faster than those of YNNPACK, XLA's default.
 COMPILER_OPTIONS: dict[str, Any] = {
@@ -88,7 +87,7 @@ class Loop:
         return self.on_devices(self.shard(jax.vmap(self.agent.init), SEEDS, SEEDS)(keys))
 
     def trace(self, state: AgentState) -> Any:
-        """The trace of the program, for `operations` and `compile`."""
+        """The trace of the program, for `compile`."""
         began = perf_counter()
         parts = (SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         program = self.shard(self._advance, *parts, donate_argnums=0)
@@ -96,10 +95,6 @@ class Loop:
         traced = program.trace(state, zero, zero)
         self.compile_s += perf_counter() - began
         return traced
-
-    def operations(self, traced: Any) -> float:
-        """Floating-point operations of a round of all learners, with learning."""
-        return operations(traced.jaxpr) * self.mesh.size
 
     def compile(self, state: AgentState, traced: Any = None) -> Any:
         """The compiled program (state, first step, rounds) -> (state, metrics)."""
