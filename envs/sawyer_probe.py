@@ -63,9 +63,9 @@ class SawyerProbe:
     objects: tuple[tuple[float, ...], ...] = THREE
     acceleration: float = 0.3  # [m/s^2] a
     drag: float = 0.5  # [1/s] b
-    low: tuple[float, ...] = (0.35, -0.25)  # [m] of the box: x, y
-    high: tuple[float, ...] = (0.75, 0.25)
-    theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
+    low: tuple[float, float] = (0.35, -0.25)  # [m] of the box: x, y
+    high: tuple[float, float] = (0.75, 0.25)
+    theta: tuple[float, float, float] | None = None  # [m, m, rad]; None: the reference arrangement
     lead: Positive = 0.01  # [m] of the command before the tip
     track: Positive = 5.0  # [1/s] k
     hold: Positive = 10.0  # [1/s] gain on height and orientation

@@ -63,10 +63,10 @@ class Sprk:
     mass: Positive = 0.18  # [kg] m
     lag: NotNegative = 0.01  # [s] of the motor; 0: none
     rolling: bool = False  # driven by torques on a floor, which it rolls on; else pushed
-    low: tuple[float, ...] = (0.0, 0.0)  # [m]
-    high: tuple[float, ...] = (1.0, 1.0)
-    theta: tuple[float, ...] | None = None  # [m, m, rad]; None: the reference arrangement
-    spread: tuple[float, ...] = (0.0, 0.0, 0.0)  # of theta at the reset
+    low: tuple[float, float] = (0.0, 0.0)  # [m]
+    high: tuple[float, float] = (1.0, 1.0)
+    theta: tuple[float, float, float] | None = None  # [m, m, rad]; None: the reference arrangement
+    spread: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of theta at the reset
     sensor: Literal["touch", "accelerometer"] = "touch"
     threshold: Positive = 0.5  # [m/s^2] of the accelerometer
     false_contact: float = 0.0  # probability for |u - u_before| = 2, besides the sensor's own

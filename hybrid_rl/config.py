@@ -279,10 +279,7 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
 
 
 def _shortest(config: DictConfig, key: str) -> str:
-    """The shortest key of the same field: policy_learner.tau for learners.policy.tau.
-
-    A part stands in the configuration as often as others refer to it.
-    """
+    """The key of a field by the name of its part: policy_learner.tau for learners.policy.tau."""
     where, _, field = key.rpartition(".")
     part: Any = OmegaConf.select(config, where)
     if not isinstance(part, DictConfig):

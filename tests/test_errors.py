@@ -114,7 +114,7 @@ USAGE = [  # overrides of train, words of the line
         "algo=koopman_active features.terms=[[0,9]]",
         "features.terms=[0, 9]: has an index above 2, the last coordinate",
     ),
-    ("algo=koopman_active policy_learner.horizon=0", "policy_learner.horizon=0: must be 1 or more"),
+    ("algo=koopman_active policy_learner.horizon=0", f"policy_learner.horizon=0: {COUNT}"),
     (
         "algo=koopman_active model_learner.forgetting=0",
         "model_learner.forgetting=0: must lie in (0, 1]",

@@ -37,7 +37,7 @@ class FisherInformation:
     criterion: Literal["A_step", "A", "D", "T", "full"] = "D"  # A_step | A | D | T | full
     sensitivity: Literal["step", "path"] = "step"  # step | path
     sigma: Positive | None = 0.1  # of the change, in running deviations; None: the model's
-    floor: Positive | None = 0.01  # of the diagonal [1/theta^2]
+    floor: Positive = 0.01  # of the diagonal [1/theta^2]
     past: bool = True  # count the data so far, if a learner does
     probes: Natural = 0  # directions that estimate T; 0: exact
 
