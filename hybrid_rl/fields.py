@@ -126,5 +126,7 @@ def _tuples(kind: Any, value: Any) -> Any:
 
 
 def _shown(value: Any) -> Any:
-    """A value as configurations write it: tuples are lists."""
-    return [_shown(each) for each in value] if isinstance(value, tuple) else value
+    """A value as configurations write it."""
+    if isinstance(value, tuple):
+        return [_shown(each) for each in value]
+    return {"None": "null", "True": "true", "False": "false"}.get(str(value), value)

@@ -34,7 +34,7 @@ class Probe:
     [
         ({"count": 0}, "count=0: must be a whole number, 1 or more"),
         ({"count": 1.5}, "count=1.5: must be a whole number, 1 or more"),
-        ({"count": True}, "count=True: must be a whole number, 1 or more"),
+        ({"count": True}, "count=true: must be a whole number, 1 or more"),
         ({"rate": float("nan")}, "rate=nan: must be above 0"),
         ({"tau": 3}, "tau=3: must lie in (0, 1]"),
         ({"discount": 1.0}, "discount=1.0: must lie in [0, 1), or null"),

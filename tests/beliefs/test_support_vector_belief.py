@@ -96,5 +96,5 @@ def test_a_full_memory_is_reported() -> None:
 
 @pytest.mark.parametrize("field", [{"cost": 0.0}, {"apart": -1.0}, {"measure": "det"}])
 def test_bad_fields_are_refused(field) -> None:
-    with pytest.raises(ValueError, match=f"belief.{next(iter(field))}="):
+    with pytest.raises(ValueError, match=f"{next(iter(field))}="):
         SupportVectors(**field)

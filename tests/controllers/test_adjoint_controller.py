@@ -144,7 +144,7 @@ def test_the_objective_gets_the_previous_action() -> None:
         ({"iterations": 1.5}, "iterations=1.5"),
         ({"gain": -1.0}, "gain=-1.0"),
         ({"gain_decay": 0.0}, "gain_decay=0.0"),
-        ({"policy": None}, "gain=null needs a policy"),
+        ({"policy": None}, "gain=null: needs a policy"),
     ],
 )
 def test_bad_fields(change, words) -> None:

@@ -203,14 +203,14 @@ def test_the_goal_is_the_end_of_the_best_way() -> None:
     there = GoalController(Middle(), Box(low=(-1.0,), high=(3.0,)), ahead=4)
     _, goal, _ = there.act(Params(), there.init(WORLD.spec), START, jax.random.key(0))
     assert float(goal.s[0]) == pytest.approx(0.3 + (0.5 - 0.3) / 0.625, abs=0.02)
-    with pytest.raises(ValueError, match=r"goal.ahead=4: .* values no ways"):
+    with pytest.raises(ValueError, match=r"ahead=4: .* values no ways"):
         replace(there, target=Peak())
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"apply": "later"}, "apply=later: choose first, horizon, search"),
+        ({"apply": "later"}, "apply=later: choose one of first, horizon, search"),
     ],
 )
 def test_bad_fields(change: dict, words: str) -> None:

@@ -110,5 +110,5 @@ def test_candidates_without_a_density_have_no_density_in_the_weight() -> None:
     mixture = MixtureProposal(Grid(), Grid())
     objective = PredictedReturn(RewardNetwork())
     SamplingController(Cart(), objective, mixture)
-    with pytest.raises(ValueError, match="log_density=True: needs candidates with a density"):
+    with pytest.raises(ValueError, match="log_density=true: needs candidates with a density"):
         SamplingController(Cart(), objective, mixture, log_density=True)

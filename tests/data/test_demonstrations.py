@@ -155,6 +155,6 @@ def test_a_memory_begins_with_the_demonstrations(file: Path, worlds: int) -> Non
 def test_a_memory_smaller_than_the_demonstrations_is_refused(file: Path) -> None:
     """No demonstrations are dropped silently."""
     shown = Demonstrations(str(file), "pendulum", Pendulum())
-    with pytest.raises(ValueError, match=r"replay\.capacity=11: the demonstrations alone have 12"):
+    with pytest.raises(ValueError, match=r"capacity=11: the demonstrations alone have 12"):
         Replay(11, shown)
     assert Replay(8, replace(shown, episodes=1)).num_demonstrated(1) == 4

@@ -115,7 +115,7 @@ def test_the_scene_shows_the_angle() -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"task": "land"}, "task=land: choose hover, flip"),
+        ({"task": "land"}, "task=land: choose one of hover, flip"),
         ({"turns": 0.7}, "turns=0.7: choose 0.5"),
     ],
 )

@@ -139,7 +139,7 @@ def test_another_asset(tmp_path):
 
 
 def test_an_unknown_task_raises():
-    with pytest.raises(ValueError, match="task='loop': choose one of hover, track"):
+    with pytest.raises(ValueError, match="task=loop: choose one of hover, track"):
         Quadcopter(task="loop")
 
 

@@ -54,7 +54,7 @@ def test_groups_are_chosen_by_name():
     assert env.extra == ("command", "tip")
     state = jitted(env, "reset")(jax.random.key(0))
     assert state.obs.shape == (env.spec.obs,) == (8,)
-    with pytest.raises(ValueError, match="extra='speed': choose one of command, turn, motion, tip"):
+    with pytest.raises(ValueError, match=r"extra=.*: choose one of command, turn, motion, tip"):
         SawyerPush("native", extra=("speed",))
 
 

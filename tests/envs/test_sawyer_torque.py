@@ -197,10 +197,10 @@ def test_noise_is_on_the_rates_alone():
 @pytest.mark.parametrize(
     ("field", "value", "line"),
     [
-        ("damping", "some", "damping='some': choose one of none, maker"),
+        ("damping", "some", "damping=some: choose one of none, maker"),
         ("payload", -0.1, "payload=-0.1: must be 0 or more"),
-        ("learn", -1, "learn=-1: must be 0 or more"),
-        ("rounds", 0, "rounds=0: must be 1 or more"),
+        ("learn", -1, "learn=-1: must be a whole number, 0 or more"),
+        ("rounds", 0, "rounds=0: must be a whole number, 1 or more"),
         ("start_spread", -1.0, "start_spread=-1.0: must be 0 or more"),
         ("sensor_noise", -1.0, "sensor_noise=-1.0: must be 0 or more"),
     ],

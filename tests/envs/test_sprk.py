@@ -167,7 +167,7 @@ def test_experiments_of_the_contact_plane_run_on_it(experiment) -> None:
 @pytest.mark.parametrize(
     ("fields", "words"),
     [
-        ({"sensor": "sonar"}, "sensor='sonar': choose one of touch, accelerometer"),
+        ({"sensor": "sonar"}, "sensor=sonar: choose one of touch, accelerometer"),
         ({"lag": -1.0}, "lag=-1.0: must be 0 or more"),
         ({"mass": 0.0}, "mass=0.0: must be above 0"),
         ({"low": (1.0, 0.0)}, "low="),

@@ -143,7 +143,7 @@ def test_the_scene_shows_the_curve_and_the_reference() -> None:
         ({"learn": 1.5}, "learn=1.5: must be a whole number, 0 or more"),
         ({"learn": -1}, "learn=-1: must be a whole number, 0 or more"),
         ({"sensor_noise": -0.1}, "sensor_noise=-0.1: must be 0 or more"),
-        ({"variation": 1.0}, r"variation=1.0: must be in \[0, 1\)"),
+        ({"variation": 1.0}, r"variation=1.0: must lie in \[0, 1\)"),
     ],
 )
 def test_bad_fields_are_named(fields, line) -> None:

@@ -101,5 +101,5 @@ def test_it_learns_to_lead_a_point_mass_to_the_middle() -> None:
     ("name", "value"), [("horizon", 0), ("starts", 0), ("learning_rate", 0.0), ("clip", -1.0)]
 )
 def test_values_out_of_range_are_refused(name: str, value: float) -> None:
-    with pytest.raises(ValueError, match=rf"analytic_learner\.{name}={value}: must be"):
+    with pytest.raises(ValueError, match=rf"{name}={value}: must be"):
         dataclasses.replace(LEARNER, **{name: value})

@@ -112,13 +112,13 @@ def test_the_mean_of_the_weights_acts() -> None:
 )
 def test_bad_fields_are_refused(fields: dict) -> None:
     """The error names the field."""
-    with pytest.raises(ValueError, match=f"cloning_learner.{next(iter(fields))}"):
+    with pytest.raises(ValueError, match=f"{next(iter(fields))}"):
         BehaviourCloning(TanhGaussian(hidden=(8,)), Shown(), **fields)
 
 
 def test_a_saturation_above_the_edge_is_refused() -> None:
     """It would have no effect: no action is left that counts as clipped."""
     BehaviourCloning(Deterministic(saturation=0.95), Shown(), edge=0.95)
-    line = r"policy\.saturation=0\.95: must be at most cloning_learner\.edge=0\.9,"
+    line = r"saturation=0\.95: must be at most cloning_learner\.edge=0\.9,"
     with pytest.raises(ValueError, match=line):
         BehaviourCloning(Deterministic(saturation=0.95), Shown(), edge=0.9)

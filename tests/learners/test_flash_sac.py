@@ -198,17 +198,17 @@ def test_noise_is_held_for_lengths_with_a_zeta_distribution() -> None:
 @pytest.mark.parametrize(
     ("make", "field"),
     [
-        (lambda: learner(discount=1.0), "policy_learner.discount=1.0"),
-        (lambda: learner(tau=0.0), "policy_learner.tau=0.0"),
-        (lambda: learner(target_sigma=0.0), "policy_learner.target_sigma=0.0"),
-        (lambda: learner(batches=0), "policy_learner.batches=0"),
+        (lambda: learner(discount=1.0), "discount=1.0"),
+        (lambda: learner(tau=0.0), "tau=0.0"),
+        (lambda: learner(target_sigma=0.0), "target_sigma=0.0"),
+        (lambda: learner(batches=0), "batches=0"),
         (lambda: CategoricalQ(hidden=(8, 16)), r"critic.hidden=\[8, 16\]"),
-        (lambda: CategoricalQ(bins=1), "critic.bins=1"),
-        (lambda: CategoricalQ(bound=0.0), "critic.bound=0.0"),
+        (lambda: CategoricalQ(bins=1), "bins=1"),
+        (lambda: CategoricalQ(bound=0.0), "bound=0.0"),
         (lambda: UnitGaussian(hidden=()), r"policy.hidden=\[\]"),
-        (lambda: UnitGaussian(log_std_min=3.0), "policy.log_std_min=3.0"),
-        (lambda: ReturnScale(bound=-1.0), "return_scale.bound=-1.0"),
-        (lambda: PolicyController(UnitGaussian(), hold=0), "actor.hold=0"),
+        (lambda: UnitGaussian(log_std_min=3.0), "log_std_min=3.0"),
+        (lambda: ReturnScale(bound=-1.0), "bound=-1.0"),
+        (lambda: PolicyController(UnitGaussian(), hold=0), "hold=0"),
     ],
 )
 def test_bad_fields(make, field) -> None:

@@ -104,7 +104,7 @@ def test_a_fraction_of_zero_passes_the_batch_on() -> None:
 def test_bad_fields() -> None:
     """One line that names the field."""
     known: Any = Counting()
-    with pytest.raises(ValueError, match=r"mbpo\.imagined_fraction=2"):
+    with pytest.raises(ValueError, match=r"imagined_fraction=2"):
         MBPO(Keeping(), known, known, known, imagined_fraction=2)
-    with pytest.raises(ValueError, match=r"mbpo\.steps=0"):
+    with pytest.raises(ValueError, match=r"steps=0"):
         MBPO(Keeping(), known, known, known, steps=0)

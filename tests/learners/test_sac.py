@@ -128,7 +128,7 @@ def test_pessimism_counts_standard_deviations() -> None:
         each = np.asarray(critic.all(params, x, u), np.float64)
         wanted = each.mean(0) - pessimism * each.std(0) if members > 2 else each.min(0)
         np.testing.assert_allclose(critic.value(params, x, u), wanted, atol=1e-5)
-    with pytest.raises(ValueError, match=r"critic\.pessimism=-1"):
+    with pytest.raises(ValueError, match=r"pessimism=-1"):
         EnsembleQ(pessimism=-1)
 
 

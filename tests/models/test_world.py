@@ -132,7 +132,7 @@ def test_what_the_world_does_not_fit_is_refused() -> None:
         model.start(Params())
     with pytest.raises(ValueError, match="model=world: needs a planner that samples"):
         model.step((), jnp.zeros(2), jnp.zeros(1))
-    with pytest.raises(ValueError, match=r"objective.discount=1.1: must lie in \(0, 1\]"):
+    with pytest.raises(ValueError, match=r"discount=1.1: must lie in \(0, 1\]"):
         PredictedReturn(WorldReward(), 1.1)
     with pytest.raises(ValueError, match="give both or neither"):
         PredictedReturn(WorldReward(), policy=last)

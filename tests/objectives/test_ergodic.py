@@ -181,8 +181,8 @@ def test_earlier_states_are_forgotten(forget, weights) -> None:
     [
         ({"variance": (0.1, 0.1, 0.1)}, "variance"),
         ({"variance": (0.0,)}, "variance"),
-        ({"samples": 0}, "samples must be 1 or more"),
-        ({"floor": -1.0}, "floor and barrier"),
+        ({"samples": 0}, "samples=0: must be"),
+        ({"floor": -1.0}, "floor=-1.0: must be 0 or more"),
     ],
 )
 def test_bad_fields(change, words) -> None:

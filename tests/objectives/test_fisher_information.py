@@ -129,12 +129,12 @@ def test_copies_are_those_of_their_decisions() -> None:
 @pytest.mark.parametrize(
     ("fields", "line"),
     [
-        ({"criterion": "E"}, "information.criterion=E: choose A_step, A, D, T, full"),
-        ({"sensitivity": "both"}, "information.sensitivity=both: choose step, path"),
-        ({"sigma": 0.0}, "information.sigma=0.0: must be above 0"),
-        ({"floor": 0.0}, "information.floor=0.0: must be above 0"),
-        ({"probes": -1}, "information.probes=-1: must be 0 or more"),
-        ({"probes": 4}, "information.probes=4: only criterion=T is estimated"),
+        ({"criterion": "E"}, "criterion=E: choose one of A_step, A, D, T, full"),
+        ({"sensitivity": "both"}, "sensitivity=both: choose one of step, path"),
+        ({"sigma": 0.0}, "sigma=0.0: must be above 0"),
+        ({"floor": 0.0}, "floor=0.0: must be above 0"),
+        ({"probes": -1}, "probes=-1: must be a whole number, 0 or more"),
+        ({"probes": 4}, "probes=4: only criterion=T is estimated"),
     ],
 )
 def test_bad_fields_of_the_objective_are_named(fields, line) -> None:
@@ -143,11 +143,11 @@ def test_bad_fields_of_the_objective_are_named(fields, line) -> None:
 
 
 def test_bad_fields_of_the_learners_are_named() -> None:
-    with pytest.raises(ValueError, match=r"information_learner.floor=-1: must be above 0"):
+    with pytest.raises(ValueError, match=r"floor=-1: must be above 0"):
         InformationLearner(LINEAR, floor=-1)
-    with pytest.raises(ValueError, match=r"information_learner.rate=2: must lie in \(0, 1\]"):
+    with pytest.raises(ValueError, match=r"rate=2: must lie in \(0, 1\]"):
         InformationLearner(LINEAR, rate=2)
-    with pytest.raises(ValueError, match=r"history.copies=0: must be 1 or more"):
+    with pytest.raises(ValueError, match=r"copies=0: must be a whole number, 1 or more"):
         ModelHistory(LINEAR, copies=0)
 
 

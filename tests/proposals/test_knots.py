@@ -49,9 +49,9 @@ def test_a_mixture_shapes_the_noise_of_each() -> None:
 
 def test_bad_fields_of_knots() -> None:
     """One line that names the field."""
-    with pytest.raises(ValueError, match=r"proposal.knots=0: must be a whole number, 1 or more"):
+    with pytest.raises(ValueError, match=r"knots=0: must be a whole number, 1 or more"):
         KnotsProposal(0)
-    with pytest.raises(ValueError, match=r"proposal.order=quintic: choose linear or cubic"):
+    with pytest.raises(ValueError, match=r"order=quintic: choose one of linear, cubic"):
         KnotsProposal(order="quintic")
-    with pytest.raises(ValueError, match=r"proposal.std=0: must be positive"):
+    with pytest.raises(ValueError, match=r"std=0: must be above 0"):
         KnotsProposal(std=0)

@@ -72,9 +72,9 @@ def test_log_density_is_that_of_the_process(correlation) -> None:
 
 def test_bad_fields() -> None:
     """One line that names the field."""
-    with pytest.raises(ValueError, match=r"proposal.share=1.5: must lie in \[0, 1\]"):
+    with pytest.raises(ValueError, match=r"share=1.5: must lie in \[0, 1\]"):
         MixtureProposal(BY_POLICY, NOISE, 1.5)
-    with pytest.raises(ValueError, match=r"proposal.std=0"):
+    with pytest.raises(ValueError, match=r"std=0"):
         NoiseProposal(std=0)
-    with pytest.raises(ValueError, match=r"proposal.correlation=1.0"):
+    with pytest.raises(ValueError, match=r"correlation=1.0"):
         NoiseProposal(correlation=1.0)

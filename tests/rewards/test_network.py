@@ -73,7 +73,7 @@ def test_the_reward_of_several_networks_is_their_mean() -> None:
     np.testing.assert_allclose(
         several.loss(params, X, U, X, target, ended), np.mean(losses), rtol=1e-5
     )
-    with pytest.raises(ValueError, match=r"reward\.members=0"):
+    with pytest.raises(ValueError, match=r"members=0"):
         RewardNetwork(members=0)
 
 
