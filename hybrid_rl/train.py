@@ -38,6 +38,7 @@ from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import assembled, curve, divergence, launch, loggers
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
 
@@ -142,6 +143,7 @@ def train(
     output = launch.Output(caller, progress)
     if isinstance(method, Agent):
         run = assembled.run_of(method, **settings)
+        prepare(run.config)
         go = launch.begin if run.config.resume is None else launch.proceed
         result = Result(go(run, interrupt.answered, output), run)
     else:
