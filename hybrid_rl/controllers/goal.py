@@ -11,15 +11,22 @@ the last one s_i (thesis section 5.3.3).
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple, cast
+from typing import NamedTuple, Protocol, cast
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.protocols import PathTarget, StabilizingPolicy, Target
+from hybrid_rl.protocols import StabilizingPolicy, Target
 from hybrid_rl.types import Params, Spec
+
+
+class PathTarget(Target, Protocol):
+    """A target that values ways too."""
+
+    def along(self, params: Params, path: Array) -> Array:
+        """The value [] of measurements on path [T, v]."""
 
 
 class GoalState(NamedTuple):
