@@ -15,6 +15,7 @@ RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it; th
     "mbpo.memory": "policy_learner.branch_memory",
     "mbpo.steps": "policy_learner.branch_steps",
     "lookahead.steps": "policy_learner.steps",
+    "lookahead": "policy_learner",
     "policy_learner.early": "policy_learner.during_random",
     "policy_learner.expand": "policy_learner.value_expansion",
     "policy_learner.lookahead": "policy_learner.steps, which 0 turns off",
@@ -22,6 +23,7 @@ RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it; th
     "objective=quadratic": "objective=predicted_return reward=quadratic",
     "objective.state_weights": "reward.state_weights, with reward=quadratic",
     "objective.action_weights": "reward.action_weights, with reward=quadratic",
+    "dagger_learner.recent": "nothing: no method used it",
     "target=likely": "nothing: no method used it",
     "target=feature_information": "nothing: no method used it",
 }
