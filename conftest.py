@@ -39,7 +39,9 @@ gc.set_threshold(50_000, 50, 50)  # tracing makes many objects that stay
 SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
     f"{task}-mjx"
     for task in (
+        "halfcheetah",
         "hopper",
+        "quadcopter",
         "walker2d",
         "ant",
         "panda_stack",

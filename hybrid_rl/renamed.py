@@ -5,12 +5,17 @@ from collections.abc import Iterable
 from hybrid_rl.errors import UsageError
 
 VERSION = "0.3"
-RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it
+RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it; the first that fits
     "settings=mbpo": "learning=mbpo",
+    "mbpo.learner.early": "policy_learner.during_random",
+    "mbpo.learner.expand": "policy_learner.value_expansion",
+    "mbpo.learner.lookahead": "policy_learner.steps, which 0 turns off",
     "mbpo.learner": "policy_learner",
     "mbpo.share": "mbpo.imagined_fraction, with learning=mbpo",
     "mbpo.memory": "policy_learner.branch_memory",
+    "mbpo.steps": "policy_learner.branch_steps",
     "lookahead.steps": "policy_learner.steps",
+    "lookahead": "policy_learner",
     "policy_learner.early": "policy_learner.during_random",
     "policy_learner.expand": "policy_learner.value_expansion",
     "policy_learner.lookahead": "policy_learner.steps, which 0 turns off",
@@ -18,9 +23,15 @@ RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it
     "objective=quadratic": "objective=predicted_return reward=quadratic",
     "objective.state_weights": "reward.state_weights, with reward=quadratic",
     "objective.action_weights": "reward.action_weights, with reward=quadratic",
+    "task_objective.state_weights": "goal.state_weights",
+    "task_objective.action_weights": "goal.action_weights",
+    "model_objective.state_weights": "goal.state_weights",
+    "model_objective.action_weights": "goal.action_weights",
+    "dagger_learner.recent": "nothing: no method used it",
     "target=likely": "nothing: no method used it",
     "target=feature_information": "nothing: no method used it",
 }
+STILL = {"mbpo.steps": "learning=mbpo"}  # an old key that exists with another override
 
 
 def check(overrides: Iterable[str]) -> None:
@@ -29,10 +40,14 @@ def check(overrides: Iterable[str]) -> None:
     Raises:
         UsageError: with that name, in one line.
     """
-    for text in overrides:
-        typed = text.lstrip("+~")
+    given = list(overrides)
+    for text in given:
+        key, _, values = text.lstrip("+~").partition("=")
         for old, new in RENAMED.items():
-            end = typed[len(old) : len(old) + 1]
-            if typed.startswith(old) and end in ("", "=", ".", ","):
-                inner = typed[len(old) :].partition("=")[0]
+            if STILL.get(old) in given:
+                continue
+            inner = key.removeprefix(old)
+            if old == key or (inner != key and inner.startswith(".")):
                 raise UsageError(f"{text}: since {VERSION} it is {new}{inner}")
+            if old in [f"{key}={value}" for value in values.split(",")]:
+                raise UsageError(f"{text}: since {VERSION} {old} is {new}")

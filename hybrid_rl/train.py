@@ -38,6 +38,7 @@ from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import assembled, curve, divergence, launch, loggers
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
 
@@ -138,10 +139,10 @@ def train(
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    caller = None if on_row is None else loggers.Function(on_row)
-    output = launch.Output(caller, progress)
+    output = launch.Output(None if on_row is None else loggers.Function(on_row), progress)
     if isinstance(method, Agent):
         run = assembled.run_of(method, **settings)
+        prepare(run.config)
         go = launch.begin if run.config.resume is None else launch.proceed
         result = Result(go(run, interrupt.answered, output), run)
     else:
@@ -153,8 +154,8 @@ def train(
         result = Result(launch.train(method, given, interrupt.answered, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
-    if caller is not None and caller.problem is not None:
-        raise caller.problem
+    if output.on_row is not None and output.on_row.problem is not None:
+        raise output.on_row.problem
     return result
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from rotation import share
 
+from hybrid_rl.list import FIRST
 from scripts import docs
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,6 +25,15 @@ def test_every_method_has_one_section():
         name for line in re.findall(r"^### (.+)$", page, re.MULTILINE) for name in line.split(", ")
     ]
     assert sorted(names) == sorted(path.stem for path in (ROOT / "conf" / "algo").glob("*.yaml"))
+
+
+def test_the_same_eight_methods_come_first_everywhere():
+    """In the listing, in the README and on the page of methods."""
+    for name in ("README.md", "docs/methods.md"):
+        table = (ROOT / name).read_text(encoding="utf-8").partition("| `algo=` |")[2]
+        rows = table.split("\n\n")[0].splitlines()[2:]
+        names = [found for row in rows for found in re.findall(r"`(\w+)`", row.split("|")[1])]
+        assert names[: len(FIRST)] == list(FIRST), name
 
 
 def test_a_workflow_on_github_links_the_notebooks_to_binder(tmp_path, monkeypatch):

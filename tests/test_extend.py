@@ -78,7 +78,7 @@ def test_a_method_is_one_yaml_and_a_recursive_learner_one_file(conf, tmp_path, c
     assert capfd.readouterr().err == ""
     assert list(written.learners) == ["model", "policy", "average"]
     trained = evaluate.load(tmp_path / "run")
-    total, count = np.asarray(trained.params.belief[0])
+    total, count = np.asarray(trained.params.scale[0])
     assert count == 100
     assert total < 0  # rewards of the pendulum
 

@@ -28,4 +28,9 @@ def test_a_key_below_an_old_one_keeps_its_end(capfd):
 
 
 def test_a_key_that_only_begins_like_an_old_one_passes():
-    renamed.check(["policy_learner.expander=1", "mbpo.steps=3", "settings=mbpox"])
+    renamed.check(["policy_learner.expander=1", "settings=mbpox", "learning=mbpo", "mbpo.steps=3"])
+
+
+def test_a_value_among_several_is_found():
+    with pytest.raises(UsageError, match=r"since 0\.3 settings=mbpo is learning=mbpo"):
+        renamed.check(["settings=light,mbpo"])

@@ -10,16 +10,23 @@ With `ahead` T > 0 the target instead values the way to s_i: its T positions on 
 the last one s_i (thesis section 5.3.3).
 """
 
-from typing import NamedTuple, cast
+from typing import NamedTuple, Protocol, cast
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.domain import Box
-from hybrid_rl.fields import Count, FieldError, NotNegative, Positive, part
-from hybrid_rl.protocols import PathTarget, StabilizingPolicy, Target
+from hybrid_rl.fields import Count, FieldError, Natural, Positive, part
+from hybrid_rl.protocols import StabilizingPolicy, Target
 from hybrid_rl.types import Params, Spec
+
+
+class PathTarget(Target, Protocol):
+    """A target that values ways too."""
+
+    def along(self, params: Params, path: Array) -> Array:
+        """The value [] of measurements on path [T, v]."""
 
 
 class GoalState(NamedTuple):
@@ -44,7 +51,7 @@ class GoalController:
     samples: Count = 1000  # N candidates
     every: Count = 20  # [decisions]
     near: Positive | None = None  # distance at which a new goal is chosen; None: only every `every`
-    ahead: NotNegative = 0  # T positions on the way to a candidate; 0: the candidate alone
+    ahead: Natural = 0  # T positions on the way to a candidate; 0: the candidate alone
 
     def __post_init__(self) -> None:
         """Check the target."""

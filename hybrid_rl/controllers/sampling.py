@@ -11,7 +11,6 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import jax
@@ -89,7 +88,7 @@ class SamplingController:
             state.carries,
             x,
             state.plan,
-            jax.vmap(partial(sampling.shaped, self.proposal))(
+            jax.vmap(self.proposal.shaped)(
                 jax.random.normal(rolling, (self.samples, *state.plan.shape))
             ),
         )

@@ -6,12 +6,22 @@ Source: thesis section 7.5; feed-forward is ours.
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol
 
 from jax import Array
 
-from hybrid_rl.protocols import Controller, GoalPolicy, Model, TrackingEnv
+from hybrid_rl.protocols import BalancedEnv, Controller, GoalPolicy, Model
 from hybrid_rl.types import Params, Spec
+
+
+class TrackingEnv(BalancedEnv, Protocol):
+    """An environment whose observation contains a reference that the robot is to follow."""
+
+    def reference(self, obs: Array) -> tuple[Array, Array]:
+        """The observations [o] that the robot should have at `obs` [o] and one decision later.
+
+        Their own reference entries are those of `obs`.
+        """
 
 
 @dataclass(frozen=True)

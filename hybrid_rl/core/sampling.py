@@ -42,8 +42,8 @@ def imagine(
     """K paths of the model `step` from x [n], with candidates around plan [T, m].
 
     `propose(carry, x, a_t, noise) -> (v, log_prob, carry)` makes the candidates from the
-    noise [K, T, m] ~ N(0, I), as `shaped` returns it; `carries` [K, ...] start the paths. x may be
-    any tree of arrays.
+    noise [K, T, m] ~ N(0, I), or what the proposal has made of it; `carries` [K, ...] start the
+    paths. x may be any tree of arrays.
     """
     count = len(jax.tree.leaves(noise)[0])
     start = jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, (count, *leaf.shape)), x)
@@ -66,14 +66,6 @@ def imagine(
         lambda first, rest: jnp.concatenate([first[None], rest]).swapaxes(0, 1), start, xs
     )
     return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)
-
-
-def shaped(proposal: Any, noise: Array) -> Any:
-    """What `proposal` receives decision by decision, for the noise [T, m] of one candidate.
-
-    The noise itself, unless the proposal shapes it over the horizon.
-    """
-    return proposal.shaped(noise) if hasattr(proposal, "shaped") else noise
 
 
 def weights(

@@ -14,7 +14,7 @@ learning rate falls by half over 1,000,000 decisions, here it is constant.
 """
 
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -24,8 +24,40 @@ from jax import Array
 
 from hybrid_rl.core.soft_actor_critic import adam
 from hybrid_rl.fields import Count, Discount, Positive, Share, part
-from hybrid_rl.protocols import BatchPolicy, CategoricalCritic
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.protocols import Critic, LearnedPolicy
+from hybrid_rl.types import Batch, Params, PyTree, Spec
+
+
+class CategoricalCritic(Critic, Protocol):
+    """A critic of distributions over scaled returns, whose mean is Q.
+
+    It normalises by batches; its parameters hold "weights" and "statistics".
+    """
+
+    def in_batch(self, params: PyTree, x: Array, u: Array) -> tuple[Array, PyTree]:
+        """log p [members, B, bins] at x [B, n] and u [B, m], normalised by that batch.
+
+        Also the parameters with the batch's statistics.
+        """
+
+    def target(self, log_p: Array, reward: Array, factor: Array, penalty: Array) -> Array:
+        """Probabilities [B, bins] of reward + factor (Z - penalty), each of the three [B].
+
+        Z is the return of the member with the smaller mean, of log p [members, B, bins].
+        """
+
+    def constrained(self, params: PyTree) -> PyTree:
+        """Parameters with weights projected to those that are allowed, after a gradient step."""
+
+
+class BatchPolicy(LearnedPolicy, Protocol):
+    """A policy that normalises by batches; its parameters hold "weights" and "statistics"."""
+
+    def in_batch(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array, PyTree]:
+        """`sample` at x [B, n], normalised by that batch; parameters with its statistics."""
+
+    def constrained(self, params: PyTree) -> PyTree:
+        """Parameters with weights projected to those that are allowed, after a gradient step."""
 
 
 @struct.dataclass

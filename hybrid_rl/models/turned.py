@@ -13,13 +13,29 @@ Averaging, section 2, with one frame); as a model of dynamics our choice.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import jax
 from jax import Array
 
-from hybrid_rl.protocols import Trainable, TurningEnv
+from hybrid_rl.protocols import Env, Trainable
 from hybrid_rl.types import Spec
+
+
+class TurningEnv(Env, Protocol):
+    """An environment whose dynamics are the same in several horizontal directions.
+
+    R(a) turns a scene by the angle a [rad] about the vertical.
+    """
+
+    def heading(self, obs: Array) -> Array:
+        """The direction [] [rad] of an object at obs [o]; R(a) adds a to it."""
+
+    def turned(self, obs: Array, angle: Array) -> Array:
+        """R(angle) obs [o]; entries that the dynamics depend on in the world may stay."""
+
+    def turned_action(self, action: Array, angle: Array) -> Array:
+        """R(angle) action [m]."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.protocols import Simulator
+from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState, Params, Spec
 
 
@@ -20,7 +20,7 @@ from hybrid_rl.types import EnvState, Params, Spec
 class World:
     """The task's physics, as `world` steps it, with any of its implementations."""
 
-    world: Simulator
+    world: Env
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
         """No parameters."""

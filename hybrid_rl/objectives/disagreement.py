@@ -5,13 +5,22 @@ model's posterior and their predictions are Gaussian with noise sigma. Source: S
 Optimistic Active Exploration of Dynamical Systems, there with learned noise; Shyam et al. 2019.
 """
 
+from typing import Protocol
+
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.protocols import EnsembleModel
-from hybrid_rl.types import Params, Path, Return, Spec
+from hybrid_rl.protocols import Model
+from hybrid_rl.types import Params, Path, PyTree, Return, Spec
+
+
+class EnsembleModel(Model, Protocol):
+    """A model of several members, which agree where there are enough data."""
+
+    def disagreement(self, params: PyTree, x: Array, u: Array) -> Array:
+        """Standard deviation [n] of the members' predictions, in running std of the change."""
 
 
 @part

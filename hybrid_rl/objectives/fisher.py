@@ -1,7 +1,7 @@
 """J = a scalar of the Fisher information that a path has about a learned model's parameters.
 
 The criteria A_step, A, D, T and full, and the sensitivities `step` and `path`, are those of
-core/fisher.py; c = floor + the information of the data so far, which is `belief` in `Params`
+core/fisher.py; c = floor + the information of the data so far, which is `information` in `Params`
 (learners/information.py). Thesis eq. (4.4) minimises tr I_t^-1 summed over time, by path and
 without the data so far: A_step, path, past=false. D by step, with the data so far, is our default.
 It is the term without the task; `weighted_sum` adds one.

@@ -15,7 +15,6 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import sampling
 from hybrid_rl.fields import Fraction, part
 from hybrid_rl.protocols import Proposal
 from hybrid_rl.types import Params, Spec
@@ -44,7 +43,7 @@ class MixtureProposal:
 
     def shaped(self, noise: Array) -> tuple[Any, Any]:
         """The noise [T, m] of a path, as each of the two shapes it."""
-        return sampling.shaped(self.first, noise), sampling.shaped(self.second, noise)
+        return self.first.shaped(noise), self.second.shaped(noise)
 
     def __call__(
         self, params: Params, carry: tuple[Array, Any, Any], x: Array, plan: Array, noise: Any

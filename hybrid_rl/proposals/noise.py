@@ -36,6 +36,10 @@ class NoiseProposal:
         """No noise before the first action."""
         return NoiseState(jnp.zeros(spec.act), jnp.zeros(()))
 
+    def shaped(self, noise: Array) -> Array:
+        """The noise [T, m] itself."""
+        return noise
+
     def __call__(
         self, params: Params, carry: NoiseState, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, NoiseState]:

@@ -19,6 +19,10 @@ class PolicyProposal:
         """No carry."""
         return ()
 
+    def shaped(self, noise: Array) -> Array:
+        """The noise [T, m] itself."""
+        return noise
+
     def __call__(
         self, params: Params, carry: Any, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, Any]:

@@ -4,11 +4,16 @@ from typing import Protocol
 
 from jax import Array
 
-from hybrid_rl.types import Params, Path, PyTree, Return, Spec
+from hybrid_rl.types import Params, PyTree, Return, Spec
 
 
 class Objective(Protocol):
-    """J(path): the return that a planner maximises; any function of the path and of the past."""
+    """J(path): the return that a planner maximises; any function of the path and of the past.
+
+    One that is a sum over time may have two methods of `params` and `path`, which a planner that
+    samples calls instead: `rewards`, r [T] of each decision, and `reward_to_go`, S [T+1] from each
+    time on, with J = S[0] and the value of the last state in S[T].
+    """
 
     def init(self, spec: Spec) -> PyTree:
         """Memory before the first decision of an episode."""
@@ -23,35 +28,15 @@ class Objective(Protocol):
         """
 
 
-class Staged(Objective, Protocol):
-    """An objective that is a sum over time."""
-
-    def rewards(self, params: Params, path: Path) -> Array:
-        """r [T] of each decision of the path."""
-
-    def reward_to_go(self, params: Params, path: Path) -> Array:
-        """S [T+1]: the return from each time on. S[0] is J, S[T] the value of the last state."""
-
-
 class Target(Protocol):
-    """p(s): the density in which a method explores the search space."""
+    """p(s): the density in which a method explores the search space.
+
+    One that depends on a teacher's labels so far has `evidence(params, x)`, whose sum over the
+    labelled states x [n] it gets as `params.labels.evidence`.
+    """
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p(s) [] at s [v], up to a constant."""
-
-
-class PathTarget(Target, Protocol):
-    """A target that values ways too."""
-
-    def along(self, params: Params, path: Array) -> Array:
-        """The value [] of measurements on path [T, v]."""
-
-
-class LabelledTarget(Target, Protocol):
-    """A target that depends on a teacher's labels so far, in `params.labels.evidence`."""
-
-    def evidence(self, params: Params, x: Array) -> PyTree:
-        """What is summed over the labelled states x [n]; None: nothing."""
 
 
 class Proposal(Protocol):
@@ -60,20 +45,17 @@ class Proposal(Protocol):
     def init(self, spec: Spec, quantile: Array) -> PyTree:
         """Carry of one imagined path before its first action; `quantile` [] in [0, 1) is k / K."""
 
+    def shaped(self, noise: Array) -> PyTree:
+        """[T, ...] what `__call__` receives in each decision, for the noise [T, m] of a path."""
+
     def __call__(
         self, params: Params, carry: PyTree, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, PyTree]:
         """A candidate v [m] at x [n] near the plan [m], its log-density [], the next carry.
 
-        All randomness is in `noise` [m] ~ N(0, I), which the planner draws for all candidates.
+        All randomness is in the noise ~ N(0, I), which the planner draws for all candidates and
+        which `shaped` returns, [m] a decision unless it depends on the whole horizon.
         """
-
-
-class ShapingProposal(Proposal, Protocol):
-    """A proposal whose noise depends on the whole horizon."""
-
-    def shaped(self, noise: Array) -> PyTree:
-        """[T, ...] what `__call__` receives in each decision, for the noise [T, m] of a path."""
 
 
 class Controller(Protocol):

@@ -2,11 +2,10 @@
 
 from typing import Protocol
 
-import numpy as np
 from jax import Array
 
 from hybrid_rl.protocols.environments import AnalyticEnv
-from hybrid_rl.types import EnvState, Params, PyTree, Spec, Step
+from hybrid_rl.types import Params, PyTree, Spec, Step
 
 
 class Features(Protocol):
@@ -35,13 +34,6 @@ class Model(Protocol):
         """Mean of the next planning state [n]."""
 
 
-class WorldModel(Model, Protocol):
-    """A model that is the world itself. Its planning state is an EnvState; `lift` is identity."""
-
-    def start(self, params: Params) -> EnvState:
-        """The state of the world, from which plans begin."""
-
-
 class Trainable(Model, Protocol):
     """A model that learns by gradients of its "weights", an entry of its parameters."""
 
@@ -65,13 +57,6 @@ class Uncertain(Model, Protocol):
 
     def std(self, params: PyTree, x: Array) -> Array:
         """Standard deviation [n] of the change at x [n], in running standard deviations."""
-
-
-class EnsembleModel(Model, Protocol):
-    """A model of several members, which agree where there are enough data."""
-
-    def disagreement(self, params: PyTree, x: Array, u: Array) -> Array:
-        """Standard deviation [n] of the members' predictions, in running std of the change."""
 
 
 class LinearModel(Uncertain, Protocol):
@@ -114,33 +99,6 @@ class LearnedPolicy(Policy, Protocol):
         """Log-density [...] of actions u [..., m] at x [..., n]."""
 
 
-class UnsquashedPolicy(LearnedPolicy, Protocol):
-    """A policy that squashes the outputs of a network; "weights" is an entry of its parameters."""
-
-    def unsquashed(self, params: PyTree, x: Array) -> Array:
-        """The mean [..., m] before squashing, at x [..., n]."""
-
-    def layers(self, params: PyTree, x: Array) -> tuple[Array, Array]:
-        """The features [..., h] of which that mean is an affine function, and the mean."""
-
-
-class Committee(LearnedPolicy, Protocol):
-    """Several policies that learn from the same data."""
-
-    def each(self, params: PyTree, x: Array) -> Array:
-        """The action of every member [members, ..., m] at x [..., n]."""
-
-
-class BatchPolicy(LearnedPolicy, Protocol):
-    """A policy that normalises by batches; its parameters hold "weights" and "statistics"."""
-
-    def in_batch(self, params: PyTree, x: Array, noise: Array) -> tuple[Array, Array, PyTree]:
-        """`sample` at x [B, n], normalised by that batch; parameters with its statistics."""
-
-    def constrained(self, params: PyTree) -> PyTree:
-        """Parameters with weights projected to those that are allowed, after a gradient step."""
-
-
 class GoalPolicy(Policy, Protocol):
     """A policy that leads to a goal, which can be changed."""
 
@@ -176,28 +134,6 @@ class Critic(Protocol):
         """Q [...], reduced over the members."""
 
 
-class CategoricalCritic(Critic, Protocol):
-    """A critic of distributions over scaled returns, whose mean is Q.
-
-    It normalises by batches; its parameters hold "weights" and "statistics".
-    """
-
-    def in_batch(self, params: PyTree, x: Array, u: Array) -> tuple[Array, PyTree]:
-        """log p [members, B, bins] at x [B, n] and u [B, m], normalised by that batch.
-
-        Also the parameters with the batch's statistics.
-        """
-
-    def target(self, log_p: Array, reward: Array, factor: Array, penalty: Array) -> Array:
-        """Probabilities [B, bins] of reward + factor (Z - penalty), each of the three [B].
-
-        Z is the return of the member with the smaller mean, of log p [members, B, bins].
-        """
-
-    def constrained(self, params: PyTree) -> PyTree:
-        """Parameters with weights projected to those that are allowed, after a gradient step."""
-
-
 class Reward(Protocol):
     """r(x, u, x'), learned or known."""
 
@@ -206,24 +142,6 @@ class Reward(Protocol):
 
         after: [n] the next planning state, real or imagined.
         """
-
-
-class LearnedReward(Reward, Protocol):
-    """A reward that is learned; its parameters hold "weights" as a Trainable's do."""
-
-    def init(self, key: Array, spec: Spec) -> PyTree:
-        """Initial parameters, for planning states of size spec.n."""
-
-    def observe(self, params: PyTree, x: Array) -> PyTree:
-        """Parameters with statistics updated by planning states x [B, n]."""
-
-    def observe_targets(self, params: PyTree, target: Array) -> PyTree:
-        """Parameters with statistics updated by targets [B] of the reward."""
-
-    def loss(
-        self, params: PyTree, x: Array, u: Array, after: Array, target: Array, ended: Array
-    ) -> Array:
-        """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
 
 
 class Belief(Protocol):
@@ -259,13 +177,3 @@ class InformedBelief(Belief, Protocol):
 
     def informed(self, state: PyTree) -> Array:
         """[] bool: whether any measurement distinguished one region from another."""
-
-
-class ContactMap(Protocol):
-    """p(y = 1 | s): where a robot on a plane touches an object."""
-
-    middle: tuple[float, float]  # [m] of the map
-    outline: np.ndarray  # [M, 2] [m] positions of contact
-
-    def chance(self, s: Array) -> Array:
-        """p [] in (0, 1) at s [2]."""

@@ -40,7 +40,7 @@ class RewardNetwork:
     activation: str = "relu"
     normalise: bool = True  # states by their running statistics
     ends: bool = False  # also where episodes end
-    rule: Any = None  # an EndingEnv, whose rule gives the ends; others, and None: they are learned
+    rule: Any = None  # an environment whose `ended` gives the ends; without: they are learned
     layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
     scale: bool = False  # targets by their running statistics
     members: Count = 1  # networks, whose mean is used

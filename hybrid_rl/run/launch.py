@@ -72,7 +72,6 @@ def train(
 
 def begin(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
     """The same for a run that is built, in a new folder."""
-    prepare(run.config)
     size = _fits(run)
     loggers.check(run.config.get("logger"))
     with folder.fresh(run.config) as run_dir:
@@ -83,7 +82,6 @@ def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, A
     """The same from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
     with locked(folder.writable(run_dir, "run_dir"), "run_dir"):
-        prepare(run.config)
         return _run(run, run_dir, _fits(run), handled, output)
 
 

@@ -6,12 +6,21 @@ Source: the doubt of EnsembleDAgger (Menda, Driggs-Campbell and Kochenderfer 201
 there who acts; as a choice of queries it is query by committee (Seung, Opper and Sompolinsky 1992).
 """
 
+from typing import Protocol
+
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.protocols import Committee
-from hybrid_rl.types import Params
+from hybrid_rl.protocols import LearnedPolicy
+from hybrid_rl.types import Params, PyTree
+
+
+class Committee(LearnedPolicy, Protocol):
+    """Several policies that learn from the same data."""
+
+    def each(self, params: PyTree, x: Array) -> Array:
+        """The action of every member [members, ..., m] at x [..., n]."""
 
 
 @part

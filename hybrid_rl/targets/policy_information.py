@@ -12,7 +12,7 @@ eq. (4.5)-(4.6) (`inverse`) and (6.28) (`trace`), with sigma^-2 where the thesis
 is ours.
 """
 
-from typing import Any
+from typing import Any, Protocol
 
 import jax.numpy as jnp
 from jax import Array
@@ -21,10 +21,20 @@ from hybrid_rl.core import fisher
 from hybrid_rl.core.analytic import require_equilibrium
 from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import FieldError, Positive, part
-from hybrid_rl.protocols import BalancedEnv, UnsquashedPolicy
-from hybrid_rl.types import Params
+from hybrid_rl.protocols import BalancedEnv, LearnedPolicy
+from hybrid_rl.types import Params, PyTree
 
 CRITERIA = ("trace", "inverse", "gain")
+
+
+class UnsquashedPolicy(LearnedPolicy, Protocol):
+    """A policy that squashes the outputs of a network; "weights" is an entry of its parameters."""
+
+    def unsquashed(self, params: PyTree, x: Array) -> Array:
+        """The mean [..., m] before squashing, at x [..., n]."""
+
+    def layers(self, params: PyTree, x: Array) -> tuple[Array, Array]:
+        """The features [..., h] of which that mean is an affine function, and the mean."""
 
 
 @part

@@ -32,9 +32,7 @@ from hybrid_rl.types import Params
 REACHED = 0.9  # of the teacher's score
 TARGETS = {  # class of the target -> name
     "PolicyDisagreement": "disagreement",
-    "FeatureInformation": "features",
     "PolicyResidual": "residual",
-    "Likely": "product",
 }
 METRICS = ("eval/policy_success", "eval/policy_return")
 

@@ -5,6 +5,7 @@ the robot: a robot in contact is at d = r, so that the step lies a width w outsi
 """
 
 from functools import cache
+from typing import Protocol
 
 import jax
 import jax.numpy as jnp
@@ -12,10 +13,21 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.fields import FieldError, Positive, part
-from hybrid_rl.protocols import ContactEnv
+from hybrid_rl.protocols import Env
 
 OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
 NEWTON, NEAR = 20, 1e-4  # iterations; |d - r| of a solution, in the box's shorter side
+
+
+class ContactEnv(Env, Protocol):
+    """An environment on a plane in which a round robot touches objects."""
+
+    radius: float  # [m] of the robot
+    low: tuple[float, ...]  # [m] of the plane
+    high: tuple[float, ...]
+
+    def distance(self, s: Array) -> Array:
+        """Signed distance [] [m] of s [2] to the nearest object, at rest where they are listed."""
 
 
 @part

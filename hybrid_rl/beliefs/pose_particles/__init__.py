@@ -18,10 +18,11 @@ See `rejuvenation`. A measurement at s informs by
 Source: thesis eq. (5.1) and section 5.3.2, with the information at s~ instead of s.
 """
 
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from hybrid_rl.beliefs.pose_particles import rejuvenation
@@ -29,11 +30,20 @@ from hybrid_rl.core import poses, resampling
 from hybrid_rl.core.branching import when_any
 from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Count, Positive, part
-from hybrid_rl.protocols import ContactMap
 from hybrid_rl.types import Spec
 
 KINDS = ("metropolis", "local", "manifold", "jitter")
 MEASURES = ("trace", "det", "mutual")
+
+
+class ContactMap(Protocol):
+    """p(y = 1 | s): where a robot on a plane touches an object."""
+
+    middle: tuple[float, float]  # [m] of the map
+    outline: np.ndarray  # [M, 2] [m] positions of contact
+
+    def chance(self, s: Array) -> Array:
+        """p [] in (0, 1) at s [2]."""
 
 
 class Particles(NamedTuple):

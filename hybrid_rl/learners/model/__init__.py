@@ -13,7 +13,7 @@ a running mean over the updates, is logged and ranks the members of an ensemble 
 decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -25,10 +25,28 @@ from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.learners.model import held_out
-from hybrid_rl.protocols import LearnedReward, Trainable
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.protocols import Reward, Trainable
+from hybrid_rl.types import Batch, Params, PyTree, Spec
 
 RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
+
+
+class LearnedReward(Reward, Protocol):
+    """A reward that is learned; its parameters hold "weights" as a Trainable's do."""
+
+    def init(self, key: Array, spec: Spec) -> PyTree:
+        """Initial parameters, for planning states of size spec.n."""
+
+    def observe(self, params: PyTree, x: Array) -> PyTree:
+        """Parameters with statistics updated by planning states x [B, n]."""
+
+    def observe_targets(self, params: PyTree, target: Array) -> PyTree:
+        """Parameters with statistics updated by targets [B] of the reward."""
+
+    def loss(
+        self, params: PyTree, x: Array, u: Array, after: Array, target: Array, ended: Array
+    ) -> Array:
+        """Loss [] of one transition against target [] and `ended` [], 0 or 1."""
 
 
 @struct.dataclass
