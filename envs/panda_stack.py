@@ -51,7 +51,6 @@ SIDE = 0.05  # [m] of a cube
 TOUCH = 0.002  # [m] largest gap between a finger and a grasped block
 LEVEL = 0.01  # [m] largest height error of a stacked block
 QUIET = 0.05  # [m/s] largest speed of a stacked block
-OBSERVATIONS = ("thesis", "relative", "stage")
 PADS = ("left_pad", "right_pad")
 PAIRS = (*(f"{pad}_{cube}" for pad in PADS for cube in ("block", "base")), "block_base")
 PAIRS = (*PAIRS, "block_table", "base_table")  # all contacts

@@ -35,7 +35,6 @@ VARIANCE = 0.1  # of each entry of the state at the start of a flip
 ANGLE, HEIGHT = 0.35, 1.0  # [rad], [length]: bounds of success
 HOLD = 10  # decisions within these bounds at a success
 LARGEST = 0.9999  # |a| in the cost of u, which is infinite at 1
-TASKS = ("hover", "flip")
 
 
 @part

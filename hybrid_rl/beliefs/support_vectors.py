@@ -21,8 +21,6 @@ from hybrid_rl.core.support_vectors import Machine
 from hybrid_rl.fields import Count, NotNegative, Positive, part
 from hybrid_rl.types import Spec
 
-MEASURES = ("transition", "fisher")
-
 
 @part
 class SupportVectors:

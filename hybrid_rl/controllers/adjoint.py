@@ -25,7 +25,6 @@ from hybrid_rl.fields import Count, FieldError, Positive, Share, part
 from hybrid_rl.protocols import Model, Objective, Policy, StabilizingPolicy
 from hybrid_rl.types import Params, Path, Return, Spec
 
-APPLY = ("first", "horizon", "search")
 WINDOWS = 8  # values of tau, and of lambda, that a search compares
 
 

@@ -21,8 +21,6 @@ from hybrid_rl.fields import Count, NotNegative, Share, part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
-KINDS = ("normal", "uniform", "ou", "held")
-
 
 class NoisyState(NamedTuple):
     """The noise, and the inner controller's state."""

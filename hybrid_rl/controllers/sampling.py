@@ -22,7 +22,6 @@ from hybrid_rl.fields import Count, FieldError, Positive, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
-EXECUTE = ("mean", "sample")
 ToGo = Callable[[Path], Array]  # path -> S [T+1], the return from each time on
 
 

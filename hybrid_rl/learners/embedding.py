@@ -23,7 +23,6 @@ from hybrid_rl.fields import Count, FieldError, Natural, Positive, part
 from hybrid_rl.protocols import LatestLearner, LinearModel
 from hybrid_rl.types import Batch, Params, Spec
 
-FITS = ("least_squares", "adam")
 CHUNK = 128  # decisions that the regression takes at once
 
 

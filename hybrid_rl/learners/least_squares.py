@@ -21,8 +21,6 @@ from hybrid_rl.fields import Natural, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LinearModel
 from hybrid_rl.types import Batch, Params, Spec
 
-MEANS = ("identity", "zero")
-
 
 @struct.dataclass
 class RegressionState:

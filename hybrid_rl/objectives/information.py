@@ -18,8 +18,6 @@ from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import LinearModel
 from hybrid_rl.types import Params, Path, Return, Spec
 
-CRITERIA = ("gain", "norm")
-
 
 @part
 class Information:

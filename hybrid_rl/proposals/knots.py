@@ -19,8 +19,6 @@ from jax import Array
 from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.types import Params, Spec
 
-ORDERS = ("linear", "cubic")
-
 
 @part
 class KnotsProposal:

@@ -32,9 +32,6 @@ from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.types import Spec
 
-KINDS = ("metropolis", "local", "manifold", "jitter")
-MEASURES = ("trace", "det", "mutual")
-
 
 class ContactMap(Protocol):
     """p(y = 1 | s): where a robot on a plane touches an object."""
