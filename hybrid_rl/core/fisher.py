@@ -30,6 +30,7 @@ from hybrid_rl.core.solving import log_det_one_plus
 from hybrid_rl.types import Path
 
 CRITERIA = ("A_step", "A", "D", "T", "full")
+KINDS = ("step", "path")
 LARGEST = 1e12  # of psi, whose square must fit into float32: it grows as a product of f_x
 ParametricStep = Callable[[Any, Array, Array], Array]  # theta, x [n], u [m] -> x' [n]
 

@@ -32,6 +32,10 @@ class Grid:
         """The action."""
         return quantile
 
+    def shaped(self, noise: Array) -> Array:
+        """The noise itself."""
+        return noise
+
     def __call__(self, params: Params, carry: Array, x: Array, plan: Array, noise: Array) -> tuple:
         """The constant action; x is the observation."""
         assert x.shape == (5,)
