@@ -10,7 +10,7 @@ from omegaconf import DictConfig
 from tiny import SMALL, demonstrate
 
 from hybrid_rl import config
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.host_loop import loop_of
 
 LINEAR = ("koopman", "gp_")  # begin the names of methods without networks to shrink
 
@@ -55,7 +55,7 @@ def load(algo: str, *overrides: str) -> DictConfig:
 
 def learn(run: Any) -> None:
     """Eight decisions of all learners; all numbers are finite."""
-    loop = Loop(run.agent, run.seeds, stride=8)
+    loop = loop_of(run.agent, run.seeds, stride=8)
     state = loop.init()
     program = loop.compile(state)
     state, metrics = program(state, jnp.int32(0), jnp.int32(8))
