@@ -17,6 +17,7 @@ from hybrid_rl.training.episode import Episode
 
 HERE = Path(__file__).parent
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
+THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the search path
 OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin
 GLOBAL = "# @package _global_"
 ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
@@ -26,9 +27,22 @@ INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] 
 def options(group: str) -> list[str]:
     """Names that a configuration group offers, with their folders."""
     return sorted(
-        str(path.relative_to(CONF / group).with_suffix(""))
-        for path in (CONF / group).rglob("*.yaml")
+        path.relative_to(conf / group).with_suffix("").as_posix()
+        for conf in (CONF, THESIS)
+        for path in (conf / group).rglob("*.yaml")
     )
+
+
+def file(group: str, name: str) -> Path:
+    """The YAML file of an option of the library or of the thesis.
+
+    Raises:
+        FileNotFoundError: if there is none.
+    """
+    for conf in (CONF, THESIS):
+        if (path := conf / group / f"{name}.yaml").is_file():
+            return path
+    raise FileNotFoundError(f"{group}={name}")
 
 
 def explain(error: Exception) -> str:
@@ -139,7 +153,7 @@ def _check_experiment(config: DictConfig, hydra: Any) -> None:
 def _root_keys(hydra: Any, without: Path) -> set[str]:
     """The keys at the root of all YAML files that can be chosen, one left out."""
     sources = [Path(each.path) for each in hydra.runtime.config_sources if each.schema == "file"]
-    files = {file for source in sources for file in source.rglob("*.yaml")} - {without}
+    files = {file for source in (*sources, THESIS) for file in source.rglob("*.yaml")} - {without}
     texts = [file.read_text(encoding="utf-8", errors="replace") for file in files]
     spread = [text for text in texts if GLOBAL in text]
     root = (CONF / "train.yaml").read_text(encoding="utf-8")

@@ -22,6 +22,7 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.contract import check as check_world
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
+from hybrid_rl.fields import FieldError
 from hybrid_rl.overrides import plain, reached, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.parts import built, part_class
 from hybrid_rl.protocols import Controller
@@ -33,13 +34,6 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("matmul_precision", "distributed", "logger"),
 )
-
-NEEDS = {  # words of a part's message -> a method of the environments that it accepts
-    "needs an analytic environment": "dynamics",
-    "needs an environment with an equilibrium": "equilibrium",
-    "needs an environment with a known reward": "reward_of",
-    "needs an environment with a reference": "reference",
-}
 
 
 @dataclass(frozen=True)
@@ -266,10 +260,9 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         yield
     except ValueError as error:
         line = str(error)
-        for needs, method in NEEDS.items():
-            if needs in line:
-                names = ", ".join(tasks_with(method))
-                line = f"task={config.task}: {who or config.algo} {needs}; choose one of {names}"
+        if isinstance(error, FieldError) and error.line.startswith("world=") and error.has:
+            names = ", ".join(tasks_with(error.has))
+            line = f"task={config.task}: {who or config.algo} {error.words}; choose one of {names}"
         field, equals, rest = line.partition("=")
         if field in config.env and field not in config:  # of a world of the user's
             line = f"env.{line}"

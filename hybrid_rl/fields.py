@@ -11,12 +11,13 @@ instead, `proposal.std=0.0: must be above 0`. Lists become tuples, so that parts
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
 from types import NoneType, UnionType
 from typing import (
     Annotated,
     Any,
     Literal,
+    Self,
     TypeVar,
     Union,
     dataclass_transform,
@@ -28,11 +29,20 @@ Class = TypeVar("Class", bound=type)
 
 
 class FieldError(ValueError):
-    """A field of a part is out of its range; `line` is FIELD=VALUE: what it must be."""
+    """A field of a part is out of its range; `line` is FIELD=VALUE: what it must be.
 
-    def __init__(self, part: Any, name: str, words: str) -> None:
-        self.line = f"{name}={_shown(getattr(part, name))}: {words}"
+    has: the method that the value lacks, if that is what is wrong.
+    """
+
+    def __init__(self, part: Any, name: str, words: str, has: str = "") -> None:
+        self.has = has
+        self.line, self.words = f"{name}={_shown(getattr(part, name))}: {words}", words
         super().__init__(f"{type(part).__name__}: {self.line}")
+
+    def at(self, key: str) -> Self:
+        """This error, of the part at a key of a configuration."""
+        self.args = (f"{key}.{self.line}",)
+        return self
 
 
 @dataclass(frozen=True)
@@ -41,6 +51,12 @@ class Must:
 
     hold: Callable[[Any], bool]
     words: str
+    has: str = ""  # the method that they have
+
+
+def has(method: str, words: str) -> Must:
+    """For a field whose value has this method; `words` say so if it does not."""
+    return Must(lambda part: hasattr(part, method), words, method)
 
 
 def _whole(value: Any) -> bool:
@@ -97,9 +113,15 @@ def _check(self: Any) -> None:
             if get_origin(plain(kind)) is tuple:
                 value = _tuples(kind, value)
                 object.__setattr__(self, field.name, value)
-            if wrong := _wrong(kind, value):
-                null = ", or null" if len(kinds) < len(choices(field.type)) else ""
-                raise FieldError(self, field.name, wrong + null)
+            null = ", or null" if len(kinds) < len(choices(field.type)) else ""
+            check(self, field.name, kind, null)
+
+
+def check(part: Any, name: str, kind: Any, null: str = "") -> None:
+    """Raise FieldError unless the value of a field is of an annotated type."""
+    if wrong := _wrong(kind, getattr(part, name)):
+        missing = get_args(kind)[1].has if get_origin(kind) is Annotated else ""
+        raise FieldError(part, name, wrong if missing else wrong + null, missing)
 
 
 def _wrong(kind: Any, value: Any) -> str:
@@ -107,7 +129,7 @@ def _wrong(kind: Any, value: Any) -> str:
     of = get_args(kind)
     if get_origin(kind) is Annotated:
         must: Must = of[1]
-        return "" if must.hold(value) else f"must {must.words}"
+        return "" if must.hold(value) else must.words if must.has else f"must {must.words}"
     if get_origin(kind) is Literal:
         return "" if value in of else f"choose one of {', '.join(map(str, of))}"
     if get_origin(kind) is not tuple:
@@ -127,6 +149,8 @@ def _tuples(kind: Any, value: Any) -> Any:
 
 def _shown(value: Any) -> Any:
     """A value as configurations write it."""
+    if is_dataclass(value):
+        return type(value).__name__
     if isinstance(value, tuple):
         return [_shown(each) for each in value]
     return {"None": "null", "True": "true", "False": "false"}.get(str(value), value)

@@ -18,13 +18,14 @@ from pathlib import Path
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, read
-from hybrid_rl.config import CONF, tasks_with
+from hybrid_rl.composition import CONF, THESIS
+from hybrid_rl.config import tasks_with
 from hybrid_rl.errors import UsageError
 
 HAS = {"equilibrium": "equilibrium", "reference": "reference", "dynamics": "analytic"}
 NEEDS = "# Needs "  # begins the comment of a method that not every task fits
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
-FIRST = (  # of the methods; the others are baselines and the thesis' own
+FIRST = (  # of the methods; parts of others and baselines follow
     *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "nn_mppi", "hybrid_bc"),
     *("kle3", "koopman_active"),
 )
@@ -79,24 +80,29 @@ def main() -> None:
     if line[:1] == ["--config-dir"] and len(line) == 2:  # as `train` takes it
         sys.argv[1:] = [f"config_dir={line[1]}"]
     given, _ = read(__doc__, ARGUMENTS)
-    folders = [CONF]
+    folders = [CONF, THESIS]
     if given["config_dir"]:
         own = Path(given["config_dir"]).expanduser()
         if not own.is_dir():
             raise UsageError(f"config_dir={own}: no such folder")
-        folders.append(own)
+        folders.insert(1, own)
     listed = [(listing(folder), marks(folder)) for folder in folders]
     width = max(len(name) for names, _ in listed for group in GROUPS for name in names[group])
     for group, title in GROUPS.items():
-        rows = {
-            name: f"  {name:{width}}  {text} {_mark(restricted[group].get(name))}".rstrip()
+        each = [
+            {
+                name: f"  {name:{width}}  {text} {_mark(restricted[group].get(name))}".rstrip()
+                for name, text in names[group].items()
+            }
             for names, restricted in listed
-            for name, text in names[group].items()
-        }
-        first = [name for name in FIRST if name in rows] if group == "algo" else []
+        ]
+        theirs = each.pop()
+        rows = {name: line for lines in each for name, line in lines.items()}
+        first = [rows.pop(name) for name in FIRST if name in rows] if group == "algo" else []
         print(f"{title}  ({group}=NAME{'; start with these eight' if first else ''})")
-        print(*(rows.pop(name) for name in first), *[""] * bool(first), sep="\n", end="")
-        print(*rows.values(), "", sep="\n")
+        print(*first, *[""] * bool(first), *rows.values(), "", sep="\n")
+        if theirs:
+            print(f"{title} by the thesis' names", *theirs.values(), "", sep="\n")
     print("python -m hybrid_rl.train task=NAME algo=NAME [experiment=NAME] [key=value ...]")
 
 

@@ -210,7 +210,7 @@ def search_path(config_dir: str | Path) -> str:
     folder = Path(config_dir).expanduser().resolve()
     if not folder.is_dir():
         raise UsageError(f"config_dir={config_dir}: no such folder")
-    return f"hydra.searchpath=['file://{folder}']"
+    return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
 
 
 def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:

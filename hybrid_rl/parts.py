@@ -113,7 +113,7 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
     try:
         return kind(**fields)
     except FieldError as error:
-        raise ValueError(f"{where}.{error.line}" if where else str(error)) from error
+        raise (error.at(where) if where else error) from None
     except ValueError:
         raise
     except Exception as error:  # such as a field that it does not have

@@ -5,7 +5,7 @@
     python scripts/docs.py links    requests every external link instead; needs the network
 
 The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that
-their links work on GitHub and on the site. A page per method is made from conf/algo, the section of
+their links work on GitHub and on the site. A page per method is made from its YAML file, the section of
 docs/methods.md and the docstrings of its parts; the reference from all docstrings. A warning, such
 as a link that leads nowhere, is an error. `make docs` runs it in .venv-docs. With the environment
 variable GITHUB_REPOSITORY=OWNER/NAME, which workflows on GitHub set, notebooks link to Binder.
@@ -25,7 +25,7 @@ from typing import Any
 
 from omegaconf import DictConfig, ListConfig
 
-from hybrid_rl import config
+from hybrid_rl import composition, config
 from hybrid_rl.errors import UsageError
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -139,8 +139,9 @@ def methods() -> None:
         sections |= dict.fromkeys(heading.split(", "), text)
     links = re.compile(r"\]\((?!https?:)")
     lines = []
-    for path in sorted((ROOT / "conf" / "algo").glob("*.yaml")):
-        name, yaml = path.stem, path.read_text(encoding="utf-8")
+    for name in composition.options("algo"):
+        path = composition.file("algo", name)
+        yaml = path.read_text(encoding="utf-8")
         about = " ".join(line[2:] for line in re.findall(r"^# (?!@).*", yaml, re.MULTILINE))
         text = links.sub("](../docs/", sections[name])
         write(
@@ -148,7 +149,7 @@ def methods() -> None:
             f"# {name}\n\n{about}\n\n## What it does\n\n{text}\n## Parts and equations\n\n"
             f"{''.join(map(described, parts(name)))}\n## Settings\n\n"
             f"`python -m hybrid_rl.train algo={name} --cfg job` prints all keys with their values. "
-            f"`conf/algo/{name}.yaml`:\n\n```yaml\n{yaml}```\n",
+            f"`{path.relative_to(ROOT)}`:\n\n```yaml\n{yaml}```\n",
         )
         lines.append(f"* [{name}]({name}.md): {about}")
     names = [line.split("[")[1].split("]")[0] for line in lines]

@@ -53,6 +53,18 @@ def load(algo: str, *overrides: str) -> DictConfig:
     return composed
 
 
+def trace(agent: Any) -> None:
+    """Fail unless a decision has the shapes of the state before it."""
+    state = jax.eval_shape(agent.init, jax.random.key(0))
+    after, metrics = jax.eval_shape(agent.step, state, jnp.int32(0))
+    sizes = [
+        jax.tree.map(lambda leaf: (leaf.shape, leaf.dtype.name), each) for each in (state, after)
+    ]
+    assert jax.tree.structure(state) == jax.tree.structure(after)
+    assert jax.tree.leaves(sizes[0]) == jax.tree.leaves(sizes[1])
+    assert metrics
+
+
 def learn(run: Any) -> None:
     """Eight decisions of all learners; all numbers are finite."""
     loop = loop_of(run.agent, run.seeds, stride=8)

@@ -2,19 +2,17 @@
 
 import dataclasses
 from pathlib import Path
-from typing import Any, get_args
 
 import jax
 import jax.numpy as jnp
 import pytest
 import small
 from hydra.utils import get_class, instantiate
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import OmegaConf
 from tiny import SMALL
 
 from hybrid_rl import config
-from hybrid_rl import list as listed
-from hybrid_rl.cli.command import options
+from hybrid_rl.composition import file, options
 
 PARTS = [
     path
@@ -44,116 +42,43 @@ def test_the_yaml_of_a_part_lists_every_field(path: Path) -> None:
     assert keys_of(path) == {"_target_", *(field.name for field in fields)}
 
 
-OF_TASK = {  # methods that need another task
-    **dict.fromkeys(
-        (f"{name}_mapping" for name in ("ergodic", "kle3", "entropy", "noise", "information")),
-        "contact_plane",
-    ),
-    **dict.fromkeys(
-        (f"{name}_localisation" for name in ("ergodic", "kle3", "entropy", "information")),
-        "contact_plane",
-    ),
-    "computed_torque": "sawyer_torque",
+@pytest.mark.parametrize("path", PARTS, ids=lambda p: str(p.relative_to(config.CONF)))
+def test_a_part_with_ranges_checks_them(path: Path) -> None:
+    """A class whose fields declare a range is made by `fields.part`, not by `dataclass`."""
+    node = OmegaConf.load(path)
+    kind = get_class(node.get("env", node)._target_)
+    if "Must(" in str([field.type for field in dataclasses.fields(kind)]):
+        assert kind.__post_init__.__qualname__.startswith("part.")
+
+
+TASKS = {  # methods that need another task than the pendulum
+    **dict.fromkeys(("mapping", "localisation"), "contact_plane"),
+    **dict.fromkeys(("computed_torque", "joint_pd"), "sawyer_torque"),
     "dagger": "lander",
-    "dail": "lander",
-    "disagreement_dagger": "lander",
-    "joint_pd": "sawyer_torque",
-    "kle3_imitation": "lander",
     "koopman_track": "two_link",
-    "minie": "lander",
-    "nie": "lander",
-    "residual_dagger": "lander",
-    "rq_dagger": "lander",
 }
-RUN = {  # methods that run here; test_learning.py runs four, the others differ by tested parts
-    *("hybrid_deterministic", "hybrid_bc", "kle3_imitation", "analytic", "fisher", "disagreement"),
-    *("kle3", "kle3_bayesopt", "kle3_model_learning", "kle3_ddpg", "gp_active", "dagger"),
-    *("koopman_active", "koopman_embedding", "koopman_track", "computed_torque"),
-    *("ergodic_mapping", "ergodic_localisation"),
-}
+METHODS = [path.stem for path in sorted((config.CONF / "algo").glob("*.yaml"))]
 NOT_HERE = ("pendulum", "gymnasium", "playground")  # with all methods, on the host, not installed
-EACH = [  # every method on one task, the default method on the default task, one on every task
-    *((OF_TASK.get(algo, "pendulum"), algo) for algo in options("algo")),
+EACH = [  # every method on one task, the default on the default task, one on every task
+    *((TASKS.get(algo, "pendulum"), algo) for algo in METHODS),
     ("halfcheetah", "hybrid_stochastic"),
     *((task, "nn_mppi") for task in options("task") if task not in NOT_HERE),
 ]
-EXECUTED = {pair for pair in EACH if pair[1] in RUN} | {("halfcheetah", "hybrid_stochastic")}
-
-NEEDS = {  # type of the world that a part takes, the most demanding first -> comment of its method
-    "TrackingEnv": "needs a task with a reference",
-    "AnalyticEnv": "needs an analytic task",
-    "BalancedEnv": "needs a task with an equilibrium",
-    "RewardedEnv": "needs a task with a known reward",
+RUN = {  # methods that run here, one of a kind; test_learning.py runs four, thesis/tests more
+    *("hybrid_deterministic", "hybrid_bc", "fisher", "kle3", "kle3_ddpg", "dagger"),
+    *("koopman_active", "localisation"),
 }
-
-
-def needs(composed: DictConfig) -> str:
-    """What the parts of a method need of their environment, by the type of their field `world`."""
-    kinds: set[str] = set()
-
-    def visit(node: Any) -> None:
-        if node.get("world") == composed.env:
-            kind = get_class(node._target_).__annotations__["world"]
-            kinds.update(each.__name__ for each in get_args(kind) or (kind,))
-        for value in node.values():
-            if isinstance(value, DictConfig):
-                visit(value)
-
-    for section in (composed.controllers, composed.learners):
-        visit(section)
-    return next((comment for kind, comment in NEEDS.items() if kind in kinds), "")
-
-
-def trace(agent: Any) -> None:
-    """Fail unless a decision has the shapes of the state before it."""
-    state = jax.eval_shape(agent.init, jax.random.key(0))
-    after, metrics = jax.eval_shape(agent.step, state, jnp.int32(0))
-    sizes = [
-        jax.tree.map(lambda leaf: (leaf.shape, leaf.dtype.name), each) for each in (state, after)
-    ]
-    assert jax.tree.structure(state) == jax.tree.structure(after)
-    assert jax.tree.leaves(sizes[0]) == jax.tree.leaves(sizes[1])
-    assert metrics
 
 
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
-    """Eight decisions of two learners, with learning, all finite; of some only shapes of one.
-
-    A method's comment says which tasks its parts need.
-    """
-    composed = small.load(algo, f"task={task}", f"algo={algo}")
-    assert listed.needs(config.CONF / "algo" / f"{algo}.yaml") == needs(composed)
-    run = config.build(small.with_demonstrations(composed, tmp_path))
-    if (task, algo) in EXECUTED:
+    """Eight decisions of two learners, with learning, all finite; of some only shapes of one."""
+    composed = small.with_demonstrations(small.load(algo, f"task={task}", f"algo={algo}"), tmp_path)
+    run = config.build(composed)
+    if algo in RUN:
         small.learn(run)
     else:
-        trace(run.agent)
-
-
-def methods_of(experiment: str) -> list[list[str]]:
-    """The overrides for each method that an experiment compares; else for its own method."""
-    node = OmegaConf.load(config.CONF / "experiment" / f"{experiment}.yaml")
-    inherited = {str(k): v for default in node.defaults for k, v in _pairs(default)}
-    files = [node]
-    if "/settings@_global_" in inherited:
-        name = inherited["/settings@_global_"]
-        files.append(OmegaConf.load(config.CONF / "settings" / f"{name}.yaml"))
-    lists = [OmegaConf.select(each, "hydra.sweeper.params.algo") for each in files]
-    names = next(filter(None, lists), "")
-    return [[f"algo={name}"] for name in names.split(",")] if names else [[]]
-
-
-def _pairs(default: Any) -> Any:
-    return default.items() if isinstance(default, DictConfig) else ()
-
-
-@pytest.mark.parametrize("experiment", options("experiment"))
-def test_every_experiment_builds(experiment: str, tmp_path: Path) -> None:
-    """The parts of an experiment accept its values, for every method that it compares."""
-    for line in methods_of(experiment):
-        composed = config.load([f"experiment={experiment}", *line])
-        config.build(small.with_demonstrations(composed, tmp_path))
+        small.trace(run.agent)
 
 
 @pytest.mark.parametrize("task", ["halfcheetah", "sprk_sand"])
@@ -193,39 +118,10 @@ def test_how_a_hybrid_method_learns_is_one_override() -> None:
     assert (c.learners.policy.updates, c.learners.model.updates) == (1, 1)
 
 
-def test_thesis_parameters() -> None:
-    """Table B.1, with its swapped columns corrected."""
-    table = {  # H, T, K, lambda
-        "pendulum": (5, 200, 20, 0.1),
-        "cartpole": (5, 200, 20, 0.1),
-        "hopper": (5, 1000, 20, 0.1),
-        "halfcheetah": (10, 1000, 20, 0.2),
-    }
-    for task, (horizon, steps, samples, temperature) in table.items():
-        c = config.load([f"experiment=thesis/fig_3_2_{task}"])
-        got = (c.planner.horizon, c.episode.steps, c.planner.samples, c.planner.temperature)
-        assert got == (horizon, steps, samples, temperature)
-        assert c.task == task
-        assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
-        assert (c.policy_learner.updates, c.model.hidden) == (1, [200])
-        assert not c.critic.layer_norm
-        assert not c.reward.ends
-    robots = {  # figure -> task, H, T, K, lambda, policy
-        "fig_3_3": ("sawyer_push", 10, 100, 10, 0.01, [128, 128]),
-        "fig_3_5": ("ant", 20, 400, 40, 1.0, [128, 64]),
-        "fig_3_6": ("panda_stack", 40, 200, 40, 1.0, [32, 24]),
-    }
-    for figure, row in robots.items():
-        c = config.load([f"experiment=thesis/{figure}"])
-        p = c.planner
-        got = (c.task, p.horizon, c.episode.steps, p.samples, p.temperature, c.policy.hidden)
-        assert got == row
-
-
 PLANNERS = [  # methods that have mode=planner
-    path.stem
-    for path in sorted((config.CONF / "algo").glob("*.yaml"))
-    if "\n  planner: " in path.read_text(encoding="utf-8")
+    name
+    for name in options("algo")
+    if "\n  planner: " in file("algo", name).read_text(encoding="utf-8")
 ]
 
 

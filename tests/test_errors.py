@@ -151,7 +151,7 @@ USAGE = [  # overrides of train, words of the line
         )
     ),
     ("algo=fisher information.floor=0", "information.floor=0: must be above 0"),
-    ("algo=disagreement model=gaussian", "objective.model=Gaussian: needs an ensemble"),
+    ("algo=disagreement model=gaussian", "information.model=Gaussian: needs an ensemble"),
     ("resume=nowhere", "resume=nowhere: no run folder there"),
     ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
     ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),

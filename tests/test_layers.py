@@ -27,7 +27,7 @@ LAYER_FILES = {"types", "errors", "fields", "checks", "composition", "config", "
 LAYER_FILES |= {"parts", "renamed", "trained"}
 SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
-    *("types", "protocols", "errors", "parts", "envs", "training"),
+    *("types", "fields", "protocols", "errors", "parts", "envs", "training"),
     *("checks", "composition", "config", "overrides", "renamed"),
 }
 ALLOWED = {
@@ -35,7 +35,7 @@ ALLOWED = {
     "errors": set(),
     "fields": set(),
     "parts": {"errors", "fields"},  # judges names, and builds what they name
-    "protocols": {"types", "protocols"},
+    "protocols": {"types", "fields", "protocols"},
     "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "protocols", "core", "networks"},
     "envs": {"types", "fields", "protocols", "errors", "envs"},

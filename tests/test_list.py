@@ -8,7 +8,7 @@ from tiny import demonstrate
 from hybrid_rl import config
 from hybrid_rl import list as listed
 from hybrid_rl.cli import command
-from hybrid_rl.config import CONF
+from hybrid_rl.composition import CONF, file
 
 
 def call(monkeypatch, *arguments):
@@ -92,7 +92,7 @@ def test_what_needs_an_analytic_task_is_marked(algo, tmp_path):
     given = ["task=halfcheetah", f"algo={algo}", "total_steps=100"]
     if algo == "bc":
         given.append(demonstrate(tmp_path, config.load(given)))
-    if not listed.needs(CONF / "algo" / f"{algo}.yaml"):
+    if not listed.needs(file("algo", algo)):
         config.build(config.load(given))
         return
     with pytest.raises(config.UsageError) as raised:

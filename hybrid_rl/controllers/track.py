@@ -5,11 +5,12 @@
 Source: thesis section 7.5; feed-forward is ours.
 """
 
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from dataclasses import replace
+from typing import Annotated, Any, Protocol
 
 from jax import Array
 
+from hybrid_rl.fields import has, part
 from hybrid_rl.protocols import BalancedEnv, Controller, GoalPolicy, Model
 from hybrid_rl.types import Params, Spec
 
@@ -24,7 +25,7 @@ class TrackingEnv(BalancedEnv, Protocol):
         """
 
 
-@dataclass(frozen=True)
+@part
 class TrackController:
     """`controller`, whose policy aims at the reference instead of the equilibrium.
 
@@ -35,13 +36,7 @@ class TrackController:
     controller: Controller
     model: Model
     policy: GoalPolicy
-    world: TrackingEnv
-
-    def __post_init__(self) -> None:
-        """Check the world."""
-        if not hasattr(self.world, "reference"):
-            kind = type(self.world).__name__
-            raise ValueError(f"track.world={kind}: needs an environment with a reference")
+    world: Annotated[TrackingEnv, has("reference", "needs an environment with a reference")]
 
     def init(self, spec: Spec) -> Any:
         """The initial state of the inner controller."""

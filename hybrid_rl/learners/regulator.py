@@ -17,11 +17,11 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import riccati
-from hybrid_rl.core.analytic import linearise, require_equilibrium
+from hybrid_rl.core.analytic import linearise
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.solving import solve
 from hybrid_rl.fields import Count, FieldError, NotNegative, Positive, part
-from hybrid_rl.protocols import BalancedEnv, GoalPolicy, Model
+from hybrid_rl.protocols import Balanced, GoalPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
 
@@ -43,7 +43,7 @@ class RegulatorLearner:
 
     model: Model
     policy: GoalPolicy
-    world: BalancedEnv
+    world: Balanced
     state_weights: tuple[NotNegative, ...] = (
         1.0,
     )  # diagonal of Q: of the first entries of x; 1: of all
@@ -58,7 +58,6 @@ class RegulatorLearner:
 
     def __post_init__(self) -> None:
         """Check the environment and the model."""
-        require_equilibrium("policy_learner", self.world)
         if self.thompson < 0 or (self.thompson and not hasattr(self.model, "draw_model")):
             words = "must be 0 or more; above 0 only with a linear model"
             raise FieldError(self, "thompson", words)

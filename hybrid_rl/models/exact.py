@@ -1,16 +1,15 @@
 """x' = f(x, u) of an analytic environment: nothing is learned."""
 
-from dataclasses import dataclass
 from typing import Any
 
 from jax import Array
 
-from hybrid_rl.core import analytic
-from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.fields import part
+from hybrid_rl.protocols import Analytic
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class Exact:
     """The environment's own dynamics; the planning state is the observation.
 
@@ -18,11 +17,7 @@ class Exact:
         ValueError: for an environment that is not analytic.
     """
 
-    world: AnalyticEnv
-
-    def __post_init__(self) -> None:
-        """Check the environment."""
-        analytic.require("model", self.world)
+    world: Analytic
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
         """No parameters."""

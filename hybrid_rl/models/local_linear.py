@@ -4,18 +4,18 @@ e are the environment's local coordinates; A and B are its Jacobians (thesis sec
 C.1). The planning state is the observation, as for the other models.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import analytic
-from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.fields import part
+from hybrid_rl.protocols import Analytic
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class LocalLinear:
     """The environment's dynamics to first order.
 
@@ -23,11 +23,7 @@ class LocalLinear:
         ValueError: for an environment that is not analytic.
     """
 
-    world: AnalyticEnv
-
-    def __post_init__(self) -> None:
-        """Check the environment."""
-        analytic.require("model", self.world)
+    world: Analytic
 
     def init(self, key: Array, spec: Spec) -> tuple[()]:
         """No parameters."""

@@ -12,12 +12,12 @@ Source: frames that move with the state make any function equivariant (Puny et a
 Averaging, section 2, with one frame); as a model of dynamics our choice.
 """
 
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Annotated, Any, Protocol
 
 import jax
 from jax import Array
 
+from hybrid_rl.fields import has, part
 from hybrid_rl.protocols import Env, Trainable
 from hybrid_rl.types import Spec
 
@@ -38,7 +38,10 @@ class TurningEnv(Env, Protocol):
         """R(angle) action [m]."""
 
 
-@dataclass(frozen=True)
+HEADLESS = "has no heading; choose task=sawyer_push, or model=ensemble"
+
+
+@part
 class Turned:
     """`model`, a single one or an ensemble, in the frames of `world`.
 
@@ -47,15 +50,7 @@ class Turned:
     """
 
     model: Trainable
-    world: TurningEnv
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        if not hasattr(self.world, "heading"):
-            raise ValueError(
-                f"model.world={type(self.world).__name__}: has no heading; "
-                "choose task=sawyer_push, or model=ensemble"
-            )
+    world: Annotated[TurningEnv, has("heading", HEADLESS)]
 
     @property
     def members(self) -> int:

@@ -5,13 +5,13 @@ model's posterior and their predictions are Gaussian with noise sigma. Source: S
 Optimistic Active Exploration of Dynamical Systems, there with learned noise; Shyam et al. 2019.
 """
 
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import Positive, part
+from hybrid_rl.fields import Positive, has, part
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Params, Path, PyTree, Return, Spec
 
@@ -31,14 +31,8 @@ class Disagreement:
         ValueError: for a model without members, or noise that is not positive.
     """
 
-    model: EnsembleModel
+    model: Annotated[EnsembleModel, has("disagreement", "needs an ensemble; choose model=ensemble")]
     noise: Positive = 0.1  # sigma, in running standard deviations of the change
-
-    def __post_init__(self) -> None:
-        """Check the model."""
-        if not hasattr(self.model, "disagreement"):
-            kind = type(self.model).__name__
-            raise ValueError(f"objective.model={kind}: needs an ensemble; choose model=ensemble")
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory: what the data say is in the model's parameters."""

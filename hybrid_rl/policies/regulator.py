@@ -9,7 +9,6 @@ the distance to the nearest state that differs from the equilibrium only in f, s
 of a cart.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
@@ -17,11 +16,12 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core import analytic, riccati
-from hybrid_rl.protocols import AnalyticEnv
+from hybrid_rl.fields import Positive, part
+from hybrid_rl.protocols import Analytic
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class Regulator:
     """The regulator of `world` around its equilibrium, by the discrete Riccati equation.
 
@@ -29,21 +29,14 @@ class Regulator:
         ValueError: for an environment that is not analytic, or weights that are not positive.
     """
 
-    world: AnalyticEnv
-    state_weights: tuple[float, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
-    action_weights: tuple[float, ...] = (1.0,)  # diagonal of R, of actions in [-1, 1]
+    world: Analytic
+    state_weights: tuple[Positive, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
+    action_weights: tuple[Positive, ...] = (1.0,)  # diagonal of R, of actions in [-1, 1]
     free: tuple[int, ...] = ()  # f, indices of e [d] that V ignores
     clip: bool = True  # actions to [-1, 1]; false where noise is added to them
 
     def __post_init__(self) -> None:
-        """Check the environment and the weights."""
-        analytic.require("equilibrium", self.world)
-        for name in ("state_weights", "action_weights"):
-            weights = tuple(getattr(self, name))
-            object.__setattr__(self, name, weights)
-            if not all(weight > 0 for weight in weights):
-                raise ValueError(f"equilibrium.{name}={list(weights)}: must be above 0")
-        object.__setattr__(self, "free", tuple(self.free))
+        """Check the numbers of weights."""
         self._weights()
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:

@@ -10,9 +10,12 @@ from hybrid_rl.protocols.control import (
     Target,
 )
 from hybrid_rl.protocols.environments import (
+    Analytic,
     AnalyticEnv,
+    Balanced,
     BalancedEnv,
     Env,
+    Rewarded,
     RewardedEnv,
 )
 from hybrid_rl.protocols.learned import (
@@ -38,7 +41,9 @@ from hybrid_rl.protocols.learning import (
 )
 
 __all__ = [
+    "Analytic",
     "AnalyticEnv",
+    "Balanced",
     "BalancedEnv",
     "Belief",
     "Controller",
@@ -57,6 +62,7 @@ __all__ = [
     "Policy",
     "Proposal",
     "Reward",
+    "Rewarded",
     "RewardedEnv",
     "StabilizingPolicy",
     "Target",

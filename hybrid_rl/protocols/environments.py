@@ -1,9 +1,10 @@
 """Environments."""
 
-from typing import Protocol
+from typing import Annotated, Protocol
 
 from jax import Array
 
+from hybrid_rl.fields import has
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -49,3 +50,9 @@ class AnalyticEnv(BalancedEnv, Protocol):
 
     def from_local(self, e: Array) -> Array:
         """x [o] of local coordinates e [d]."""
+
+
+# of fields: what a part needs of the environment, which `python -m hybrid_rl.list` shows
+Analytic = Annotated[AnalyticEnv, has("dynamics", "needs an analytic environment")]
+Balanced = Annotated[BalancedEnv, has("equilibrium", "needs an environment with an equilibrium")]
+Rewarded = Annotated[RewardedEnv, has("reward_of", "needs an environment with a known reward")]

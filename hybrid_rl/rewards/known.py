@@ -4,17 +4,15 @@ The dynamics may be learned. A reward of your own is a class with a method `rewa
 `world`, or one with a method `outcome`, in place of this part.
 """
 
-from dataclasses import dataclass
-
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import analytic
-from hybrid_rl.protocols import RewardedEnv
+from hybrid_rl.fields import part
+from hybrid_rl.protocols import Rewarded
 from hybrid_rl.types import Params
 
 
-@dataclass(frozen=True)
+@part
 class KnownReward:
     """The reward of `world`, for episodes that do not end.
 
@@ -22,11 +20,7 @@ class KnownReward:
         ValueError: for an environment whose reward is not a function of observations and action.
     """
 
-    world: RewardedEnv
-
-    def __post_init__(self) -> None:
-        """Check the fields."""
-        analytic.require_reward("reward", self.world)
+    world: Rewarded
 
     def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """The reward [] of u [m] at x [n], whose first entries are the observation; no end."""

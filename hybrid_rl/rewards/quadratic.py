@@ -9,9 +9,8 @@ from typing import cast
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import analytic
-from hybrid_rl.fields import NotNegative, part
-from hybrid_rl.protocols import AnalyticEnv, BalancedEnv, Model
+from hybrid_rl.fields import NotNegative, check, part
+from hybrid_rl.protocols import Analytic, AnalyticEnv, Balanced, Model
 from hybrid_rl.types import Params
 
 
@@ -24,7 +23,7 @@ class QuadraticReward:
             a model, or weights below 0.
     """
 
-    world: BalancedEnv  # an AnalyticEnv, if there is no model
+    world: Balanced  # an AnalyticEnv, if there is no model
     state_weights: tuple[NotNegative, ...] = (1.0,)  # diagonal of Q: one for all, or the first of e
     action_weights: tuple[NotNegative, ...] = (0.0,)  # diagonal of R: one for all, or [m]
     model: Model | None = None  # e in its planning states; None: in local coordinates
@@ -32,9 +31,7 @@ class QuadraticReward:
     def __post_init__(self) -> None:
         """Check the environment."""
         if self.model is None:
-            analytic.require("reward", cast(AnalyticEnv, self.world))
-        else:
-            analytic.require_equilibrium("reward", self.world)
+            check(self, "world", Analytic)
 
     def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
         """The reward [] of u [m], which led to `after` [n]; no end."""

@@ -3,18 +3,19 @@
 A controller that goes to its maximum reduces the expected entropy (thesis section 5.3.3).
 """
 
-from dataclasses import dataclass
+from typing import Annotated
 
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import has, part
 from hybrid_rl.protocols import InformedBelief
 from hybrid_rl.types import Params
 
 FLOOR = 1e-12  # [nat]
 
 
-@dataclass(frozen=True)
+@part
 class EntropyReduction:
     """Proportional to the expected reduction of entropy.
 
@@ -22,14 +23,7 @@ class EntropyReduction:
         ValueError: for a belief that cannot measure it.
     """
 
-    belief: InformedBelief
-
-    def __post_init__(self) -> None:
-        """Check the belief."""
-        for name, words in (("gain", "a measurement"), ("gain_along", "measurements on a way")):
-            if not hasattr(self.belief, name):
-                kind = type(self.belief).__name__
-                raise ValueError(f"target.belief={kind}: has no entropy of {words}")
+    belief: Annotated[InformedBelief, has("gain_along", "has no entropy of a measurement")]
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v], up to a constant."""

@@ -4,18 +4,19 @@ The belief chooses the measure. Until it is `informed`, with `wait`, p is unifor
 contact a robot has nothing to localise itself by.
 """
 
-from dataclasses import dataclass
+from typing import Annotated
 
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import has, part
 from hybrid_rl.protocols import InformedBelief
 from hybrid_rl.types import Params
 
 FLOOR = 1e-12  # of the information
 
 
-@dataclass(frozen=True)
+@part
 class Information:
     """Proportional to the information of a measurement.
 
@@ -23,14 +24,8 @@ class Information:
         ValueError: for a belief that cannot measure it.
     """
 
-    belief: InformedBelief
+    belief: Annotated[InformedBelief, has("information", "has no information of a measurement")]
     wait: bool = False  # uniform until the belief is informed
-
-    def __post_init__(self) -> None:
-        """Check the belief."""
-        if not hasattr(self.belief, "information"):
-            kind = type(self.belief).__name__
-            raise ValueError(f"target.belief={kind}: has no information of a measurement")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v], up to a constant."""

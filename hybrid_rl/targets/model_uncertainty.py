@@ -7,10 +7,9 @@ standard deviations of its change. Coordinates that the domain lacks have their 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import analytic
 from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Positive, part
-from hybrid_rl.protocols import AnalyticEnv, Uncertain
+from hybrid_rl.protocols import Analytic, Uncertain
 from hybrid_rl.types import Params
 
 
@@ -23,13 +22,9 @@ class ModelUncertainty:
     """
 
     model: Uncertain
-    world: AnalyticEnv
+    world: Analytic
     domain: Box
     sharpness: Positive = 10.0  # c [1/std]
-
-    def __post_init__(self) -> None:
-        """Check the environment."""
-        analytic.require("target", self.world)
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v], up to a constant."""

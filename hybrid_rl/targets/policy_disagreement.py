@@ -6,12 +6,12 @@ Source: the doubt of EnsembleDAgger (Menda, Driggs-Campbell and Kochenderfer 201
 there who acts; as a choice of queries it is query by committee (Seung, Opper and Sompolinsky 1992).
 """
 
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import Positive, part
+from hybrid_rl.fields import Positive, has, part
 from hybrid_rl.protocols import LearnedPolicy
 from hybrid_rl.types import Params, PyTree
 
@@ -31,13 +31,8 @@ class PolicyDisagreement:
         ValueError: for a single policy.
     """
 
-    policy: Committee
+    policy: Annotated[Committee, has("each", "needs policy=clones")]
     floor: Positive = 1e-8  # of the variance
-
-    def __post_init__(self) -> None:
-        """Check the policy."""
-        if not hasattr(self.policy, "each"):
-            raise ValueError(f"target.policy={type(self.policy).__name__}: needs policy=clones")
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at the planning state s [n], up to a constant."""

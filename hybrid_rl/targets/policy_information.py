@@ -12,16 +12,15 @@ eq. (4.5)-(4.6) (`inverse`) and (6.28) (`trace`), with sigma^-2 where the thesis
 is ours.
 """
 
-from typing import Any, Protocol
+from typing import Annotated, Any, Protocol
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import fisher
-from hybrid_rl.core.analytic import require_equilibrium
 from hybrid_rl.core.domain import Box
-from hybrid_rl.fields import FieldError, Positive, part
-from hybrid_rl.protocols import BalancedEnv, LearnedPolicy
+from hybrid_rl.fields import FieldError, Positive, check, has, part
+from hybrid_rl.protocols import Balanced, BalancedEnv, LearnedPolicy
 from hybrid_rl.types import Params, PyTree
 
 CRITERIA = ("trace", "inverse", "gain")
@@ -49,7 +48,7 @@ class PolicyInformation:
             equilibrium.
     """
 
-    policy: UnsquashedPolicy
+    policy: Annotated[UnsquashedPolicy, has("unsquashed", "needs policy=deterministic")]
     world: BalancedEnv | None = None  # of the equilibrium
     domain: Box | None = None
     criterion: str = "gain"
@@ -60,12 +59,8 @@ class PolicyInformation:
         """Check the fields."""
         if self.criterion not in CRITERIA:
             raise FieldError(self, "criterion", f"choose {', '.join(CRITERIA)}")
-        if not hasattr(self.policy, "unsquashed"):
-            kind = type(self.policy).__name__
-            raise ValueError(f"target.policy={kind}: needs policy=deterministic")
         if self.domain is not None:
-            world: Any = self.world
-            require_equilibrium("target", world)
+            check(self, "world", Balanced)
 
     def information(self, params: Params, x: Array) -> Array:
         """I(x) [P] at the planning state x [n]."""

@@ -70,7 +70,7 @@ def test_the_frame_of_a_straight_block_behind_the_rod_is_the_world(data) -> None
 
 
 def test_a_task_without_headings_raises() -> None:
-    with pytest.raises(ValueError, match=r"model\.world=Pendulum: has no heading"):
+    with pytest.raises(ValueError, match="Turned: world=Pendulum: has no heading"):
         Turned(INSIDE, Pendulum())
     with pytest.raises(ValueError, match=r"env\.extra=\[\]: must contain turn"):
         Turned(INSIDE, SawyerPush("native")).world.heading(jnp.zeros(4))

@@ -1,6 +1,7 @@
 """Environments on the host: the same numbers as in one program, and what a memory then holds."""
 
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, ClassVar
 
 import gymnasium
@@ -86,9 +87,9 @@ def agents(num_envs: int) -> tuple[Any, Any]:
     return replace(agent, episode=inside), replace(agent, episode=outside)
 
 
-@pytest.mark.parametrize("num_envs", [1, 3])
-def test_both_doors_give_the_same_learners(num_envs):
+def test_both_doors_give_the_same_learners():
     """Rows of the memory, networks and metrics of two learners; the memory is not copied."""
+    num_envs = 3
     got = []
     for agent in agents(num_envs):
         loop = loop_of(agent, (0, 1), ROUNDS)
@@ -104,19 +105,19 @@ def test_both_doors_give_the_same_learners(num_envs):
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, rtol=2e-4, atol=1e-5), *got)
 
 
-def filled(num_envs: int = 1, rounds: int = ROUNDS, **kwargs: Any) -> tuple[Any, Any, Any]:
-    """A loop, its program and its state after some decisions in `Count`."""
+@cache
+def filled(num_envs: int = 1, rounds: int = ROUNDS) -> tuple[Any, Any]:
+    """A loop and its state after some decisions in `Count`."""
     agent = config.build(small.load("sac", "task=point_mass", f"num_envs={num_envs}")).agent
-    loop = loop_of(replace(agent, episode=Episode(counting(**kwargs), STEPS)), (0, 1), ROUNDS)
+    loop = loop_of(replace(agent, episode=Episode(counting(), STEPS)), (0, 1), ROUNDS)
     state = loop.init()
-    program = loop.compile(state)
-    return loop, program, program(state, jnp.int32(0), jnp.int32(rounds))[0]
+    return loop, loop.compile(state)(state, jnp.int32(0), jnp.int32(rounds))[0]
 
 
 @pytest.mark.parametrize("num_envs", [1, 2])
 def test_a_row_leads_to_the_next_step_of_its_episode(num_envs):
     """No row joins two episodes; ends by the task and by the time limit have flags of their own."""
-    loop, _, state = filled(num_envs)
+    loop, state = filled(num_envs)
     rows = unpack(state.memory.rows[0, :ROUNDS], loop.agent.spec)
     assert (rows.next_obs[..., 0] == rows.obs[..., 0]).all()
     assert (rows.next_obs[..., 1] == rows.obs[..., 1] + 1).all()
@@ -130,7 +131,7 @@ def test_a_row_leads_to_the_next_step_of_its_episode(num_envs):
 
 
 def test_a_resumed_run_marks_where_its_episode_was_cut():
-    loop, _, state = filled(rounds=3)
+    loop, state = filled(rounds=3)
     count = np.array(state.memory.count)
     again = loop.compile(state)
     state, _ = again(state, jnp.int32(3), jnp.int32(1))

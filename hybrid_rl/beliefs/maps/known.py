@@ -5,14 +5,14 @@ the robot: a robot in contact is at d = r, so that the step lies a width w outsi
 """
 
 from functools import cache
-from typing import Protocol
+from typing import Annotated, Protocol
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.fields import FieldError, Positive, part
+from hybrid_rl.fields import FieldError, Positive, has, part
 from hybrid_rl.protocols import Env
 
 OUTLINE, GRID = 256, 64  # points of the outline; starts a side of its search
@@ -38,15 +38,13 @@ class KnownMap:
         ValueError: for a world without a distance to its objects, or numbers out of range.
     """
 
-    world: ContactEnv
+    world: Annotated[ContactEnv, has("distance", "needs contacts")]
     width: Positive = 0.008  # w [m]
     low: float = 0.01  # lo: at least twice the sensor's rate of false contacts
     high: float = 0.99  # hi
 
     def __post_init__(self) -> None:
         """Check the fields."""
-        if not hasattr(self.world, "distance"):
-            raise ValueError(f"map.world={type(self.world).__name__}: needs contacts")
         if not 0 < self.low < self.high < 1:
             raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
 

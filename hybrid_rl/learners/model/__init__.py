@@ -13,7 +13,7 @@ a running mean over the updates, is logged and ranks the members of an ensemble 
 decay of weights is AdamW's (Loshchilov and Hutter 2019).
 """
 
-from typing import Any, ClassVar, Protocol
+from typing import Annotated, Any, ClassVar, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -23,7 +23,7 @@ from jax import Array
 
 from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
-from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
+from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, has, part
 from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import Reward, Trainable
 from hybrid_rl.types import Batch, Params, PyTree, Spec
@@ -76,7 +76,9 @@ class ModelLearner:
             elites without held-out decisions.
     """
 
-    model: Trainable
+    model: Annotated[
+        Trainable, has("loss", "has no weights to learn; choose model=gaussian or model=ensemble")
+    ]
     reward: LearnedReward | None = None
     learning_rate: Positive = 3e-3
     batch_size: int = 128
@@ -91,10 +93,6 @@ class ModelLearner:
 
     def __post_init__(self) -> None:
         """Check what depends on the model."""
-        if not hasattr(self.model, "loss"):
-            kind = type(self.model).__name__
-            words = "has no weights to learn; choose model=gaussian or model=ensemble"
-            raise ValueError(f"model_learner.model={kind}: {words}")
         if self.reward_discount and getattr(self.reward, "next_state", False):
             raise ValueError(
                 "reward.next_state=true: the value of x' would need the state after it; give "

@@ -17,7 +17,7 @@ from hybrid_rl.benchmark.race import Contestant, race
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import mjcf, mjx_warp
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def run(*arguments):

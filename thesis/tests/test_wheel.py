@@ -12,7 +12,7 @@ import pytest
 
 from hybrid_rl.data.demonstrations import load
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 RECORDED = ROOT / "demonstrations" / "ant.npz"
 
 

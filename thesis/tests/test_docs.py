@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from rotation import share
 
+from hybrid_rl.composition import options
 from hybrid_rl.list import FIRST
 from scripts import docs
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
 
 
@@ -24,7 +25,7 @@ def test_every_method_has_one_section():
     names = [
         name for line in re.findall(r"^### (.+)$", page, re.MULTILINE) for name in line.split(", ")
     ]
-    assert sorted(names) == sorted(path.stem for path in (ROOT / "conf" / "algo").glob("*.yaml"))
+    assert sorted(names) == options("algo")
 
 
 def test_the_same_eight_methods_come_first_everywhere():

@@ -1,0 +1,1 @@
+"""Configurations that only the thesis needs, on the search path of conf/train.yaml."""
