@@ -34,6 +34,8 @@ SETTINGS = {
 for name, value in SETTINGS.items():
     os.environ.setdefault(name, value)
 
+import rotation  # noqa: E402, with the settings above
+
 gc.set_threshold(50_000, 50, 50)  # tracing makes many objects that stay
 
 SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
@@ -53,7 +55,13 @@ SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
 
 
 def pytest_addoption(parser):
-    parser.addoption("--slow", action="store_true", help="run all robots under MJX, too")
+    about = "run all tests: every robot under MJX, and those that commits take in turns"
+    parser.addoption("--slow", action="store_true", help=about)
+
+
+def pytest_configure(config):
+    line = "turns(n): a commit runs every n-th of these tests of a file, chosen by its hash"
+    config.addinivalue_line("markers", line)
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -64,9 +72,23 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
     if config.getoption("--slow"):
         return
-    slow = [item for item in items if any(name in item.nodeid for name in SLOW)]
-    config.hook.pytest_deselected(items=slow)
-    items[:] = [item for item in items if item not in slow]
+    left = {item for item in items if any(name in item.nodeid for name in SLOW)}
+    if not config.option.keyword and all(Path(each).is_dir() for each in config.args):
+        left |= others_turn(items)  # of a file or a name that was asked for, all are run
+    config.hook.pytest_deselected(items=[item for item in items if item in left])
+    items[:] = [item for item in items if item not in left]
+
+
+def others_turn(items):
+    """The tests that another commit runs."""
+    found, left = {}, set()
+    for item in items:
+        if mark := item.get_closest_marker("turns"):
+            before = found.setdefault((item.path, mark.args), [])
+            if (len(before) - rotation.turn()) % mark.args[0]:
+                left.add(item)
+            before.append(item)
+    return left
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -70,6 +70,7 @@ RUN = {  # methods that run here, one of a kind; test_learning.py runs four, the
 }
 
 
+@pytest.mark.turns(3)
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite; of some only shapes of one."""

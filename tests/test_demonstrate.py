@@ -17,6 +17,8 @@ from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
+pytestmark = pytest.mark.turns(2)
+
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory) -> Path:

@@ -12,6 +12,8 @@ from hybrid_rl.checks import COUNTS
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 
+pytestmark = pytest.mark.turns(2)
+
 COUNT = "must be a whole number, 1 or more"
 
 

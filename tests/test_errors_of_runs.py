@@ -12,6 +12,8 @@ from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 
+pytestmark = pytest.mark.turns(2)
+
 MAINS = {
     "demonstrate": demonstrate.main,
     "evaluate": evaluate.main,

@@ -20,6 +20,8 @@ from hybrid_rl.envs import check
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
 
+pytestmark = pytest.mark.turns(2)
+
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 HOWTO = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")

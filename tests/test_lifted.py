@@ -43,6 +43,8 @@ from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params, Spec, Transition
 
+pytestmark = pytest.mark.turns(3)
+
 WORLD = PointMass()
 SPEC = WORLD.spec
 N = 2 * SPEC.obs  # n

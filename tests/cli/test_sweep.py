@@ -11,6 +11,8 @@ import time
 import pytest
 from tiny import TINY, call_train
 
+pytestmark = pytest.mark.turns(2)
+
 SHORT = [*TINY, "algo=sac", "total_steps=200", "eval_every=200", "checkpoint_every=200"]
 
 

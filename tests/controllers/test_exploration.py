@@ -20,6 +20,8 @@ from hybrid_rl.models.local_linear import LocalLinear
 from hybrid_rl.policies.regulator import Regulator
 from hybrid_rl.types import Params, Path, Spec
 
+pytestmark = pytest.mark.turns(2)
+
 WORLD = CartDoublePendulum()
 PI = Regulator(WORLD, (5.0, 50.0, 50.0, 20.0, 700.0, 700.0), (1600.0,))
 START = jnp.array([0.3, 0.02, -0.01, 0.0, 0.1, 0.0])

@@ -25,6 +25,8 @@ from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.mujoco import offscreen
 
+pytestmark = pytest.mark.turns(2)
+
 ID = "hybrid_rl/"
 
 

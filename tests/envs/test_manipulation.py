@@ -14,6 +14,8 @@ from hybrid_rl.envs.panda_stack import TOOL, PandaStack
 from hybrid_rl.envs.sawyer_push import HEIGHT, HOME, TIP, SawyerPush
 from hybrid_rl.types import Params
 
+pytestmark = pytest.mark.turns(2)
+
 
 def over_implementations(task):
     """Ids as of the other tests of the task, which share its compiled program."""

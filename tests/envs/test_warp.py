@@ -8,6 +8,8 @@ from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
 
 from hybrid_rl.envs.mujoco import mjx_warp
 
+pytestmark = pytest.mark.turns(2)
+
 
 @pytest.fixture(scope="module")
 def env():

@@ -17,6 +17,8 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.run import checkpoint, integrity, memory, rows, session
 from hybrid_rl.run.evaluations import Evaluations
 
+pytestmark = pytest.mark.turns(2)
+
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory):

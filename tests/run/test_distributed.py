@@ -6,7 +6,10 @@ import socket
 import subprocess
 import sys
 
+import pytest
 from tiny import TINY, call_train, run
+
+pytestmark = pytest.mark.turns(2)
 
 LINE = [*TINY, "algo=sac", "total_steps=100"]
 TIMES = {"wall_s", "perf/env_steps_per_s", "perf/compile_s"}

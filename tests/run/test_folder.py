@@ -23,6 +23,8 @@ from hybrid_rl.run import integrity
 from hybrid_rl.run.lock import locked
 from hybrid_rl.training.loop import Loop
 
+pytestmark = pytest.mark.turns(2)
+
 HOLD = """
 import sys, time
 from pathlib import Path

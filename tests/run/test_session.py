@@ -21,6 +21,8 @@ from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop
 
+pytestmark = pytest.mark.turns(2)
+
 SAC = ["algo=sac", "num_seeds=2"]
 
 

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from tiny import TINY, run
 
+pytestmark = pytest.mark.turns(2)
+
 SHORT = ["algo=sac", "num_seeds=2", "total_steps=200"]
 
 

@@ -22,6 +22,8 @@ from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, loop_of, seed_
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import EnvState, Spec
 
+pytestmark = pytest.mark.turns(2)
+
 STEPS, ROUNDS = 5, 12  # decisions of an episode, and of the run
 
 

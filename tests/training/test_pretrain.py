@@ -13,6 +13,8 @@ from hybrid_rl import config
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.types import Params
 
+pytestmark = pytest.mark.turns(2)
+
 KEY = jax.random.key(3)
 
 
