@@ -5,7 +5,7 @@
     python scripts/docs.py links    requests every external link instead; needs the network
 
 The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that
-their links work on GitHub and on the site. A page per method is made from its YAML file, the section of
+their links work on GitHub and on the site. A page per method is made from its YAML, the section of
 docs/methods.md and the docstrings of its parts; the reference from all docstrings. A warning, such
 as a link that leads nowhere, is an error. `make docs` runs it in .venv-docs. With the environment
 variable GITHUB_REPOSITORY=OWNER/NAME, which workflows on GitHub set, notebooks link to Binder.

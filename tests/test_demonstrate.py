@@ -17,7 +17,7 @@ from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from hybrid_rl.checks import COUNTS
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 COUNT = "must be a whole number, 1 or more"
 

@@ -20,7 +20,7 @@ from hybrid_rl.envs import check
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")

@@ -53,7 +53,7 @@ def rolled(monkeypatch):
 
 
 @pytest.mark.usefixtures("rolled")
-@pytest.mark.parametrize("algo", share(list(CASES), 2))
+@pytest.mark.parametrize("algo", share(list(CASES), 4))
 def test_a_pendulum_is_swung_up(algo, tmp_path):
     """The last evaluations of both learners exceed -400; their random episodes are far below."""
     decisions, settings = CASES[algo]

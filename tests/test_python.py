@@ -22,7 +22,7 @@ from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.run.loggers import Function
 from hybrid_rl.run.session import Session
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 PAGE = (Path(__file__).resolve().parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
 SIZES = {"total_steps": 200, "random_steps": 20, "eval_every": 100}

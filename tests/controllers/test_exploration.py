@@ -20,7 +20,7 @@ from hybrid_rl.models.local_linear import LocalLinear
 from hybrid_rl.policies.regulator import Regulator
 from hybrid_rl.types import Params, Path, Spec
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 WORLD = CartDoublePendulum()
 PI = Regulator(WORLD, (5.0, 50.0, 50.0, 20.0, 700.0, 700.0), (1600.0,))

@@ -75,7 +75,7 @@ def test_the_point_mass_is_two_double_integrators() -> None:
 
 def test_an_environment_that_is_not_analytic_is_refused() -> None:
     """Here the cart and pole of MuJoCo."""
-    with pytest.raises(ValueError, match=r"equilibrium\.world=Cartpole: needs an analytic env"):
+    with pytest.raises(ValueError, match=r"Regulator: world=Cartpole: needs an analytic env"):
         Regulator(Cartpole("native"))
 
 

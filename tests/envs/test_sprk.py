@@ -15,7 +15,7 @@ from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.sprk import TIMESTEP, Sprk
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 WALL = (0.5, 0.8, 0.0, 0.4, 0.1, 0.01)
 DISC = (0.5, 0.8, 0.0, 0.15, 0.15, 0.15)

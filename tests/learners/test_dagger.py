@@ -18,7 +18,7 @@ from hybrid_rl.policies.deterministic import Deterministic
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, Params, Spec
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 SPEC = Spec(obs=3, act=2, dt=0.1)
 GAIN = np.array([[0.25, -0.5, 0.125], [-0.125, 0.0625, 0.5]], np.float32)

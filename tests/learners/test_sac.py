@@ -15,7 +15,7 @@ from hybrid_rl.learners.sac import SAC, SACState
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.types import Batch, Params, Spec
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 SPEC = Spec(obs=1, act=1, dt=1.0)
 B = 64

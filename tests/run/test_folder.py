@@ -23,7 +23,7 @@ from hybrid_rl.run import integrity
 from hybrid_rl.run.lock import locked
 from hybrid_rl.training.loop import Loop
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 HOLD = """
 import sys, time

@@ -1,0 +1,156 @@
+"""Do the tests catch a bug? Each of these is planted in a copy of the tree, one at a time.
+
+    .venv/bin/python scripts/mutants.py            all of them, about ten minutes on two cores
+    .venv/bin/python scripts/mutants.py fisher     those whose name contains a word
+
+Only the folders of tests that should notice are run, with the share of long tests that the commit
+takes. The exit code is 1 if a bug stays unseen, or if a change of mere words fails a test.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SENTENCE = "sentence"  # changed on a page: no test may fail
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A line of a file as it is, as it becomes, and the tests that should fail."""
+
+    file: str
+    old: str
+    new: str
+    tests: str
+
+
+MUTANTS = {
+    "softmax weighs the worst plans": Mutant(
+        "hybrid_rl/core/sampling.py",
+        "exponent = reward_to_go / temperature",
+        "exponent = -reward_to_go / temperature",
+        "tests/core tests/controllers",
+    ),
+    "adjoint without the policy's feedback": Mutant(
+        "hybrid_rl/core/adjoint.py",
+        "return j_x + jax.vjp(policy, x)[1](g)[0] + f_x, g",
+        "return j_x + f_x, g",
+        "tests/core tests/controllers",
+    ),
+    "mode insertion gradient of the other sign": Mutant(
+        "hybrid_rl/core/adjoint.py",
+        "jump = objective(other) - objective(path)",
+        "jump = objective(path) - objective(other)",
+        "tests/core tests/controllers",
+    ),
+    "discount counted twice": Mutant(
+        "hybrid_rl/core/soft_actor_critic.py",
+        "batch.reward + part.discount * (1",
+        "batch.reward + part.discount**2 * (1",
+        "tests/learners",
+    ),
+    "terminal states are bootstrapped": Mutant(
+        "hybrid_rl/core/soft_actor_critic.py",
+        "part.discount * (1 - batch.terminated) * after",
+        "part.discount * after",
+        "tests/learners",
+    ),
+    "a time limit counts as an end": Mutant(
+        "hybrid_rl/training/episode.py",
+        "return where(now.terminated, now, after)",
+        "return where(now.terminated | (decision >= self.steps), now, after)",
+        "tests/training",
+    ),
+    "fisher information with a wrong exponent": Mutant(
+        "hybrid_rl/core/fisher.py",
+        "return -jnp.sum(1 / (total + prior))",
+        "return -jnp.sum(1 / (total + prior) ** 2)",
+        "tests/core tests/objectives",
+    ),
+    "a checkpoint is lost": Mutant(
+        "hybrid_rl/run/checkpoint.py",
+        "    draft.rename(path)\n",
+        "    shutil.rmtree(draft)\n",
+        "tests/run",
+    ),
+    "a resumed run forgets its record": Mutant(
+        "hybrid_rl/run/store.py",
+        'record = Record(**meta["record"])',
+        'record = Record(**{**meta["record"], "wall_s": 0.0, "step": 0})',
+        "tests/run",
+    ),
+    "a misspelt override is ignored": Mutant(
+        "hybrid_rl/config.py",
+        "    refuse_unused([config], overrides, READ)\n",
+        "",
+        "tests/cli tests/test_errors.py",
+    ),
+    "a number on a page": Mutant(
+        "docs/results/chapter5.md", "| ours | 14 | 17 |", "| ours | 14 | 18 |", "thesis/tests"
+    ),
+    "a number in a page's JSON": Mutant(
+        "docs/results/fig_5_4_gains.json", '"good": [', '"good": [7, ', "thesis/tests"
+    ),
+    f"a {SENTENCE} on a page": Mutant(
+        "docs/results/chapter5.md",
+        "So the printed step is as good",
+        "The printed step does well",
+        "",
+    ),
+}
+
+
+def copy(folder: Path) -> None:
+    """The committed and changed files of the tree, with the programs that it compiled."""
+    listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    names = subprocess.run(listed, cwd=ROOT, check=True, capture_output=True).stdout.split(b"\0")
+    for name in filter(None, map(os.fsdecode, names)):
+        if (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, folder / name)
+
+
+def failed(folder: Path, tests: str) -> str:
+    """The first test that fails in `folder`; "" if none does."""
+    line = [sys.executable, "-m", "pytest", "-q", "-x", "-n", "2", "--dist", "loadgroup"]
+    cache = os.environ.get("JAX_COMPILATION_CACHE_DIR", str(ROOT / ".cache" / "jax"))
+    env = {**os.environ, "PYTHONPATH": str(folder), "JAX_COMPILATION_CACHE_DIR": cache}
+    done = subprocess.run(
+        [*line, *tests.split()], cwd=folder, env=env, capture_output=True, text=True, check=False
+    )
+    found = re.findall(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
+    return found[0] if found else "" if done.returncode == 0 else done.stdout[-300:]
+
+
+def main() -> int:
+    """Plant each bug, run the tests, report."""
+    chosen = {k: m for k, m in MUTANTS.items() if all(word in k for word in sys.argv[1:])}
+    unseen = 0
+    for name, mutant in chosen.items():
+        with tempfile.TemporaryDirectory() as temporary:
+            copy(folder := Path(temporary))
+            path = folder / mutant.file
+            text = path.read_text(encoding="utf-8")
+            if mutant.old not in text:
+                raise SystemExit(f"{mutant.file} no longer holds {mutant.old!r}")
+            path.write_text(text.replace(mutant.old, mutant.new, 1), encoding="utf-8")
+            began = time.monotonic()
+            by = failed(folder, mutant.tests or "thesis/tests/test_results.py tests/test_links.py")
+            fine = bool(by) != (SENTENCE in name)
+            unseen += not fine
+            took = f"{time.monotonic() - began:.0f} s"
+            print(
+                f"{'fine' if fine else 'BAD'}  {name}: {by or 'no test fails'} ({took})", flush=True
+            )
+    return int(unseen > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
