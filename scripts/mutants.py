@@ -108,8 +108,9 @@ MUTANTS = {
 
 
 def copy(folder: Path) -> None:
-    """The committed and changed files of the tree, with the programs that it compiled."""
-    listed = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    """A clone of the repository, with what is changed here and not committed."""
+    subprocess.run(["git", "clone", "-q", str(ROOT), str(folder)], check=True)
+    listed = ["git", "ls-files", "--modified", "--others", "--exclude-standard", "-z"]
     names = subprocess.run(listed, cwd=ROOT, check=True, capture_output=True).stdout.split(b"\0")
     for name in filter(None, map(os.fsdecode, names)):
         if (ROOT / name).is_file():
@@ -125,8 +126,10 @@ def failed(folder: Path, tests: str) -> str:
     done = subprocess.run(
         [*line, *tests.split()], cwd=folder, env=env, capture_output=True, text=True, check=False
     )
-    found = re.findall(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
-    return found[0] if found else "" if done.returncode == 0 else done.stdout[-300:]
+    found = re.findall(r"^FAILED (\S+)", done.stdout, re.MULTILINE)
+    if not found and done.returncode:
+        raise SystemExit(f"the tests did not run:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    return found[0] if found else ""
 
 
 def main() -> int:
@@ -135,7 +138,7 @@ def main() -> int:
     unseen = 0
     for name, mutant in chosen.items():
         with tempfile.TemporaryDirectory() as temporary:
-            copy(folder := Path(temporary))
+            copy(folder := Path(temporary) / "copy")
             path = folder / mutant.file
             text = path.read_text(encoding="utf-8")
             if mutant.old not in text:

@@ -1,11 +1,12 @@
 """Controllers for Sawyer under torque control that do not learn.
 
-    computed torque   tau = M(q) (q''_ref + w^2 e + 2 w e') + C(q, q') q' + D q'
-    joint PD          tau = P e + D e'
-    e = q_ref - q,   q''_ref = (q'_ref next - q'_ref now) / dt
+    computed torque   tau = M(q) (q''_ref + w^2 (e + k z) + 2 w e') + C(q, q') q' + D q'
+    joint PD          tau = P (e + k z) + D e'
+    e = q_ref - q,   z' = e,   q''_ref = (q'_ref next - q'_ref now) / dt
 
 Computed torque uses the arm's true model, damping included, but without payload. The arm itself
-compensates gravity. The gains are our choice.
+compensates gravity. The gains are our choice. The default, k = 0, has no integral; the closed loop
+of computed torque is stable for k < 2 w.
 
 Source: Siciliano et al. 2009, "Robotics", section 8.5 (inverse dynamics control, PD control).
 """
@@ -19,8 +20,6 @@ from hybrid_rl.envs.sawyer_torque import DT, LIMITS, SawyerTorque
 from hybrid_rl.fields import FieldError, NotNegative, Positive, part
 from hybrid_rl.types import Params, Spec
 
-Nothing = tuple[()]
-
 
 @part
 class ComputedTorque:
@@ -32,21 +31,23 @@ class ComputedTorque:
 
     world: SawyerTorque
     frequency: Positive = 20.0  # [rad/s] w of the errors
+    integral: NotNegative = 0.0  # [1/s] k
 
     def __post_init__(self) -> None:
         """Check the world."""
         _check(self.world)
 
-    def init(self, spec: Spec) -> Nothing:
-        """No state."""
-        return ()
+    def init(self, spec: Spec) -> Array:
+        """z [7] = 0."""
+        return jnp.zeros(spec.act)
 
     def act(
-        self, params: Params, state: Nothing, obs: Array, key: Array
-    ) -> tuple[Array, Nothing, dict[str, Array]]:
-        """Action [7], no state, no metrics; deterministic."""
+        self, params: Params, state: Array, obs: Array, key: Array
+    ) -> tuple[Array, Array, dict[str, Array]]:
+        """Action [7], the next z [7], no metrics; deterministic."""
         q, rate, q_ref, rate_ref, _, rate_next = jnp.split(obs, 6)
-        feedback = self.frequency**2 * (q_ref - q) + 2 * self.frequency * (rate_ref - rate)
+        error, state = _integrated(q_ref - q, state, self.integral)
+        feedback = self.frequency**2 * error + 2 * self.frequency * (rate_ref - rate)
         acceleration = (rate_next - rate_ref) / DT + feedback
         model = sawyer_torque.asset(self.world.damping)
         return _action(inverse_dynamics.torques(model, q, rate, acceleration)), state, {}
@@ -67,6 +68,7 @@ class JointPD:
     world: SawyerTorque
     stiffness: tuple[NotNegative, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]
     damping: tuple[NotNegative, ...] = (40.0, 40.0, 20.0, 20.0, 4.0, 2.0, 1.0)  # [N m s/rad]
+    integral: NotNegative = 0.0  # [1/s] k
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -75,21 +77,28 @@ class JointPD:
             if len(getattr(self, name)) != 7:
                 raise FieldError(self, name, "must be 7 numbers")
 
-    def init(self, spec: Spec) -> Nothing:
-        """No state."""
-        return ()
+    def init(self, spec: Spec) -> Array:
+        """z [7] = 0."""
+        return jnp.zeros(spec.act)
 
     def act(
-        self, params: Params, state: Nothing, obs: Array, key: Array
-    ) -> tuple[Array, Nothing, dict[str, Array]]:
-        """Action [7], no state, no metrics; deterministic."""
+        self, params: Params, state: Array, obs: Array, key: Array
+    ) -> tuple[Array, Array, dict[str, Array]]:
+        """Action [7], the next z [7], no metrics; deterministic."""
         q, rate, q_ref, rate_ref, *_ = jnp.split(obs, 6)
+        error, state = _integrated(q_ref - q, state, self.integral)
         stiffness, damping = jnp.array(self.stiffness), jnp.array(self.damping)
-        return _action(stiffness * (q_ref - q) + damping * (rate_ref - rate)), state, {}
+        return _action(stiffness * error + damping * (rate_ref - rate)), state, {}
 
     def greedy(self) -> "JointPD":
         """This controller, which does not explore."""
         return self
+
+
+def _integrated(error: Array, z: Array, k: float) -> tuple[Array, Array]:
+    """e + k z [7], and the next z [7], of the error e [7] [rad]."""
+    z = z + DT * error
+    return error + k * z, z
 
 
 def _check(world: SawyerTorque) -> None:
