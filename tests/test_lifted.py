@@ -43,7 +43,7 @@ from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params, Spec, Transition
 
-pytestmark = pytest.mark.turns(3)
+pytestmark = pytest.mark.turns(4)
 
 WORLD = PointMass()
 SPEC = WORLD.spec

@@ -14,7 +14,7 @@ from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.training.loop import Loop
 
-pytestmark = pytest.mark.turns(3)
+pytestmark = pytest.mark.turns(4)
 
 OBJECTS = ((0.3, 0.6, 0.0, 0.12, 0.12, 0.12), (0.7, 0.4, 0.4, 0.1, 0.08, 0.02))
 PLANNER = ["explorer.horizon=3", "explorer.iterations=1", "belief.iterations=10"]

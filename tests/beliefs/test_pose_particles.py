@@ -14,7 +14,7 @@ from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.contact_plane import ContactPlane
 from hybrid_rl.types import Spec
 
-pytestmark = pytest.mark.turns(3)
+pytestmark = pytest.mark.turns(4)
 
 SPEC = Spec(obs=4, act=2, dt=0.1)
 SHAPES = ((0.35, 0.6, 0.3, 0.2, 0.06, 0.02), (0.62, 0.4, 0.0, 0.05, 0.05, 0.05))

@@ -11,7 +11,7 @@ import time
 import pytest
 from tiny import TINY, call_train
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 SHORT = [*TINY, "algo=sac", "total_steps=200", "eval_every=200", "checkpoint_every=200"]
 

@@ -9,7 +9,7 @@ import sys
 import pytest
 from tiny import TINY, call_train, run
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 LINE = [*TINY, "algo=sac", "total_steps=100"]
 TIMES = {"wall_s", "perf/env_steps_per_s", "perf/compile_s"}

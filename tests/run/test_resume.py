@@ -13,7 +13,7 @@ from tiny import TINY, call_train, contents, run
 from hybrid_rl import __version__
 from hybrid_rl.run import checkpoint
 
-pytestmark = pytest.mark.turns(3)
+pytestmark = pytest.mark.turns(4)
 
 HYBRID = ["algo=hybrid_stochastic", "eval_modes=[full,policy]", "replay.capacity=1000000"]
 NATIVE = ["task=cartpole", "algo=sac", "physics=native", "episode.steps=40"]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tiny import TINY, run
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 SHORT = ["algo=sac", "num_seeds=2", "total_steps=200"]
 

@@ -11,7 +11,7 @@ import small
 from hybrid_rl import config
 from hybrid_rl.training.metrics import outcome
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 STEPS, ROUNDS = 3, 8  # decisions of an episode, and of the run
 

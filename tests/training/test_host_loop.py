@@ -22,7 +22,7 @@ from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, loop_of, seed_
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import EnvState, Spec
 
-pytestmark = pytest.mark.turns(3)
+pytestmark = pytest.mark.turns(4)
 
 STEPS, ROUNDS = 5, 12  # decisions of an episode, and of the run
 

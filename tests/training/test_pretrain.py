@@ -13,7 +13,7 @@ from hybrid_rl import config
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.types import Params
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 KEY = jax.random.key(3)
 

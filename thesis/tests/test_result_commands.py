@@ -3,13 +3,13 @@
 import page_commands as commands
 import pytest
 import small
-import test_conf
+import test_methods
 from rotation import share
 
 from hybrid_rl import config
 
-RUN_ELSEWHERE = test_conf.EXECUTED | {  # by test_commands.py
-    ("cartpole", "hybrid_stochastic"),
+RUN_ELSEWHERE = {(test_methods.of_task(algo), algo) for algo in test_methods.RUN} | {
+    ("cartpole", "hybrid_stochastic"),  # by test_commands.py
     ("pendulum", "nn_mppi"),
     ("pendulum", "sac"),
 }
@@ -44,8 +44,8 @@ def test_training_commands_learn_in_a_small_size(tmp_path):
 
 
 def sweeps_methods(job):
-    """Whether an experiment names the methods of a job, which test_conf.py builds."""
+    """Whether an experiment names the methods of a job, which test_methods.py builds."""
     given = dict(word.split("=", 1) for word in job)
     if "algo" in given or "experiment" not in given:
         return False
-    return test_conf.methods_of(given["experiment"]) != [[]]
+    return test_methods.methods_of(given["experiment"]) != [[]]
