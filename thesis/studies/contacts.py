@@ -16,15 +16,16 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
+from contourpy import contour_generator  # a part of matplotlib
 from scipy import ndimage, stats
 
 from hybrid_rl.analysis.recorded import Recorded, labels, matching, one_episode, read
-from hybrid_rl.beliefs.maps.known import KnownMap
 from hybrid_rl.core import poses
 from hybrid_rl.errors import UsageError
 
 TASKS = ("contact_plane", "sprk", "sawyer_probe")
 GRID = 128  # cells a side of a map
+POINTS = 256  # of the outlines
 CLOSE, TOUCHED = 0.05, 0.05  # [m] from a contact; share of an object's outline
 CELLS = 10  # a side, of the visited share
 GOOD = 0.03, 0.1  # [m] and [rad] of a pose that is found
@@ -162,8 +163,17 @@ def touched_all(run: Trials) -> np.ndarray:
 
 
 def _outline(world: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Positions of contact [M, 2], and the object [M] that each belongs to."""
-    outline = KnownMap(world).outline
+    """Positions of contact [M, 2], equally far along the outlines; the object [M] of each."""
+    sides = [np.linspace(a, b, 2 * GRID) for a, b in zip(world.low, world.high, strict=True)]
+    away = distances(world, np.stack(np.meshgrid(*sides), -1).astype(np.float32))
+    lines = contour_generator(*sides, away).lines(world.radius)
+    lengths = [np.append(0, np.hypot(*np.diff(line, axis=0).T).cumsum()) for line in lines]
+    apart = sum(length[-1] for length in lengths) / POINTS
+    points = [
+        np.stack([np.interp(np.arange(apart / 2, far[-1], apart), far, each) for each in line.T], 1)
+        for line, far in zip(lines, lengths, strict=True)
+    ]
+    outline = np.concatenate(points).astype(np.float32)
     shapes = [replace(world, objects=(each,)) for each in world.objects]
     return outline, np.argmin([distances(shape, outline) for shape in shapes], 0)
 

@@ -38,7 +38,7 @@ def test_measures_of_a_path_around_one_of_two_discs() -> None:
     for f, iou, raw in ((truth, 1, 1), (left, 0.5, 0.5), (ring, 1.3, 0.5)):
         measured = contacts.quality(run, f[None, None], marks)
         assert measured["objects"][0, 0] == 1
-        assert measured["outline"][0, 0] == pytest.approx(0.5, abs=0.06)
+        assert measured["outline"][0, 0] == pytest.approx(0.5, abs=0.01)
         if iou <= 1:
             assert measured["iou"][0, 0] == pytest.approx(iou, abs=0.03)
             assert measured["iou_raw"][0, 0] == pytest.approx(raw, abs=0.03)
@@ -50,6 +50,18 @@ def test_measures_of_a_path_around_one_of_two_discs() -> None:
     cells = {tuple(np.floor(10 * at).astype(int)) for at in s}
     inside = sum(bool(free[j, i]) for i, j in cells)
     assert measured["cells"][0, 0] == pytest.approx(inside / free.sum())
+
+
+def test_points_of_an_outline_are_equally_far_along_it() -> None:
+    """Around a bar: the share of its straight sides is that of their lengths."""
+    half, radius = (0.2, 0.04), 0.05
+    world = ContactPlane(objects=((0.5, 0.5, 0.0, *half, 0.01),), radius=radius)
+    points, owner = contacts._outline(world)
+    away = np.abs(points - 0.5)
+    straight = (away < np.array(half) - 0.01).any(1).mean()
+    sides = 4 * (sum(half) - 0.02)
+    assert straight == pytest.approx(sides / (sides + 2 * np.pi * (radius + 0.01)), abs=0.01)
+    assert (owner == 0).all()
 
 
 def test_time_to_touch_all_objects_and_mean_over_time() -> None:
