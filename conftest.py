@@ -1,7 +1,7 @@
 """What all tests run under: a CPU, strict shapes, and compiled programs kept between runs.
 
-Set as environment variables, before JAX is imported, so that commands which a test starts
-run under the same.
+They are set as environment variables before JAX is imported, so that commands which a test starts
+have them, too.
 """
 
 import gc
@@ -13,7 +13,7 @@ import pytest
 
 CACHE = Path(__file__).resolve().parent / ".cache" / "jax"
 FLAGS = ["--xla_backend_optimization_level=0"]  # a third less to compile, same mathematics
-if version("jaxlib").startswith("0.10."):  # later releases end the process at flags they lack
+if version("jaxlib").startswith("0.10."):  # later releases abort at unknown flags
     # The emitters would compute the frames of a long chain of bodies again and again: MJX's
     # kinematics of an arm took 6 s instead of 2 ms. Parts of a program compile in parallel, at
     # a tenth more time in all, and every core has a worker already.
@@ -66,7 +66,7 @@ def pytest_configure(config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """The tests of a file share a worker, so that fixtures and programs are made once."""
+    """Give the tests of a file one worker; deselect slow tests and those of other commits."""
     for item in items:
         if item.get_closest_marker("xdist_group") is None:
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
@@ -74,7 +74,7 @@ def pytest_collection_modifyitems(config, items):
         return
     left = {item for item in items if any(name in item.nodeid for name in SLOW)}
     if not config.option.keyword and all(Path(each).is_dir() for each in config.args):
-        left |= others_turn(items)  # of a file or a name that was asked for, all are run
+        left |= others_turn(items)  # a file or a name that was asked for is run whole, but for SLOW
     config.hook.pytest_deselected(items=[item for item in items if item in left])
     items[:] = [item for item in items if item not in left]
 
@@ -93,7 +93,7 @@ def others_turn(items):
 
 @pytest.fixture(scope="session", autouse=True)
 def small_programs():
-    """Workers cache these, too; commands do not, as two that begin at once could collide."""
+    """Workers also cache programs of under 0.5 s; commands do not, as two at once could collide."""
     import jax
 
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)

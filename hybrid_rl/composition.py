@@ -1,4 +1,4 @@
-"""Composing a configuration: the folder conf/, a user's task file, what Hydra's errors mean."""
+"""Around Hydra's composition (config.py): what conf/ offers, errors, a user's task file."""
 
 import re
 from collections.abc import Sequence
@@ -72,7 +72,8 @@ def explain(error: Exception) -> str:
         return f"{several[1]}: several values are a sweep, which needs -m; a list is key=[a,b]"
     if isinstance(error, InterpolationKeyError):
         absent = re.search(r"'([^']+)'", text)
-        return f"{error.full_key}: refers to {absent[1] if absent else 'a key'}, which nothing sets"
+        key = absent[1] if absent else "a key"
+        return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
     return _sentences(f"{text}\n{cause or ''}")
 
 
@@ -81,13 +82,13 @@ def _no_yaml(error: yaml.YAMLError) -> str:
     mark = getattr(error, "problem_mark", None)
     if mark is None:
         return _sentences(str(error))
-    problem = str(getattr(error, "problem", "it is no YAML"))
+    problem = str(getattr(error, "problem", "it cannot be read"))
     tab = "; indent with spaces, not with a tab" if "'\\t'" in problem else ""
     return f"{relative(mark.name)}:{mark.line + 1}: is no YAML: {problem}{tab}"
 
 
 def _sentences(text: str) -> str:
-    """The lines of a message as sentences of one line."""
+    """The lines of a message, joined to one line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     lines = [line for line in lines if not re.match(r"(full_key|\w+_type)\b", line)]  # OmegaConf's
     return " ".join(line if line[-1] in ".:;,?!" else f"{line};" for line in lines).rstrip(";")

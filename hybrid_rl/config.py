@@ -260,8 +260,8 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         yield
     except ValueError as error:
         line = str(error)
-        if isinstance(error, FieldError) and error.line.startswith("world=") and error.has:
-            names = ", ".join(tasks_with(error.has))
+        if isinstance(error, FieldError) and error.line.startswith("world=") and error.lacks:
+            names = ", ".join(tasks_with(error.lacks))
             line = f"task={config.task}: {who or config.algo} {error.words}; choose one of {names}"
         field, equals, rest = line.partition("=")
         if field in config.env and field not in config:  # of a world of the user's

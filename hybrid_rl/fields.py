@@ -31,11 +31,11 @@ Class = TypeVar("Class", bound=type)
 class FieldError(ValueError):
     """A field of a part is out of its range; `line` is FIELD=VALUE: what it must be.
 
-    has: the method that the value lacks, if that is what is wrong.
+    lacks: the method that the value should have, if that is what is wrong.
     """
 
-    def __init__(self, part: Any, name: str, words: str, has: str = "") -> None:
-        self.has = has
+    def __init__(self, part: Any, name: str, words: str, lacks: str = "") -> None:
+        self.lacks = lacks
         self.line, self.words = f"{name}={_shown(getattr(part, name))}: {words}", words
         super().__init__(f"{type(part).__name__}: {self.line}")
 
@@ -47,15 +47,15 @@ class FieldError(ValueError):
 
 @dataclass(frozen=True)
 class Must:
-    """What the values of a field are like."""
+    """A rule for the values of a field, and the words of its error."""
 
     hold: Callable[[Any], bool]
     words: str
-    has: str = ""  # the method that they have
+    has: str = ""  # the method that the value must have; empty: another rule
 
 
 def has(method: str, words: str) -> Must:
-    """For a field whose value has this method; `words` say so if it does not."""
+    """The rule that a value has this method; `words` is the whole message if it does not."""
     return Must(lambda part: hasattr(part, method), words, method)
 
 
@@ -76,7 +76,7 @@ Fraction = Annotated[float, Must(lambda x: 0 <= x <= 1, "lie in [0, 1]")]
 
 @dataclass_transform(frozen_default=True)
 def part(cls: Class) -> Class:
-    """A frozen dataclass whose fields check themselves, before its own `__post_init__`.
+    """Make a class a frozen dataclass that checks its fields before its own `__post_init__`.
 
     Creating one raises FieldError, a ValueError, if a field is out of its range.
     """
@@ -98,13 +98,17 @@ def plain(kind: Any) -> Any:
 
 
 def choices(kind: Any) -> tuple[Any, ...]:
-    """The types of a field of several types; one otherwise."""
+    """The types that a field accepts: those of a union, else its only one."""
     return get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
 
 
 def _check(self: Any) -> None:
     """Make tuples, and raise FieldError for a field that is out of its range."""
     for field in fields(self):
+        if isinstance(field.type, str):
+            where = f"{type(self).__name__}.{field.name}"
+            words = "@part reads types; remove `from __future__ import annotations`"
+            raise TypeError(f"{where}: {words}")
         kinds = [kind for kind in choices(field.type) if kind is not NoneType]
         value = getattr(self, field.name)
         if value is None and len(kinds) < len(choices(field.type)):
@@ -118,14 +122,14 @@ def _check(self: Any) -> None:
 
 
 def check(part: Any, name: str, kind: Any, null: str = "") -> None:
-    """Raise FieldError unless the value of a field is of an annotated type."""
+    """Raise FieldError if the value of a field breaks the rule of an annotated type."""
     if wrong := _wrong(kind, getattr(part, name)):
         missing = get_args(kind)[1].has if get_origin(kind) is Annotated else ""
         raise FieldError(part, name, wrong if missing else wrong + null, missing)
 
 
 def _wrong(kind: Any, value: Any) -> str:
-    """What a value of this type must be, "" if it is."""
+    """What is wrong with a value of this type, in words; "" if nothing is."""
     of = get_args(kind)
     if get_origin(kind) is Annotated:
         must: Must = of[1]
@@ -136,7 +140,7 @@ def _wrong(kind: Any, value: Any) -> str:
         return ""
     each = of[:1] * len(value) if of[-1] is Ellipsis else of
     if len(each) != len(value):
-        return f"must be {len(each)} numbers"
+        return f"must have {len(each)} entries"
     return next(filter(None, map(_wrong, each, value)), "")
 
 

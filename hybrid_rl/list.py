@@ -4,8 +4,8 @@
     python -m hybrid_rl.list config_dir=my_conf
 
 The description is the first comment of the YAML file; a comment "Needs an analytic task." of a
-method is listed as [needs an analytic task]. With config_dir=DIR, or --config-dir DIR as for
-`train`, the entries of that folder are listed, too.
+method is listed as [needs an analytic task]. With config_dir=DIR, or --config-dir DIR
+(two words) as for `train`, the entries of that folder are listed, too.
 """
 
 if __name__ == "__main__":
@@ -22,7 +22,12 @@ from hybrid_rl.composition import CONF, THESIS
 from hybrid_rl.config import tasks_with
 from hybrid_rl.errors import UsageError
 
-HAS = {"equilibrium": "equilibrium", "reference": "reference", "dynamics": "analytic"}
+HAS = {  # method of an environment -> its mark
+    "dynamics": "analytic",
+    "equilibrium": "equilibrium",
+    "reference": "reference",
+    "reward_of": "known reward",
+}
 NEEDS = "# Needs "  # begins the comment of a method that not every task fits
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
 FIRST = (  # of the methods; parts of others and baselines follow
@@ -44,7 +49,7 @@ def listing(conf: Path = CONF) -> dict[str, dict[str, str]]:
 
 
 def about(path: Path) -> str:
-    """The first comment of a YAML file that is not meant for Hydra."""
+    """The first comment of a YAML file, except Hydra's `@package`."""
     for line in path.read_text(encoding="utf-8").splitlines():
         text = line.lstrip("#").strip()
         if line.startswith("#") and text and not text.startswith("@package"):
@@ -54,9 +59,11 @@ def about(path: Path) -> str:
 
 def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
     """Group -> name -> what the environment of a task has, or that of a method must have."""
-    tasks: dict[str, str] = {}
+    has: dict[str, list[str]] = {}
     for method, mark in HAS.items():
-        tasks |= dict.fromkeys(tasks_with(method, conf), mark)
+        for name in tasks_with(method, conf):
+            has.setdefault(name, []).append(mark)
+    tasks = {name: ", ".join(each) for name, each in has.items()}
     methods = {path.stem: needs(path) for path in sorted((conf / "algo").glob("*.yaml"))}
     return {"task": tasks, "algo": methods, "experiment": {}}
 

@@ -1,10 +1,11 @@
 """Do the tests catch a bug? Each of these is planted in a copy of the tree, one at a time.
 
     .venv/bin/python scripts/mutants.py            all of them, about ten minutes on two cores
-    .venv/bin/python scripts/mutants.py fisher     those whose name contains a word
+    .venv/bin/python scripts/mutants.py fisher     those whose name contains all words given
 
-Only the folders of tests that should notice are run, with the share of long tests that the commit
-takes. The exit code is 1 if a bug stays unseen, or if a change of mere words fails a test.
+Only the folders of tests that should notice a bug are run, with this commit's share of the long
+tests (TURN=N: another). The exit code is 1 if a bug stays unseen, or if a changed sentence fails a
+test.
 """
 
 import os
@@ -23,7 +24,7 @@ SENTENCE = "sentence"  # changed on a page: no test may fail
 
 @dataclass(frozen=True)
 class Mutant:
-    """A line of a file as it is, as it becomes, and the tests that should fail."""
+    """Text of a file, what replaces it, and the tests that should fail."""
 
     file: str
     old: str
@@ -135,6 +136,8 @@ def failed(folder: Path, tests: str) -> str:
 def main() -> int:
     """Plant each bug, run the tests, report."""
     chosen = {k: m for k, m in MUTANTS.items() if all(word in k for word in sys.argv[1:])}
+    if not chosen:
+        raise SystemExit(f"none is named so; choose words of: {'; '.join(MUTANTS)}")
     unseen = 0
     for name, mutant in chosen.items():
         with tempfile.TemporaryDirectory() as temporary:

@@ -1,6 +1,6 @@
-"""Which of the long tests a commit runs: a share of them, by its hash.
+"""Which of the long tests run: a share of them, chosen by the hash of the commit.
 
-TURN=N in the environment chooses a share instead. See `turns` in conftest.py, too.
+TURN=N in the environment chooses the share instead. `turns` in conftest.py uses it.
 """
 
 import os
@@ -15,7 +15,7 @@ Item = TypeVar("Item")
 
 @cache
 def turn() -> int:
-    """The number of the share: the hash of the commit; outside a checkout 0."""
+    """The number that chooses the share: TURN, else the commit's hash; 0 outside a checkout."""
     return int(os.environ.get("TURN") or f"0x{git_commit() or 0}", 0)
 
 

@@ -32,7 +32,7 @@ USAGE = [  # overrides of train, words of the line
     ),
     ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
     ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
-    ("seed=${seeds}", "seed: refers to seeds, which nothing sets"),
+    ("seed=${seeds}", "seed: refers to seeds, which neither this task nor this method sets"),
     ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text in quotes"),
     ("episode=3", "episode=3: must be a group of keys"),
     (

@@ -39,7 +39,7 @@ class Probe:
         ({"tau": 3}, "tau=3: must lie in (0, 1]"),
         ({"discount": 1.0}, "discount=1.0: must lie in [0, 1), or null"),
         ({"kind": "faster"}, "kind=faster: choose one of slow, fast"),
-        ({"low": [1.0]}, "low=[1.0]: must be 2 numbers"),
+        ({"low": [1.0]}, "low=[1.0]: must have 2 entries"),
         ({"weights": [1.0, -1.0]}, "weights=[1.0, -1.0]: must be 0 or more"),
         ({"kind": "fast", "rate": 0.5}, "rate=0.5: must be 1 or more"),
     ],

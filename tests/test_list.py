@@ -82,7 +82,7 @@ def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
     assert "Kettle: boils." in printed
     assert "Around a ring. [needs a task with an equilibrium]\n" in printed
     (ours,) = [line for line in printed.splitlines() if line.startswith("  pendulum ")]
-    assert ours.endswith("[analytic]")
+    assert ours.endswith("[analytic, equilibrium, known reward]")
     assert "  halfcheetah " in printed
 
 

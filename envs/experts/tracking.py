@@ -1,12 +1,13 @@
-"""Controllers for Sawyer under torque control that do not learn.
+"""Controllers of Sawyer by joint torques; they learn nothing.
 
-    computed torque   tau = M(q) (q''_ref + w^2 (e + k z) + 2 w e') + C(q, q') q' + D q'
+    computed torque   tau = M(q) (q''_ref + w^2 (e + k z) + 2 w e') + C(q, q') q' + B q'
     joint PD          tau = P (e + k z) + D e'
     e = q_ref - q,   z' = e,   q''_ref = (q'_ref next - q'_ref now) / dt
 
 Computed torque uses the arm's true model, damping included, but without payload. The arm itself
-compensates gravity. The gains are our choice. The default, k = 0, has no integral; the closed loop
-of computed torque is stable for k < 2 w.
+compensates gravity. M, C, B: its inertia, Coriolis terms and joint damping; w, k: `frequency` and
+`integral`; P, D: `stiffness` and `damping` of the controller. The gains are our choice; k = 0, the
+default, is no integral. With the exact model the loop of computed torque is stable for k < 2 w.
 
 Source: Siciliano et al. 2009, "Robotics", section 8.5 (inverse dynamics control, PD control).
 """
@@ -26,7 +27,7 @@ class ComputedTorque:
     """Feedback linearisation of `sawyer_torque`.
 
     Raises:
-        ValueError: for another environment, or a frequency that is not positive.
+        ValueError: for another environment, a frequency that is not positive, a negative integral.
     """
 
     world: SawyerTorque
@@ -75,7 +76,7 @@ class JointPD:
         _check(self.world)
         for name in ("stiffness", "damping"):
             if len(getattr(self, name)) != 7:
-                raise FieldError(self, name, "must be 7 numbers")
+                raise FieldError(self, name, "must have 7 entries")
 
     def init(self, spec: Spec) -> Array:
         """z [7] = 0."""
@@ -104,7 +105,7 @@ def _integrated(error: Array, z: Array, k: float) -> tuple[Array, Array]:
 def _check(world: SawyerTorque) -> None:
     if not isinstance(world, SawyerTorque):
         kind = type(world).__name__
-        raise ValueError(f"world={kind}: this controller needs task=sawyer_torque")
+        raise ValueError(f"world={kind}: needs task=sawyer_torque")
 
 
 def _action(torques: Array) -> Array:

@@ -188,7 +188,7 @@ def test_the_scene_has_a_disc_where_the_distance_says() -> None:
         ({"objects": ((0.5, 0.5, 0, 0.44, 0.44, 0.01),)}, "leave no room to start"),
         ({"missed": 1.0}, "missed=1.0"),
         ({"low": (1.0, 0.0)}, "low="),
-        ({"theta": (0.0, 1.0)}, "theta=.*: must be 3 numbers"),
+        ({"theta": (0.0, 1.0)}, "theta=.*: must have 3 entries"),
     ],
 )
 def test_bad_fields_are_refused(fields, words) -> None:

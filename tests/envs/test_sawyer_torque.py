@@ -227,5 +227,5 @@ def test_controllers_refuse_other_tasks_and_gains():
         JointPD(cast(Any, TIP))
     with pytest.raises(ValueError, match="frequency=0: must be above 0"):
         ComputedTorque(SawyerTorque(), frequency=0)
-    with pytest.raises(ValueError, match=r"stiffness=\[1\.0\]: must be 7 numbers"):
+    with pytest.raises(ValueError, match=r"stiffness=\[1\.0\]: must have 7 entries"):
         JointPD(SawyerTorque(), stiffness=(1.0,))
