@@ -205,7 +205,7 @@ def test_a_random_base_is_observed():
 @pytest.mark.parametrize("task", [SawyerPush, PandaStack])
 def test_a_wrong_size_raises(task, fields):
     (name,) = fields
-    with pytest.raises(ValueError, match=rf"{name}=\[.*must be \w+ numbers"):
+    with pytest.raises(ValueError, match=rf"{name}=\[.*must have \w+ entries"):
         task(**fields)
 
 
