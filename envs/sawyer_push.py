@@ -44,7 +44,8 @@ HEIGHT = -0.154  # [m] of the block's centre
 TRIES = 32  # candidates from which block and target are chosen
 CLEARANCE = 0.06  # [m] between the rod and the block's centre at the start
 SPIN = 4.0  # [rad/s] of the block that is observed as 1: about speed over half a diagonal
-EXTRA = {"command": 2, "turn": 2, "motion": 3, "tip": 2}  # numbers of each group
+Extra = Literal["command", "turn", "motion", "tip"]
+EXTRA: dict[Extra, int] = {"command": 2, "turn": 2, "motion": 3, "tip": 2}  # numbers of each group
 WEIGHTS = {"thesis": (5.0, 10.0), "code": (1.25, 1.0)}  # [1/m] of |b - t| and |e - b|
 TIP = Chain(ASSET, "tip")
 
@@ -55,7 +56,7 @@ class SawyerPush:
 
     physics: str = "auto"
     reward: Literal["thesis", "code"] = "thesis"
-    extra: tuple[Literal["command", "turn", "motion", "tip"], ...] = ()  # of EXTRA, observed too
+    extra: tuple[Extra, ...] = ()  # of EXTRA, observed too
     state_scale: float = 10.0  # of the observation [1/m]
     speed: float = 0.15  # [m/s] of the tip at a = 1
     smoothing: Discount = 0.8  # weight of the previous command in the filter; 0: no filter

@@ -20,7 +20,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.experts.push import PushController
-from hybrid_rl.envs.sawyer_push import EXTRA, SawyerPush
+from hybrid_rl.envs.sawyer_push import EXTRA, Extra, SawyerPush
 from hybrid_rl.learners.model import ModelLearner
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.gaussian import Gaussian
@@ -39,7 +39,7 @@ class Case(NamedTuple):
     """What a model observes and what its networks see."""
 
     name: str
-    extra: tuple[str, ...] = ()
+    extra: tuple[Extra, ...] = ()
     target: bool = True  # the networks see where the target is
     frame: bool = False  # of the block
 

@@ -164,9 +164,9 @@ def touched_all(run: Trials) -> np.ndarray:
 
 def _outline(world: Any) -> tuple[np.ndarray, np.ndarray]:
     """Positions of contact [M, 2], equally far along the outlines; the object [M] of each."""
-    sides = [np.linspace(a, b, 2 * GRID) for a, b in zip(world.low, world.high, strict=True)]
-    away = distances(world, np.stack(np.meshgrid(*sides), -1).astype(np.float32))
-    lines = contour_generator(*sides, away).lines(world.radius)
+    x, y = (np.linspace(a, b, 2 * GRID) for a, b in zip(world.low, world.high, strict=True))
+    away = distances(world, np.stack(np.meshgrid(x, y), -1).astype(np.float32))
+    lines: Any = contour_generator(x, y, away).lines(world.radius)
     lengths = [np.append(0, np.hypot(*np.diff(line, axis=0).T).cumsum()) for line in lines]
     apart = sum(length[-1] for length in lengths) / POINTS
     points = [
