@@ -13,15 +13,17 @@ from scripts.pages.machines import machine
 from scripts.pages.values import RESULTS, evaluated, read
 
 DOCS = RESULTS.parent
-VERDICTS = ("holds", "holds with", "does not hold", "no claim")
+MORE = "Numbers, seeds, machines and commands"
+VERDICTS = ("holds", "holds in part", "does not hold", "nothing to test")
 INTRODUCTION = """# Atlas: every figure and table of the thesis
 
 <!-- Written by `make pages` from atlas.yaml and the JSON of results; do not edit. -->
 
 I. Abraham, *Optimal Experimental Learning and Infinite Linear Embeddings*, Northwestern
-University, 2020: what each figure and table claims, and what we found. "Holds with" means in part,
-or under a condition, which the entry names. Bands, settings and reservations are on the page that
-its picture leads to. Seeds and machine are those of an entry's first file.
+University, 2020: what each figure and table claims, and what we found. A picture leads to the
+page with bands, settings and reservations; numbers, seeds, machines and commands are below the
+pictures of each chapter. Which numbers of a row "as printed" are ours, and how the baselines were
+tuned: [printed, and ours](results/printed.md).
 """
 
 
@@ -103,16 +105,19 @@ def picture(entry: dict[str, Any]) -> str:
 
 
 def gallery(chapter: dict[str, dict[str, Any]]) -> str:
-    """Thumbnails that lead to the result pages, three in a row."""
-    shown = {name: entry for name, entry in chapter.items() if picture(entry)}
-    cells = [
-        f"[![{name}: {entry['title']}]({picture(entry)})]({entry['page']}) <br> "
-        f"[{name}](#{_anchor(name, entry)}): {entry['verdict']}"
-        for name, entry in shown.items()
-    ]
+    """A picture, the claim and what we found of each figure, three in a row."""
+    cells = [_cell(name, entry) for name, entry in chapter.items()]
     cells += [" "] * (-len(cells) % 3)
     rows = ["| " + " | ".join(cells[i : i + 3]) + " |" for i in range(0, len(cells), 3)]
     return "\n".join(["| | | |", "|---|---|---|", *rows])
+
+
+def _cell(name: str, entry: dict[str, Any]) -> str:
+    shown = f"[![{name}: {entry['title']}]({picture(entry)})]({entry['page']}) <br> "
+    verdict = f"**{entry['verdict'].capitalize()}**"
+    brief = f": {entry['brief']}" if "brief" in entry else ""
+    text = f"[{name}](#{_anchor(name, entry)}). {entry['claim']} <br> {verdict}{brief}."
+    return (shown if picture(entry) else "") + text
 
 
 def claims(names: str) -> str:
@@ -121,20 +126,18 @@ def claims(names: str) -> str:
     for title, chapter in entries().items():
         for name, entry in chapter.items():
             chosen = title.startswith(names) or name in names.split(", ")
-            if chosen and entry["verdict"] != "no claim":
+            if chosen and entry["verdict"] != "nothing to test":
                 link = f"[{name}]({entry['page'].removeprefix('results/')})"
-                verdict = entry["verdict"].replace("holds with", "holds, with a condition")
-                rows.append(f"| {link} | {entry['claim']} | {verdict} |")
+                brief = f": {entry['brief']}" if "brief" in entry else ""
+                rows.append(f"| {link} | {entry['claim']} | {entry['verdict']}{brief} |")
     return "\n".join(rows) + "\n"
 
 
 def entry_text(name: str, entry: dict[str, Any]) -> str:
     """The part of the page about one figure or table."""
     verdict, shows = entry["verdict"], filled(entry["shows"]).strip()
-    verdict = {"holds": "Holds:", "does not hold": "Does not hold:"}.get(
-        verdict, "Holds with" if verdict == "holds with" else "No claim to test:"
-    )
     text = f"### {name}: {entry['title']}\n\n{entry['claim']}\n\n"
+    verdict = f"{verdict.capitalize()}{', with' if verdict == 'holds in part' else ':'}"
     text += f"**{verdict}** {shows} [More]({entry['page']})\n"
     if entry["results"]:
         files = ", ".join(f"[{stem}](results/{stem}.json)" for stem in entry["results"])
@@ -151,14 +154,14 @@ def page() -> str:
     """The text of docs/atlas.md."""
     chapters = entries()
     every = [entry["verdict"] for chapter in chapters.values() for entry in chapter.values()]
-    holds, partly, fails, none = map(every.count, VERDICTS)
-    text = (
-        f"{INTRODUCTION}\nOf {len(every)} figures and tables the claims of {holds} hold and those "
-        f"of {partly} hold with a condition. Those of {fails} do not hold; {none} claim nothing.\n"
+    counts = [f"| {verdict} | {every.count(verdict)} |" for verdict in VERDICTS]
+    text = "\n".join(
+        [INTRODUCTION, f"| {len(every)} figures and tables | |", "|---|---|", *counts, ""]
     )
     for title, chapter in chapters.items():
         parts = [entry_text(name, entry) for name, entry in chapter.items()]
-        text += f"\n## {title}\n\n{gallery(chapter)}\n\n" + "\n".join(parts)
+        details = [f"<details>\n<summary>{MORE}</summary>\n", *parts, "</details>\n"]
+        text += f"\n## {title}\n\n{gallery(chapter)}\n\n" + "\n".join(details)
     return text
 
 
