@@ -19,6 +19,7 @@ from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, whole
 from hybrid_rl.composition import CONF, check_task, explain
 from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.contract import check as check_world
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
@@ -94,7 +95,11 @@ def resolved(config: DictConfig) -> DictConfig:
     What the run does not read is left out; all that the user may override is in it.
     """
     values: Any = OmegaConf.to_container(config, resolve=True)
-    if values["task"] in ("gymnasium", "playground"):  # their environments are different tasks
+    if values["task"] in (
+        "gymnasium",
+        "playground",
+        "robot",
+    ):  # their environments are different tasks
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
     made: Any = OmegaConf.create(_of(values, reached(plain(config), READ)))
@@ -182,12 +187,12 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
             )
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
-    if isinstance(env, External):
+    if isinstance(env, External | Robot):
         given |= _on_host(env, given)
     return Episode(env, **given), notes
 
 
-def _on_host(env: External, given: Mapping[str, Any]) -> dict[str, int]:
+def _on_host(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
     """The time limit of an environment on the host [decisions], if `given` has none.
 
     Raises:
@@ -199,7 +204,7 @@ def _on_host(env: External, given: Mapping[str, Any]) -> dict[str, int]:
             raise UsageError(f"episode.{key}={given[key]}: {line}")
     if given.get("steps") is not None:
         return {}
-    if env.known.steps is None:
+    if isinstance(env, Robot) or env.known.steps is None:
         raise UsageError(f"episode.steps: {env.name} has no time limit; give one, in decisions")
     return {"steps": -(-env.known.steps // given.get("action_repeat", 1))}
 

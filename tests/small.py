@@ -10,7 +10,7 @@ from omegaconf import DictConfig
 from tiny import SMALL, demonstrate
 
 from hybrid_rl import config
-from hybrid_rl.training.host_loop import loop_of
+from hybrid_rl.training.loops import loop_of
 
 LINEAR = ("koopman", "gp_")  # begin the names of methods without networks to shrink
 

@@ -100,7 +100,7 @@ class External:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             env = gymnasium.make(self.id, **options, **given)
         else:
-            env = _maker(self.make)(**given)
+            env = imported(self.make)(**given)
             if not isinstance(env, gymnasium.Env):
                 raise UsageError(
                     f"env.make={self.name}: returns {env!r}, which is no gymnasium.Env"
@@ -233,8 +233,12 @@ class Items(dict):
         return hash(repr(sorted(self.items(), key=repr)))
 
 
-def _maker(make: Any) -> Callable[..., gymnasium.Env]:
-    """The function or class that `MODULE:NAME` names."""
+def imported(make: Any) -> Callable[..., Any]:
+    """The function or class that `MODULE:NAME` names; what is no text stays as it is.
+
+    Raises:
+        UsageError: if it cannot be imported.
+    """
     if not isinstance(make, str):
         return make
     module, colon, name = make.partition(":")

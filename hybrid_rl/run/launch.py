@@ -23,7 +23,7 @@ from hybrid_rl.run.progress import Progress, Silent
 from hybrid_rl.run.records import flat, summary_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
-from hybrid_rl.training.host_loop import loop_of
+from hybrid_rl.training.loops import loop_of
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have
@@ -127,7 +127,7 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler, output: Output) -
         _progress(run, label, output.shown) as progress,
     ):
         progress.note("\n".join([f"{label}: run folder {run_dir}", size, *run.notes]))
-        loop = loop_of(run.agent, run.seeds, -(-config.log_every // config.num_envs))
+        loop = loop_of(run.agent, run.seeds, -(-config.log_every // config.num_envs), run_dir)
         duration = Duration(jax.default_backend() == "cpu", instead(config))
         plan = _schedule(config), log, progress, duration
         session = Session(loop, run.controllers, *plan, _written(config))
@@ -146,6 +146,8 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler, output: Output) -
             except DivergenceError:
                 log.summary(_summary(config, session))
                 raise
+            finally:
+                loop.close()
             summary = _summary(config, session)
             log.summary(summary)
         return summary

@@ -128,6 +128,7 @@ class Session:
     def ask(self, number: int) -> None:
         """End the run after the current call, with a checkpoint; number: of the signal, or 0."""
         self.stop = self.stop or number
+        self.loop.cut_short()
         self.progress.note("stopping, with a checkpoint ...")
 
     def run(self) -> None:
@@ -156,7 +157,10 @@ class Session:
         began = perf_counter()
         self.state, metrics = self.program(self.state, jnp.int32(start), jnp.int32(rounds))
         metrics = {name: np.asarray(m)[:rounds] for name, m in metrics.items()}
-        took = perf_counter() - began
+        took, rounds = perf_counter() - began, len(metrics["episode/done"])
+        if not rounds:  # a robot gave none before a signal
+            self.stop = self.stop or 0
+            return
         self.record.step += rounds * worlds
         self.pace.took(rounds, took)
         if any(start < change <= self.step for change in changes):

@@ -22,7 +22,7 @@ from jax import Array
 from hybrid_rl.core.branching import where
 from hybrid_rl.envs.adapters.external import Copies, External, Outcome
 from hybrid_rl.protocols import Controller
-from hybrid_rl.training.agent import Agent, AgentState
+from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop
 from hybrid_rl.training.metrics import outcome
@@ -31,12 +31,6 @@ from hybrid_rl.types import EnvState, Params
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
 RESUMED += "decisions after this one differ from those of a run without the interruption"
-
-
-def loop_of(agent: Agent, seeds: tuple[int, ...], stride: int) -> Loop:
-    """The loop that trains `agent`: on the host where its environment is."""
-    kind = HostLoop if isinstance(agent.episode.env, External) else Loop
-    return kind(agent, seeds, stride)
 
 
 @dataclass
@@ -92,7 +86,7 @@ class HostLoop(Loop):
         self, state: AgentState, planned: Any, u: Array, got: Outcome, step: Array
     ) -> tuple[AgentState, dict[str, Array]]:
         """One learner after its actions u [E, m] had the outcome `got` [E, ...]."""
-        now, after = _states(state.env, got)
+        now, after = states(state.env, got)
         state, learned = self.agent.learn(self.agent.observe(state, u, now, after), step)
         return state, {**planned, **learned, **outcome(u, now)}
 
@@ -195,7 +189,7 @@ def seed_of(*numbers: int) -> int:
     return int(np.random.SeedSequence(numbers).generate_state(1)[0])
 
 
-def _states(env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
+def states(env: EnvState, got: Outcome) -> tuple[EnvState, EnvState]:
     """The states [E] after a decision at `env` [E]: the outcome, and what the next one sees."""
     clock = {"decision": env.info["decision"] + 1, "return": env.info["return"] + got.reward}
     now = env.replace(

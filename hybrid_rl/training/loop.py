@@ -45,6 +45,12 @@ class Loop:
         """Lines for a run that is resumed; none: it continues bit for bit."""
         return ()
 
+    def cut_short(self) -> None:
+        """A signal came: a call that waits for its environment ends early."""
+
+    def close(self) -> None:
+        """The run is over: an environment that moves by itself is stopped."""
+
     @property
     def mesh(self) -> Mesh:
         """The devices in use: as many as divide the learners evenly."""

@@ -18,8 +18,9 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, loop_of, seed_of
+from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.loops import loop_of
 from hybrid_rl.types import EnvState, Spec
 
 pytestmark = pytest.mark.turns(4)

@@ -1,0 +1,130 @@
+"""A robot, or a simulator that does not wait: what a class of the user's must have, and its part.
+
+    class Arm:
+        dt = 0.05                           # [s] between decisions
+        low, high = [-1.0], [1.0]           # of the actions
+        obs = 4                             # numbers in an observation
+        safe = [0.0]                        # the action at which nothing happens; else the middle
+
+        def reset(self): ...                # go to a start; may take seconds
+        def observe(self): ...              # newest observation [obs], and its time.monotonic()
+        def apply(self, action): ...        # send an action; must return at once
+        def reward(self, obs, action, next_obs): ...   # -> number
+        def terminated(self, obs): ...      # whether the episode has failed; may be left out
+        def stop(self): ...                 # end motion; must not raise
+
+A process of its own calls these methods, one at a time, but for `stop`, which it may also call from
+a second thread when another method does not return.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NoReturn
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.envs.adapters.external import Items, imported
+from hybrid_rl.errors import UsageError, gist, in_user_code
+from hybrid_rl.types import EnvState, Spec
+
+METHODS = ("reset", "observe", "apply", "reward", "stop")
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot that learns while it moves. Its sizes are read from its class, without making one.
+
+    Raises:
+        UsageError: if the class cannot be imported, or lacks something.
+    """
+
+    make: str | Callable[..., Any] = ""  # MODULE:CLASS, or the class itself
+    kwargs: Mapping[str, Any] | None = None  # of the class
+    rate: float | None = None  # greatest change of an action from one decision to the next, of 2
+    stale: float = 2.0  # periods after which an observation is too old to act on
+    silence_s: float = 1.0  # [s] without an observation, or in a method, until motion is ended
+    alone_s: float = 30.0  # [s] that the robot goes on without its learner
+    handover_s: float = 0.2  # [s] between two sets of parameters that the robot gets
+
+    def __post_init__(self) -> None:
+        """Check the fields, and the class."""
+        for name in ("stale", "silence_s", "alone_s", "handover_s"):
+            if not getattr(self, name) > 0:
+                raise UsageError(f"env.{name}={getattr(self, name)}: must be above 0")
+        if self.rate is not None and not self.rate > 0:
+            raise UsageError(f"env.rate={self.rate}: must be above 0")
+        object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
+        _ = self.spec
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return str(getattr(self.make, "__name__", self.make))
+
+    @cached_property
+    def kind(self) -> Any:
+        """The user's class."""
+        if not self.make:
+            raise UsageError("env.make: give MODULE:CLASS of your robot")
+        kind = imported(self.make)
+        missing = [name for name in METHODS if not callable(getattr(kind, name, None))]
+        missing += [name for name in ("dt", "low", "high", "obs") if not hasattr(kind, name)]
+        if missing:
+            raise UsageError(f"env.make={self.name}: lacks {', '.join(missing)}")
+        return kind
+
+    @property
+    def spec(self) -> Spec:
+        """Its sizes, and the time between decisions."""
+        low, high = self.bounds
+        if low.shape != high.shape or low.ndim != 1 or not (low < high).all():
+            raise UsageError(f"env.make={self.name}: low and high must be lists with low < high")
+        dt, obs = float(self.kind.dt), int(self.kind.obs)
+        if not (dt > 0 and obs > 0):
+            raise UsageError(f"env.make={self.name}: dt and obs must be above 0")
+        return Spec(obs, len(low), dt)
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """The least and the greatest action [m], in the robot's units."""
+        return np.asarray(self.kind.low, np.float32), np.asarray(self.kind.high, np.float32)
+
+    @property
+    def safe(self) -> np.ndarray:
+        """The safe action [m], from -1 to 1."""
+        low, high = self.bounds
+        safe = getattr(self.kind, "safe", None)
+        middle = (low + high) / 2
+        given = middle if safe is None else np.broadcast_to(np.asarray(safe, np.float32), low.shape)
+        return np.clip(2 * (given - low) / (high - low) - 1, -1, 1).astype(np.float32)
+
+    def made(self) -> Any:
+        """The robot.
+
+        Raises:
+            UsageError: if its class raises an error; the message names the user's line.
+        """
+        try:
+            return self.kind(**(self.kwargs or {}))
+        except Exception as error:
+            line = in_user_code(error) or gist(error)
+            raise UsageError(f"env.make={self.name}: {line}") from error
+
+    def reset(self, key: Array) -> EnvState:
+        """A state with zeros for the observation; the robot's process has the true one."""
+        zero, no = jnp.zeros(()), jnp.zeros((), bool)
+        return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
+
+    def step(self, state: EnvState, action: Array) -> NoReturn:
+        """No JAX function.
+
+        Raises:
+            UsageError: always.
+        """
+        raise UsageError(
+            f"{self.name}: is a robot, so no method can plan on it; choose one that learns its "
+            "model, such as algo=hybrid_stochastic, nn_mppi or sac"
+        )

@@ -1,0 +1,76 @@
+"""Decisions of a robot in a file: one process appends them, another reads them.
+
+A row is written whole by one call, and has its number and a checksum. What is in the file outlives
+both processes, so nothing has to be sent again or acknowledged: a learner goes on reading behind
+the last row that its checkpoint has learned from.
+"""
+
+import os
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from hybrid_rl.types import Spec
+
+
+def row_type(spec: Spec) -> np.dtype:
+    """The fields of a row."""
+    return np.dtype(
+        [
+            ("number", "<i8"),  # from 0
+            ("stretch", "<i8"),  # decisions of one stretch follow each other without a gap
+            ("episode", "<i8"),
+            ("time", "<f8"),  # [s] of the decision, since the epoch
+            ("obs", "<f4", spec.obs),
+            ("action", "<f4", spec.act),  # that was executed, from -1 to 1
+            ("reward", "<f4"),
+            ("terminated", "<i4"),
+            ("truncated", "<i4"),
+            ("next_obs", "<f4", spec.obs),
+            ("late", "<f4"),  # [s] from the beginning of the period to the action
+            ("age", "<f4"),  # [s] of the observation when the action was sent
+            ("version", "<i8"),  # of the parameters, in decisions that they had learned from
+            ("missed", "<i8"),  # deadlines since the robot's process began
+            ("unsafe", "<i8"),  # safe actions in place of others since then
+            ("check", "<u4"),
+        ]
+    )
+
+
+class RowLog:
+    """The rows of one robot in `file`."""
+
+    def __init__(self, file: Path, spec: Spec) -> None:
+        """Open or create the file."""
+        self.kind = row_type(spec)
+        self._file = os.open(file, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
+
+    def recover(self) -> np.ndarray | None:
+        """Cut off a torn row at the end; returns the last sound one, or None."""
+        count = os.fstat(self._file).st_size // self.kind.itemsize
+        while count and self.read(count - 1) is None:
+            count -= 1
+        os.ftruncate(self._file, count * self.kind.itemsize)
+        return self.read(count - 1) if count else None
+
+    def append(self, row: np.ndarray) -> None:
+        """Write a row [] of `kind`, with its checksum."""
+        row["check"] = _check(row)
+        os.write(self._file, row.tobytes())
+
+    def read(self, number: int) -> np.ndarray | None:
+        """Row `number` []; None if it is not there, or not whole."""
+        data = os.pread(self._file, self.kind.itemsize, number * self.kind.itemsize)
+        if len(data) < self.kind.itemsize:
+            return None
+        row = np.frombuffer(data, self.kind)[0]
+        return row if row["number"] == number and row["check"] == _check(row) else None
+
+    def close(self) -> None:
+        """Close the file."""
+        os.close(self._file)
+
+
+def _check(row: np.ndarray) -> int:
+    return zlib.crc32(row.tobytes()[:-4])

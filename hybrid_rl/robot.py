@@ -1,0 +1,114 @@
+"""A trained run on its robot, at the robot's rate, until Ctrl-C.
+
+    python -m hybrid_rl.robot run=runs/robot/sac/TIME
+    python -m hybrid_rl.robot run=runs/robot/sac/TIME mode=policy seconds=60
+
+The run was trained by `python -m hybrid_rl.train task=robot env.make=MODULE:CLASS`, which starts
+this command with learning=true for the process that owns the robot. Ctrl-C ends motion first.
+"""
+
+if __name__ == "__main__":
+    from hybrid_rl.cli import interrupt
+
+    interrupt.install()
+
+import fcntl
+import math
+import os
+import signal
+import sys
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import jax
+
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, number, one_of, read
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.trained import built, load
+from hybrid_rl.training.actor import LOST, Actor
+
+FIRST = 10  # raised priority: of the actor above the learner, where the system allows it
+ARGUMENTS = (
+    Argument("run", "", "folder of the run"),
+    Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
+    Argument("seconds", math.inf, "of motion", number(0.0)),
+    Argument("learning", "false", "true: rows for a learner", one_of("true", "false")),
+)
+
+
+def _trained(folder: Path, mode: str) -> Actor:
+    """The newest checkpoint, without exploration and without rows."""
+    trained = load(folder)
+    if not isinstance(trained.episode.env, Robot):
+        raise UsageError(f"run={folder}: was trained on task={trained.task}, which is no robot")
+    controller, params = trained.learner(None, mode)
+    assert trained.agent is not None
+    agent = replace(trained.agent, controller=controller)
+    return Actor(agent, folder / "robot", trained.seeds[0], False, jax.device_put(params))
+
+
+def _learning(folder: Path) -> Actor:
+    """With exploration, for a learner that reads the rows."""
+    config = run_folder.read(folder, "run")
+    prepare(config)
+    run = built(config)
+    if not isinstance(run.agent.episode.env, Robot):
+        raise UsageError(f"run={folder}: is of task={config.task}, which is no robot")
+    return Actor(run.agent, folder / "robot", run.seeds[0])
+
+
+def main() -> None:
+    """The command."""
+    given: Any = read(__doc__, ARGUMENTS)[0]
+    if not given["run"]:
+        raise UsageError("run: give the folder of a run of task=robot")
+    folder, learning = Path(given["run"]), given["learning"] == "true"
+    files = folder / "robot"
+    if not files.is_dir():
+        raise UsageError(f"run={folder}: holds no run of task=robot")
+    with open(files / "lock", "w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise UsageError(f"run={folder}: another process moves the robot") from error
+        _move(_learning(folder) if learning else _trained(folder, given["mode"]), given, files)
+
+
+def _move(actor: Actor, given: dict[str, Any], files: Path) -> None:
+    """Run the actor, and say what became of it."""
+
+    def ask(number: int, frame: Any) -> None:
+        actor.asked = True
+
+    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(name, ask)
+    with suppress(OSError):  # it needs a right that few users have
+        os.setpriority(os.PRIO_PROCESS, 0, -FIRST)
+    try:
+        actor.run(given["seconds"])
+    except UsageError as error:
+        (files / "error").write_text(str(error))
+        raise
+    except TimeoutError as error:
+        (files / "error").write_text(str(error))
+        print(f"hybrid_rl: {error}", file=sys.stderr)
+        sys.exit(LOST)
+    counts = actor.counts
+    if returns := counts.returns:
+        mean = sum(returns) / len(returns)
+        print(f"{len(returns)} episodes, mean return {mean:,.1f}")
+    print(
+        f"{counts.decisions:,} decisions, {counts.missed} deadlines missed, {counts.unsafe} safe "
+        f"actions, {counts.stale} observations missing or too old",
+        flush=True,
+    )
+
+
+if __name__ == "__main__":
+    command.guarded(main)

@@ -1,0 +1,298 @@
+"""The process that owns a robot: it decides at a fixed rate and never waits for its learner.
+
+    observe -> decide with the newest parameters -> limit -> apply -> append a row -> sleep
+
+Files in a folder connect it with the learner: `rows` (data.row_log) in one direction, `parameters`
+(data.handover) in the other, and `stop`, whose existence ends the motion. So each of both can be
+killed and started again while the other one goes on.
+
+Times are those of one monotonic clock. Decision k begins at t0 + k dt; after a missed deadline the
+periods that are over are left out, and the rows before and after belong to two stretches.
+"""
+
+import gc
+import math
+import os
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.data import handover
+from hybrid_rl.data.row_log import RowLog
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
+from hybrid_rl.training.agent import Agent
+from hybrid_rl.types import Params
+
+RESET_S = 120.0  # [s] that a robot's `reset` may take
+RETRY_S = 1.0  # [s] between attempts to reach a robot that does not answer
+ENDED, LOST = 0, 3  # exit codes: asked to stop; the robot does not answer
+
+
+@dataclass
+class Counts:
+    """Since the process began."""
+
+    decisions: int = 0
+    missed: int = 0  # deadlines
+    unsafe: int = 0  # safe actions in place of others
+    stale: int = 0  # observations that were too old, missing or not finite
+    returns: list[float] = field(default_factory=list)  # of whole episodes
+
+
+@dataclass
+class Actor:
+    """One robot, with the controller of `agent`; its files are in `folder`.
+
+    recording: whether decisions are appended to `rows`, and a learner is expected.
+    """
+
+    agent: Agent
+    folder: Path
+    seed: int = 0
+    recording: bool = True
+    params: Params | None = None  # None: the first that a learner writes
+    counts: Counts = field(default_factory=Counts)
+    asked: bool = False  # by a signal
+
+    def __post_init__(self) -> None:
+        """Compile; the robot is made by `run`."""
+        env = self.agent.episode.env
+        assert isinstance(env, Robot)
+        self.env, self.spec = env, env.spec
+        key = jax.random.key(self.seed)
+        self._like = jax.eval_shape(lambda: self.agent.params(self.agent.init(key)))
+        zeros = jax.tree.map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), self._like)
+        self._key = jax.random.fold_in(key, int(time.time()))
+        self._rest = jax.jit(lambda: self.agent.controller.init(self.spec))()
+        obs = np.zeros(self.spec.obs, np.float32)
+        program = jax.jit(self._program)
+        self._decide = program.lower(zeros, self._rest, obs, self._key, np.int32(0)).compile()
+        self._decide(zeros, self._rest, obs, self._key, np.int32(0))  # the first call takes longer
+        self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
+
+    def _program(
+        self, params: Params, control: Any, obs: Array, key: Array, step: Array
+    ) -> tuple[Array, Any, Array]:
+        """Action [m], state of the controller, key; random before `random_steps`."""
+        key, drawing, deciding = jax.random.split(key, 3)
+        world = self.env.reset(key).replace(obs=obs)
+        params = params._replace(decisions=step, world=world)
+        u, control, _ = self.agent.controller.act(params, control, obs, deciding)
+        at_random = jax.random.uniform(drawing, u.shape, minval=-1, maxval=1)
+        random = self.recording & (step < self.agent.random_steps)
+        return jnp.where(random, at_random, u), control, key
+
+    def run(self, seconds: float = math.inf) -> int:
+        """Move until asked to stop, or for so many seconds; returns the exit code.
+
+        Raises:
+            WorldError: if a method of the robot's is wrong; motion has ended then.
+        """
+        self.robot = self.env.made()
+        self.log = RowLog(self.folder / "rows", self.spec) if self.recording else None
+        last = self.log.recover() if self.log else None
+        self._number = int(last["number"]) + 1 if last is not None else 0
+        self._stretch = int(last["stretch"]) + 1 if last is not None else 0
+        self._episode = int(last["episode"]) if last is not None else 0
+        for thread in (self._watch, self._receive):
+            threading.Thread(target=thread, daemon=True).start()
+        end = time.monotonic() + seconds
+        gc.freeze()
+        gc.disable()
+        try:
+            while not self._over() and self.params is None:
+                time.sleep(0.01)
+            while not self._over() and time.monotonic() < end:
+                self._drive(end)
+        finally:
+            self._allowed = math.inf
+            self.robot.stop()
+        return ENDED
+
+    def _over(self) -> bool:
+        """Whether to stop: a signal, the file `stop`, or no sign of the learner for too long."""
+        if self.asked or (self.folder / "stop").exists():
+            return True
+        if not self.recording or self.params is None:
+            return False
+        seen = (self.folder / "parameters").stat().st_mtime
+        return time.time() - seen > self.env.alone_s
+
+    def _drive(self, end: float) -> None:
+        """An episode, or what there is of it until the robot falls silent."""
+        try:
+            self._call("reset", self.robot.reset, RESET_S)
+        except OSError:
+            return self._silent()
+        self._episode, self._stretch = self._episode + 1, self._stretch + 1
+        control, pending, taken, self._return = self._rest, None, 0, 0.0
+        began, k, heard = time.monotonic(), 0, time.monotonic()
+        previous = self.env.safe
+        while not self._over() and (begin := began + k * self.spec.dt) < end:
+            _sleep_until(begin)
+            obs, stamp = self._observed()
+            if obs is None:
+                if time.monotonic() - heard > self.env.silence_s:
+                    return self._silent()
+                previous, pending = self._safe(), self._broken(pending)
+                k += 1
+                continue
+            heard = time.monotonic()
+            if pending is not None:
+                taken += 1
+                if self._record(pending, obs, taken):
+                    return None
+            u, control, self._key = self._decide(
+                self.params, control, obs, self._key, np.int32(self._number)
+            )
+            action = self._limited(np.asarray(u), previous)
+            if not np.isfinite(action).all():
+                previous, pending = self._safe(), self._broken(pending)
+                k += 1
+                continue
+            self._apply(action)
+            now, previous = time.monotonic(), action
+            pending = obs, action, now - begin, now - stamp, self._version
+            k += 1
+            if now - begin > self.spec.dt:
+                self.counts.missed += 1
+                pending, k = self._broken(pending), math.ceil((now - began) / self.spec.dt)
+        return None
+
+    def _record(self, pending: tuple, obs: np.ndarray, taken: int) -> bool:
+        """Append the decision before `obs`; whether it ended the episode."""
+        before, action, late, age, version = pending
+        self.counts.decisions += 1
+        physical = self._physical(action)
+        reward = self._call("reward", lambda: float(self.robot.reward(before, physical, obs)))
+        if not math.isfinite(reward):
+            raise WorldError(f"{self.env.name}: reward: gives {reward}")
+        failed = getattr(self.robot, "terminated", lambda obs: False)
+        terminated = self._call("terminated", lambda: bool(failed(obs)))
+        truncated = not terminated and taken >= self.agent.episode.steps
+        if self.log is not None:
+            values = (self._number, self._stretch, self._episode, time.time(), before, action)
+            values += (reward, terminated, truncated, obs, late, age, version)
+            row = np.array((*values, self.counts.missed, self.counts.unsafe, 0), self.log.kind)
+            self.log.append(row)
+        self._number, self._return = self._number + 1, self._return + reward
+        if terminated or truncated:
+            self.counts.returns.append(self._return)
+        return terminated or truncated
+
+    def _observed(self) -> tuple[np.ndarray | None, float]:
+        """(observation [o], its time); None if there is none to act on."""
+        try:
+            obs, stamp = self._call("observe", self.robot.observe)
+        except WorldError:
+            raise
+        except Exception:  # a robot that does not answer
+            self.counts.stale += 1
+            return None, 0.0
+        obs = np.array(obs, np.float32)
+        if obs.shape != (self.spec.obs,):
+            line = f"gives {list(obs.shape)}, and the class says obs = {self.spec.obs}"
+            raise WorldError(f"{self.env.name}: observe: {line}")
+        old = time.monotonic() - stamp > self.env.stale * self.spec.dt
+        if old or not np.isfinite(obs).all():
+            self.counts.stale += 1
+            return None, 0.0
+        return obs, float(stamp)
+
+    def _apply(self, action: np.ndarray) -> None:
+        with suppress(OSError):  # a lost connection: there will be no observation, either
+            self._call("apply", lambda: self.robot.apply(self._physical(action)))
+
+    def _safe(self) -> np.ndarray:
+        """Apply the safe action, and return it."""
+        self.counts.unsafe += 1
+        self._apply(self.env.safe)
+        return self.env.safe
+
+    def _silent(self) -> None:
+        """End motion, and wait until the robot answers again."""
+        self.robot.stop()
+        silent = time.monotonic()
+        while not self._over() and self._observed()[0] is None:
+            if time.monotonic() - silent > self.env.alone_s:
+                raise TimeoutError(f"{self.env.name}: no observation for {self.env.alone_s:g} s")
+            self._beat = time.monotonic()
+            time.sleep(RETRY_S)
+
+    def _broken(self, pending: tuple | None) -> None:
+        """The decision without an outcome is left out, and another stretch begins."""
+        self._stretch += pending is not None
+
+    def _limited(self, u: np.ndarray, previous: np.ndarray) -> np.ndarray:
+        """The action within the bounds, and within `rate` of the one before."""
+        if self.env.rate is not None:
+            u = np.clip(u, previous - self.env.rate, previous + self.env.rate)
+        return np.clip(u, -1, 1).astype(np.float32)
+
+    def _physical(self, action: np.ndarray) -> np.ndarray:
+        low, high = self.env.bounds
+        return low + (action + 1) / 2 * (high - low)
+
+    def _call(self, method: str, call: Callable[[], Any], most: float = 0.0) -> Any:
+        """The result of a method of the robot's, which has `silence_s` or `most` [s] to return."""
+        self._beat, self._allowed = time.monotonic(), most or self.env.silence_s
+        self._in = method
+        try:
+            return call()
+        except (OSError, WorldError):  # of a connection; TimeoutError is one
+            raise
+        except Exception as error:
+            line = in_user_code(error) or gist(error)
+            raise WorldError(f"{self.env.name}: {method}: {line}") from error
+        finally:
+            self._allowed = math.inf
+
+    def _watch(self) -> None:
+        """End motion and the process if a method of the robot's does not return."""
+        while True:
+            time.sleep(0.05)
+            if time.monotonic() - self._beat > self._allowed:
+                line = f"{self.env.name}: {self._in}: did not return in {self._allowed:g} s"
+                (self.folder / "error").write_text(line)
+                try:
+                    self.robot.stop()
+                finally:
+                    os._exit(LOST)
+
+    def _receive(self) -> None:
+        """Replace the parameters whenever there are newer ones."""
+        file, known = self.folder / "parameters", None
+        while self.recording:
+            try:
+                now = file.stat().st_mtime_ns
+            except OSError:
+                now = None
+            if now != known and (found := handover.latest(file, self._like)) is not None:
+                known = now
+                self._version, self.params = found[0], jax.device_put(found[1])
+            time.sleep(self.env.handover_s / 2)
+
+
+def _sleep_until(moment: float) -> None:
+    """Sleep until a time of the monotonic clock; the last half millisecond is spent awake."""
+    while (left := moment - time.monotonic()) > 0:
+        time.sleep(max(left - 5e-4, 0))
+
+
+def check_one(agent: Agent, seeds: tuple[int, ...]) -> None:
+    """Raise UsageError unless there is one learner, with one environment."""
+    if len(seeds) > 1 or agent.num_envs > 1:
+        raise UsageError(
+            f"num_seeds={len(seeds)}, num_envs={agent.num_envs}: one robot has one learner; "
+            "give 1 and 1"
+        )

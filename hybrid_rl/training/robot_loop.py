@@ -1,0 +1,282 @@
+"""Training on a robot: rows come at the robot's rate, updates at the device's.
+
+    row = next of the robot's process?   observe: into the memory
+    none yet?                            learn: the updates of one decision, at most one per row
+    every `handover_s`                   publish: the newest parameters
+
+`training.actor` is the robot's process. Row n is decision n of the run, so that a resumed learner
+goes on behind the last row of its checkpoint, and loses none that came in the meantime.
+"""
+
+import fcntl
+import os
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.core.branching import where
+from hybrid_rl.data import handover
+from hybrid_rl.data.row_log import RowLog
+from hybrid_rl.envs.adapters.external import Outcome
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.errors import WorldError
+from hybrid_rl.training.actor import check_one
+from hybrid_rl.training.agent import AgentState
+from hybrid_rl.training.host_loop import HostLoop, states
+from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS
+from hybrid_rl.training.metrics import outcome
+
+RESUMED = "the robot went on, or begins a new episode: its rows so far are read first, and the "
+RESUMED += "decisions after them differ from those of a run without the interruption"
+TRIES = 5  # starts of the robot's process in a row without a new decision
+POLL_S = 5e-4  # [s]
+
+
+@dataclass
+class RobotLoop(HostLoop):
+    """Trains one learner on one robot, whose files are in `folder`."""
+
+    folder: Path = field(default_factory=Path)
+    cut: bool = False  # whether a call ends early
+    observing: Any = field(default=None, init=False)  # the trace of the first program
+
+    def __post_init__(self) -> None:
+        """Check the counts."""
+        check_one(self.agent, self.seeds)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a resumed run says about its robot."""
+        return (RESUMED,)
+
+    def trace(self, state: AgentState) -> Any:
+        """The trace of the program that learns; that of the other one is kept."""
+        began, zero, no = time.perf_counter(), np.int32(0), np.bool_(False)
+        env = state.env
+        got = Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
+        action = jnp.zeros((*env.obs.shape[:-1], self.agent.spec.act))
+        now = jax.eval_shape(jax.vmap(self._observed), state, action, got)[1]
+        learned = jax.eval_shape(jax.vmap(self.agent.learn, (0, None)), state, zero)[1]
+        self.rows = jax.tree.map(self._row, {**now, **learned})
+        parts = (SEEDS, METRICS, SEEDS, SEEDS, *[REPLICATED] * 3), (SEEDS, METRICS)
+        observe = self.shard(self._observe, *parts, donate_argnums=(0, 1))
+        self.observing = observe.trace(state, self.rows, action, got, no, no, zero)
+        parts = (SEEDS, METRICS, REPLICATED, REPLICATED), (SEEDS, METRICS)
+        traced = self.shard(self._learned, *parts, donate_argnums=(0, 1)).trace(
+            state, self.rows, zero, zero
+        )
+        self.compile_s += time.perf_counter() - began
+        return traced
+
+    def compile(self, state: AgentState, traced: Any = None) -> "RobotProgram":
+        """The program (state, first step, rounds) -> (state, metrics)."""
+        learn = super(HostLoop, self).compile(state, self.trace(state))
+        observe = super(HostLoop, self).compile(state, self.observing)
+        self.program = RobotProgram(self, observe, learn)
+        return self.program
+
+    def cut_short(self) -> None:
+        """End the present call of the program after its present row."""
+        self.cut = True
+
+    def close(self) -> None:
+        """End the robot's motion, and its process."""
+        if hasattr(self, "program"):
+            self.program.process.stop()
+
+    def _row(self, shape: Any) -> jax.ShapeDtypeStruct:
+        return jax.ShapeDtypeStruct((self.stride, *shape.shape), shape.dtype)
+
+    def _observed(
+        self, state: AgentState, action: Array, got: Outcome
+    ) -> tuple[AgentState, dict[str, Array]]:
+        """One learner with a decision more in its memory, and what it led to."""
+        now, after = states(state.env, got)
+        return self.agent.observe(state, action, now, after), outcome(action, now)
+
+    def _observe(
+        self, state: Any, rows: Any, action: Array, got: Outcome, gap: Array, first: Array, i: Array
+    ) -> tuple[Any, Any]:
+        """The same into row i; gap: since the decision before. first: of an episode.
+
+        `got.following` is the observation before the decision.
+        """
+
+        def one(state: AgentState, action: Array, got: Outcome) -> tuple[AgentState, Any]:
+            cut = self.agent.replay.interrupted(state.memory, self.agent.spec)
+            clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.info)
+            env = state.env.replace(obs=got.following, info=clock)
+            state = state.replace(env=env, memory=where(gap, cut, state.memory))
+            return self._observed(state, action, got)
+
+        state, metrics = jax.vmap(one)(state, action, got)
+        return state, rows | _put({name: rows[name] for name in metrics}, metrics, i)
+
+    def _learned(self, state: Any, rows: Any, i: Array, step: Array) -> tuple[Any, Any]:
+        """The updates of decision `step`, with their metrics in row i."""
+        state, metrics = jax.vmap(self.agent.learn, (0, None))(state, step)
+        return state, rows | _put({name: rows[name] for name in metrics}, metrics, i)
+
+
+def _put(rows: Any, metrics: Any, i: Array) -> Any:
+    put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
+    return jax.tree.map(lambda row, m: put(row, m), rows, metrics)
+
+
+class RobotProgram:
+    """What trains: (state, first step, rounds) -> (state, metrics [n, S, ...]), n <= rounds."""
+
+    def __init__(self, loop: RobotLoop, observe: Any, learn: Any) -> None:
+        """observe, learn: the compiled halves."""
+        self.loop, self.observe, self.learn = loop, observe, learn
+        self.memory_analysis = learn.memory_analysis
+        env = loop.agent.episode.env
+        assert isinstance(env, Robot)
+        self.env, self.published = env, 0.0
+        self.in_order = any(each.data == "latest" for each in loop.agent.learners.values())
+        self.process = RobotProcess(env, loop.folder)
+        self.log: RowLog | None = None  # opened at the first call
+        self.learned = 0  # decisions that were learned from
+        self.last: Any = None  # the row before
+
+    def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
+        """As the program of `Loop`.
+
+        Raises:
+            WorldError: if the robot's class is wrong, or the robot does not answer for long.
+        """
+        first, count, done, began = int(start), int(rounds), 0, time.monotonic()
+        if self.log is None:
+            self.log, self.learned = RowLog(self.loop.folder / "rows", self.env.spec), first
+            self.last = self.log.read(first - 1) if first else None
+        rows = {
+            name: np.full(row.shape, np.nan if row.dtype.kind == "f" else 0, row.dtype)
+            for name, row in self.loop.rows.items()
+        }
+        host, updates = [], 0
+        while done < count and not self.loop.cut:
+            row = self.log.read(first + done)
+            if row is not None:
+                state, rows = self._into(state, rows, row, done)
+                host.append([row["late"], row["age"], row["missed"], row["unsafe"]])
+                self.process.tries, done = 0, done + 1
+            if (row is None or self.in_order) and self.learned < first + done:
+                at = np.int32(self.learned), np.int32(max(done - 1, 0))
+                state, rows = self.learn(state, rows, at[1], at[0])
+                jax.block_until_ready(state.key)
+                self.learned, updates = self.learned + 1, updates + 1
+            elif row is None:
+                self.process.watch()
+                self.loop.cut |= self.process.ended
+                time.sleep(POLL_S)
+            if time.monotonic() - self.published > self.env.handover_s:
+                self._publish(state, first + done)
+        seconds = max(time.monotonic() - began, 1e-9)
+        return state, self._metrics(jax.device_get(rows), done, host, updates / seconds)
+
+    def _into(self, state: Any, rows: Any, row: Any, i: int) -> tuple[Any, Any]:
+        """The row in the memory of the learner."""
+
+        def each(value: Any) -> np.ndarray:
+            return np.array(value)[None, None]  # [S, E, ...]
+
+        ended, cut = each(row["terminated"] != 0), each(row["truncated"] != 0)
+        got = Outcome(each(row["next_obs"]), each(row["reward"]), ended, cut, each(row["obs"]))
+        last, self.last = self.last, row
+        gap = first = False
+        if last is not None:
+            gap = not (last["terminated"] or last["truncated"]) and last["stretch"] < row["stretch"]
+            first = last["episode"] != row["episode"]
+        return self.observe(
+            state, rows, each(row["action"]), got, np.bool_(gap), np.bool_(first), np.int32(i)
+        )
+
+    def _publish(self, state: Any, version: int) -> None:
+        params = jax.vmap(self.loop.agent.params)(state)
+        one = jax.tree.map(lambda leaf: np.asarray(leaf)[0], params)
+        handover.publish(self.loop.folder / "parameters", one, version)
+        self.published = time.monotonic()
+
+    def _metrics(self, rows: Any, done: int, host: list, rate: float) -> Any:
+        """The rows of this call, with the robot's own numbers."""
+        table = np.array(host, np.float32).reshape(done, 4, 1)
+        names = ("late_s", "age_s", "missed", "unsafe")
+        own = {f"robot/{name}": table[:, k] for k, name in enumerate(names)}
+        own["robot/updates_per_s"] = np.full((done, 1), rate, np.float32)
+        return {name: row[:done] for name, row in rows.items()} | own
+
+
+class RobotProcess:
+    """The robot's process, started at the first `watch`, and again if it dies."""
+
+    def __init__(self, env: Robot, folder: Path) -> None:
+        """folder: of the files that it shares."""
+        self.env, self.folder = env, folder
+        self.child: subprocess.Popen | None = None
+        self.tries, self.ended, self.looked = 0, False, 0.0
+
+    def alive(self) -> bool:
+        """Whether a process owns the robot: a child of this one, or of a learner before it."""
+        if self.child is not None and self.child.poll() is None:
+            return True
+        with open(self.folder / "lock", "w") as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                return True
+        return False
+
+    def watch(self) -> None:
+        """Start the process if there is none.
+
+        Raises:
+            WorldError: if it ended for a mistake in the robot's class, or does not stay alive.
+        """
+        if time.monotonic() - self.looked < 0.2:
+            return
+        self.looked = time.monotonic()
+        if self.alive():
+            return
+        code = None if self.child is None else self.child.returncode
+        error = self.folder / "error"
+        line = error.read_text() if error.exists() else ""
+        if code == 0:
+            self.ended = True
+        elif code == 2 or self.tries >= TRIES:
+            raise WorldError(line or f"{self.env.name}: its process ended with {code}")
+        else:
+            error.unlink(missing_ok=True)
+            self._start()
+
+    def _start(self) -> None:
+        (self.folder / "stop").unlink(missing_ok=True)
+        self.tries += 1
+        run = self.folder.parent.resolve()
+        flags = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_multi_thread_eigen=false"
+        with open(self.folder / "console", "ab") as out:
+            self.child = subprocess.Popen(
+                [sys.executable, "-m", "hybrid_rl.robot", f"run={run}", "learning=true"],
+                env=os.environ | {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": flags},
+                stdout=out,
+                stderr=out,
+            )
+
+    def stop(self) -> None:
+        """End motion, then the process."""
+        if not self.alive():
+            return
+        (self.folder / "stop").touch()
+        until = time.monotonic() + 10
+        while self.alive() and time.monotonic() < until:
+            time.sleep(0.01)
+        if self.child is not None and self.child.poll() is None:
+            self.child.kill()
