@@ -33,7 +33,7 @@ from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.trained import built, load
 from hybrid_rl.training.actor import LOST, Actor
 
-FIRST = 10  # raised priority: of the actor above the learner, where the system allows it
+HIGHER = 10  # priority of the robot's process, where the system allows it
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
@@ -63,11 +63,25 @@ def _learning(folder: Path) -> Actor:
     return Actor(run.agent, folder / "robot", run.seeds[0])
 
 
+def _real_time() -> None:
+    """Ahead of all other processes; it needs a right that few users have."""
+    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+
+
+def _higher() -> None:
+    """Ahead of processes with the usual priority; likewise."""
+    os.setpriority(os.PRIO_PROCESS, 0, -HIGHER)
+
+
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
     if not given["run"]:
         raise UsageError("run: give the folder of a run of task=robot")
+    for raised in (_real_time, _higher):  # before XLA makes its threads, which have the same
+        with suppress(OSError):
+            raised()
+            break
     folder, learning = Path(given["run"]), given["learning"] == "true"
     files = folder / "robot"
     if not files.is_dir():
@@ -88,8 +102,6 @@ def _move(actor: Actor, given: dict[str, Any], files: Path) -> None:
 
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(name, ask)
-    with suppress(OSError):  # it needs a right that few users have
-        os.setpriority(os.PRIO_PROCESS, 0, -FIRST)
     try:
         actor.run(given["seconds"])
     except UsageError as error:

@@ -43,6 +43,7 @@ class Robot:
 
     make: str | Callable[..., Any] = ""  # MODULE:CLASS, or the class itself
     kwargs: Mapping[str, Any] | None = None  # of the class
+    past_actions: int = 1  # that the observation ends with: what is on its way is known
     rate: float | None = None  # greatest change of an action from one decision to the next, of 2
     stale: float = 2.0  # periods after which an observation is too old to act on
     silence_s: float = 1.0  # [s] without an observation, or in a method, until motion is ended
@@ -54,6 +55,9 @@ class Robot:
         for name in ("stale", "silence_s", "alone_s", "handover_s"):
             if not getattr(self, name) > 0:
                 raise UsageError(f"env.{name}={getattr(self, name)}: must be above 0")
+        if not isinstance(self.past_actions, int) or self.past_actions < 0:
+            line = "must be a whole number, 0 or more"
+            raise UsageError(f"env.past_actions={self.past_actions}: {line}")
         if self.rate is not None and not self.rate > 0:
             raise UsageError(f"env.rate={self.rate}: must be above 0")
         object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
@@ -85,7 +89,7 @@ class Robot:
         dt, obs = float(self.kind.dt), int(self.kind.obs)
         if not (dt > 0 and obs > 0):
             raise UsageError(f"env.make={self.name}: dt and obs must be above 0")
-        return Spec(obs, len(low), dt)
+        return Spec(obs + self.past_actions * len(low), len(low), dt)
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -6,8 +6,8 @@
 The physics do not wait: at each of their steps the newest action that has arrived acts, so that a
 late one acts late. Datagrams may be delayed and lost, and `unplug` makes both sides deaf.
 
-`HalfCheetah`, `Cartpole` and `FastCartpole` are the drivers, as a user would write them for a robot; `Physics` is
-the robot.
+`HalfCheetah`, `Cartpole` and `FastCartpole` are the drivers, as a user would write them for a robot;
+`Physics` is the robot.
 """
 
 import os

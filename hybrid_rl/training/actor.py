@@ -137,14 +137,14 @@ class Actor:
         self._episode, self._stretch = self._episode + 1, self._stretch + 1
         control, pending, taken, self._return = self._rest, None, 0, 0.0
         began, k, heard = time.monotonic(), 0, time.monotonic()
-        previous = self.env.safe
+        past = [self.env.safe] * max(self.env.past_actions, 1)  # the newest first
         while not self._over() and (begin := began + k * self.spec.dt) < end:
             _sleep_until(begin)
-            obs, stamp = self._observed()
+            obs, stamp = self._observed(past)
             if obs is None:
                 if time.monotonic() - heard > self.env.silence_s:
                     return self._silent()
-                previous, pending = self._safe(), self._broken(pending)
+                past, pending = [self._safe(), *past[:-1]], self._broken(pending)
                 k += 1
                 continue
             heard = time.monotonic()
@@ -155,13 +155,13 @@ class Actor:
             u, control, self._key = self._decide(
                 self.params, control, obs, self._key, np.int32(self._number)
             )
-            action = self._limited(np.asarray(u), previous)
+            action = self._limited(np.asarray(u), past[0])
             if not np.isfinite(action).all():
-                previous, pending = self._safe(), self._broken(pending)
+                past, pending = [self._safe(), *past[:-1]], self._broken(pending)
                 k += 1
                 continue
             self._apply(action)
-            now, previous = time.monotonic(), action
+            now, past = time.monotonic(), [action, *past[:-1]]
             pending = obs, action, now - begin, now - stamp, self._version
             k += 1
             if now - begin > self.spec.dt:
@@ -174,11 +174,13 @@ class Actor:
         before, action, late, age, version = pending
         self.counts.decisions += 1
         physical = self._physical(action)
-        reward = self._call("reward", lambda: float(self.robot.reward(before, physical, obs)))
+        size = self.env.kind.obs
+        seen, after = before[:size], obs[:size]
+        reward = self._call("reward", lambda: float(self.robot.reward(seen, physical, after)))
         if not math.isfinite(reward):
             raise WorldError(f"{self.env.name}: reward: gives {reward}")
         failed = getattr(self.robot, "terminated", lambda obs: False)
-        terminated = self._call("terminated", lambda: bool(failed(obs)))
+        terminated = self._call("terminated", lambda: bool(failed(after)))
         truncated = not terminated and taken >= self.agent.episode.steps
         if self.log is not None:
             values = (self._number, self._stretch, self._episode, time.time(), before, action)
@@ -190,8 +192,8 @@ class Actor:
             self.counts.returns.append(self._return)
         return terminated or truncated
 
-    def _observed(self) -> tuple[np.ndarray | None, float]:
-        """(observation [o], its time); None if there is none to act on."""
+    def _observed(self, past: list[np.ndarray]) -> tuple[np.ndarray | None, float]:
+        """(observation [o] with past actions, its time); None if there is none to act on."""
         try:
             obs, stamp = self._call("observe", self.robot.observe)
         except WorldError:
@@ -200,14 +202,14 @@ class Actor:
             self.counts.stale += 1
             return None, 0.0
         obs = np.array(obs, np.float32)
-        if obs.shape != (self.spec.obs,):
-            line = f"gives {list(obs.shape)}, and the class says obs = {self.spec.obs}"
+        if obs.shape != (self.env.kind.obs,):
+            line = f"gives {list(obs.shape)}, and the class says obs = {self.env.kind.obs}"
             raise WorldError(f"{self.env.name}: observe: {line}")
         old = time.monotonic() - stamp > self.env.stale * self.spec.dt
         if old or not np.isfinite(obs).all():
             self.counts.stale += 1
             return None, 0.0
-        return obs, float(stamp)
+        return np.concatenate([obs, *past[: self.env.past_actions]]), float(stamp)
 
     def _apply(self, action: np.ndarray) -> None:
         with suppress(OSError):  # a lost connection: there will be no observation, either
@@ -223,7 +225,7 @@ class Actor:
         """End motion, and wait until the robot answers again."""
         self.robot.stop()
         silent = time.monotonic()
-        while not self._over() and self._observed()[0] is None:
+        while not self._over() and self._observed([])[0] is None:
             if time.monotonic() - silent > self.env.alone_s:
                 raise TimeoutError(f"{self.env.name}: no observation for {self.env.alone_s:g} s")
             self._beat = time.monotonic()

@@ -13,6 +13,7 @@ import os
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -39,6 +40,7 @@ RESUMED = "the robot went on, or begins a new episode: its rows so far are read 
 RESUMED += "decisions after them differ from those of a run without the interruption"
 TRIES = 5  # starts of the robot's process in a row without a new decision
 POLL_S = 5e-4  # [s]
+LOWER = 10  # priority of the learner
 
 
 @dataclass
@@ -215,6 +217,13 @@ class RobotProgram:
         return {name: row[:done] for name, row in rows.items()} | own
 
 
+def _lower() -> None:
+    """Lower the priority of this process' threads, those of XLA too, below the robot's."""
+    for thread in Path("/proc/self/task").glob("*"):
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, int(thread.name), LOWER)
+
+
 class RobotProcess:
     """The robot's process, started at the first `watch`, and again if it dies."""
 
@@ -261,6 +270,7 @@ class RobotProcess:
         (self.folder / "stop").unlink(missing_ok=True)
         self.tries += 1
         run = self.folder.parent.resolve()
+        _lower()
         flags = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_multi_thread_eigen=false"
         with open(self.folder / "console", "ab") as out:
             self.child = subprocess.Popen(
