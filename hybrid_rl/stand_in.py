@@ -23,6 +23,7 @@ ARGUMENTS = (
     Argument("latency_s", 0.0, "[s] of a datagram in each direction", number(0.0)),
     Argument("jitter_s", 0.0, "[s] more, on average", number(0.0)),
     Argument("lost", 0.0, "share of the datagrams that are lost", number(0.0)),
+    Argument("faulty", 0.0, "share that is lost, late, doubled or cut", number(0.0)),
     Argument("seconds", math.inf, "until it ends", number(0.0)),
 )
 
@@ -30,7 +31,7 @@ ARGUMENTS = (
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    names = ("port", "latency_s", "jitter_s", "lost")
+    names = ("port", "latency_s", "jitter_s", "lost", "faulty")
     try:
         physics = Physics(KINDS[given["robot"]], *(given[name] for name in names))
     except OSError as error:

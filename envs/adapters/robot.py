@@ -43,7 +43,7 @@ class Robot:
 
     make: str | Callable[..., Any] = ""  # MODULE:CLASS, or the class itself
     kwargs: Mapping[str, Any] | None = None  # of the class
-    past_actions: int = 1  # that the observation ends with: what is on its way is known
+    past_actions: int = 0  # that the observation ends with, where actions take a period to act
     rate: float | None = None  # greatest change of an action from one decision to the next, of 2
     stale: float = 2.0  # periods after which an observation is too old to act on
     silence_s: float = 1.0  # [s] without an observation, or in a method, until motion is ended

@@ -6,7 +6,7 @@
 The physics do not wait: at each of their steps the newest action that has arrived acts, so that a
 late one acts late. Datagrams may be delayed and lost, and `unplug` makes both sides deaf.
 
-`HalfCheetah`, `Cartpole` and `FastCartpole` are the drivers, as a user would write them for a robot;
+`HalfCheetah`, `Cartpole` and `FastCartpole` are drivers as a user writes them for a robot,
 `Physics` is the robot.
 """
 
@@ -94,6 +94,8 @@ class StandIn:
                 data = self._socket.recv(4096)
             except (BlockingIOError, ConnectionRefusedError):  # nothing; or nobody
                 return
+            if len(data) != OBSERVED.size + 4 * self.obs:
+                continue  # cut
             episode, k, stamp, _ = OBSERVED.unpack_from(data)
             if self._newest is None or (episode, k) > self._newest[:2]:
                 self._newest = episode, k, stamp, np.frombuffer(data, "<f4", -1, OBSERVED.size)
@@ -138,10 +140,20 @@ class Physics:
     """The robot: steps in wall-clock time until its parent ends, or for `seconds`."""
 
     def __init__(
-        self, kind: type[StandIn], port: int, latency_s: float, jitter_s: float, lost: float
+        self,
+        kind: type[StandIn],
+        port: int,
+        latency_s: float = 0.0,
+        jitter_s: float = 0.0,
+        lost: float = 0.0,
+        faulty: float = 0.0,
     ) -> None:
-        """latency_s, jitter_s: of a datagram in each direction. lost: share of them."""
+        """latency_s, jitter_s: of a datagram in each direction.
+
+        lost: share of them. faulty: share that is lost, 0.3 s late, sent twice, or cut.
+        """
         self.kind, self.latency_s, self.jitter_s, self.lost = kind, latency_s, jitter_s, lost
+        self.faulty, self.faults, self.beyond = faulty, 0, 0
         env: Any = gymnasium.make(kind.id, disable_env_checker=True, max_episode_steps=-1)
         self.env = env.unwrapped
         self.env.model.opt.timestep = kind.step_s
@@ -179,14 +191,28 @@ class Physics:
         within = float((late < self.kind.step_s).mean())
         return (
             f"stand-in: {len(self.late):,} steps, {100 * within:.2f}% within their period, at most "
-            f"{1e3 * late.max():.1f} ms late, {self.begun} times begun anew"
+            f"{1e3 * late.max():.1f} ms late, {self.begun} times begun anew; {self.faults:,} "
+            f"faults, {self.beyond} actions beyond the bounds"
         )
 
-    def _delay(self) -> float:
-        return self.latency_s + self.jitter_s * float(self.random.exponential())
-
-    def _lost(self) -> bool:
-        return time.monotonic() < self.deaf_until or self.random.uniform() < self.lost
+    def _sent(self, box: deque[tuple[float, bytes]], data: bytes) -> None:
+        """Put a datagram in a box, to be taken out when it is due."""
+        now = time.monotonic()
+        if now < self.deaf_until or self.random.uniform() < self.lost:
+            return
+        due = now + self.latency_s + self.jitter_s * float(self.random.exponential())
+        if self.random.uniform() < self.faulty:
+            self.faults += 1
+            match self.random.integers(4):
+                case 0:
+                    return
+                case 1:
+                    due += 0.3
+                case 2:
+                    box.append((due, data))
+                case _:
+                    data = data[: self.random.integers(len(data))]
+        box.append((due, data))
 
     def _hear(self) -> None:
         """Take what has arrived; the newest action acts, and none for long is the safe one."""
@@ -196,8 +222,7 @@ class Physics:
             except BlockingIOError:
                 break
             self.driver = sender
-            if not self._lost():
-                self.inbox.append((time.monotonic() + self._delay(), data))
+            self._sent(self.inbox, data)
         now = time.monotonic()
         waiting = sorted(self.inbox, key=lambda each: each[0])
         self.inbox = deque(each for each in waiting if each[0] > now)
@@ -207,24 +232,26 @@ class Physics:
             self.action = np.zeros(len(self.kind.low))
 
     def _take(self, data: bytes, now: float) -> None:
+        if len(data) not in (MOVED.size, MOVED.size + 4 * len(self.kind.low)):
+            return  # cut
         kind, number = MOVED.unpack_from(data)
         if kind == UNPLUG:
             self.deaf_until = now + number / 1e3
         elif kind == RESET and number > self.episode:
             self.episode, self.action = number, np.zeros(len(self.kind.low))
             self.env.reset()
-        elif kind == ACTION and number > self.newest:
+        elif kind == ACTION and number > self.newest and len(data) > MOVED.size:
             self.newest, self.heard = number, now
             action = np.frombuffer(data, "<f4", -1, MOVED.size)
+            within = (action >= self.kind.low) & (action <= self.kind.high)
+            self.beyond += not within.all()
             self.action = np.clip(action, self.kind.low, self.kind.high)
 
     def _say(self, k: int) -> None:
         """Send the observation, and those that are due."""
-        now = time.monotonic()
-        if not self._lost():
-            obs = np.asarray(self.env._get_obs(), "<f4")
-            head = OBSERVED.pack(self.episode, k, now, self.late[-1])
-            self.outbox.append((now + self._delay(), head + obs.tobytes()))
+        now, obs = time.monotonic(), np.asarray(self.env._get_obs(), "<f4")
+        head = OBSERVED.pack(self.episode, k, now, self.late[-1])
+        self._sent(self.outbox, head + obs.tobytes())
         ready = [each for each in self.outbox if each[0] <= now]
         self.outbox = deque(each for each in self.outbox if each[0] > now)
         if self.driver is not None:

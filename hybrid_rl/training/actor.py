@@ -79,6 +79,7 @@ class Actor:
         self._decide = program.lower(zeros, self._rest, obs, self._key, np.int32(0)).compile()
         self._decide(zeros, self._rest, obs, self._key, np.int32(0))  # the first call takes longer
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
+        self._ended = False
 
     def _program(
         self, params: Params, control: Any, obs: Array, key: Array, step: Array
@@ -115,7 +116,8 @@ class Actor:
             while not self._over() and time.monotonic() < end:
                 self._drive(end)
         finally:
-            self._allowed = math.inf
+            self._ended, self._allowed = True, math.inf
+            gc.enable()
             self.robot.stop()
         return ENDED
 
@@ -261,7 +263,7 @@ class Actor:
 
     def _watch(self) -> None:
         """End motion and the process if a method of the robot's does not return."""
-        while True:
+        while not self._ended:
             time.sleep(0.05)
             if time.monotonic() - self._beat > self._allowed:
                 line = f"{self.env.name}: {self._in}: did not return in {self._allowed:g} s"
@@ -274,7 +276,7 @@ class Actor:
     def _receive(self) -> None:
         """Replace the parameters whenever there are newer ones."""
         file, known = self.folder / "parameters", None
-        while self.recording:
+        while self.recording and not self._ended:
             try:
                 now = file.stat().st_mtime_ns
             except OSError:

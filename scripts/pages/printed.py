@@ -42,4 +42,4 @@ def _values(block: dict[str, Any]) -> str:
 
 def _shown(value: Any) -> str:
     text = str(value).lower() if isinstance(value, bool) else str(value)
-    return text if len(text) < 100 else f"{text[:60]} ... ({len(value)})"
+    return text if len(text) < 100 else f"{text[:60]} ..."

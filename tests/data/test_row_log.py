@@ -1,0 +1,83 @@
+"""Rows and parameters in files, which one process writes and another reads."""
+
+import numpy as np
+import pytest
+
+from hybrid_rl.data import handover
+from hybrid_rl.data.row_log import RowLog
+from hybrid_rl.types import Spec
+
+SPEC = Spec(obs=3, act=1, dt=0.1)
+
+
+@pytest.fixture
+def log(tmp_path):
+    """Three rows in a file."""
+    log = RowLog(tmp_path / "rows", SPEC)
+    for number in range(3):
+        row = np.zeros((), log.kind)
+        row["number"], row["obs"] = number, number
+        log.append(row)
+    return log
+
+
+def test_rows_are_read_as_they_were_written(log):
+    assert [log.read(i)["obs"].tolist() for i in range(3)] == [[0] * 3, [1] * 3, [2] * 3]
+    assert log.read(3) is None
+
+
+def test_a_second_process_sees_new_rows(log, tmp_path):
+    other = RowLog(tmp_path / "rows", SPEC)
+    assert other.read(2)["number"] == 2
+    assert other.recover()["number"] == 2
+
+
+@pytest.mark.parametrize("cut", [1, 40])
+def test_a_torn_row_is_cut_off(log, tmp_path, cut):
+    file = tmp_path / "rows"
+    file.write_bytes(file.read_bytes()[:-cut])
+    assert log.read(2) is None
+    assert log.recover()["number"] == 1
+    assert file.stat().st_size == 2 * log.kind.itemsize
+    row = np.zeros((), log.kind)
+    row["number"] = 2
+    log.append(row)
+    assert log.read(2)["number"] == 2
+
+
+def test_a_damaged_row_is_not_read(log, tmp_path):
+    file = tmp_path / "rows"
+    data = bytearray(file.read_bytes())
+    data[2 * log.kind.itemsize + 30] ^= 1
+    file.write_bytes(data)
+    assert log.read(2) is None
+    assert log.read(1) is not None
+
+
+def test_an_empty_file_has_no_last_row(tmp_path):
+    assert RowLog(tmp_path / "rows", SPEC).recover() is None
+
+
+TREE = {"a": np.arange(6, dtype=np.float32).reshape(2, 3), "b": np.int32(4)}
+
+
+def test_parameters_are_handed_over(tmp_path):
+    handover.publish(tmp_path / "parameters", TREE, 7)
+    version, tree = handover.latest(tmp_path / "parameters", TREE)
+    assert version == 7
+    assert np.array_equal(tree["a"], TREE["a"])
+    assert tree["b"] == 4
+
+
+@pytest.mark.parametrize("damage", ["absent", "cut", "changed", "other"])
+def test_no_part_of_damaged_parameters_is_used(tmp_path, damage):
+    file, like = tmp_path / "parameters", TREE
+    if damage != "absent":
+        handover.publish(file, TREE, 7)
+    if damage == "cut":
+        file.write_bytes(file.read_bytes()[:-1])
+    if damage == "changed":
+        file.write_bytes(file.read_bytes()[:-1] + b"\x07")
+    if damage == "other":
+        like = TREE | {"a": np.zeros((2, 2), np.float32)}
+    assert handover.latest(file, like) is None

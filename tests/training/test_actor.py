@@ -1,0 +1,237 @@
+"""The process that owns a robot, in this process, and the learner that reads its rows."""
+
+import threading
+import time
+from dataclasses import replace
+from itertools import pairwise
+from typing import ClassVar
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from hybrid_rl import config
+from hybrid_rl.data.row_log import RowLog
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.training import actor as actors
+from hybrid_rl.training.actor import Actor
+from hybrid_rl.training.loops import loop_of
+from hybrid_rl.training.robot_loop import RobotProcess
+
+LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
+LINE += ["policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4", "total_steps=200"]
+LINE += ["random_steps=0", "episode.steps=10", "log_every=20"]
+
+
+class Counting:
+    """A robot whose observation is (episode, step, 0, 0); `fault` at step 4 of episode 2."""
+
+    dt, low, high, obs = 0.004, (0.0,), (2.0,), 4
+    safe = (0.5,)
+    faults: ClassVar[dict] = {}
+
+    def __init__(self) -> None:
+        self.episode, self.count, self.applied, self.stopped = 0, 0, [], 0
+
+    def reset(self) -> None:
+        self.episode, self.count = self.episode + 1, 0
+
+    def observe(self) -> tuple:
+        self.count += 1
+        obs = np.array([self.episode, self.count, 0.0, 0.0])
+        fault = self.faults.get((self.episode, self.count), lambda obs: (obs, time.monotonic()))
+        return fault(obs)
+
+    def apply(self, action: np.ndarray) -> None:
+        self.applied.append(float(action[0]))
+
+    def reward(self, obs: np.ndarray, action: np.ndarray, next_obs: np.ndarray) -> float:
+        return float(next_obs[1])
+
+    def terminated(self, obs: np.ndarray) -> bool:
+        return self.episode == 3 and obs[1] > 5
+
+    def stop(self) -> None:
+        self.stopped += 1
+
+
+@pytest.fixture(scope="module")
+def agent():
+    """Soft actor-critic of small parts."""
+    return config.build(config.load(LINE)).agent
+
+
+def of(agent, kind, **fields):
+    """The agent on another robot."""
+    return replace(agent, episode=replace(agent.episode, env=Robot(make=kind, **fields)))
+
+
+def moved(agent, folder, kind, seconds=0.4, **fields):
+    """(actor, its rows) after it moved for so long with the first parameters."""
+    agent = of(agent, kind, **fields)
+    actor = Actor(agent, folder, params=agent.params(agent.init(jax.random.key(0))))
+    (folder / "parameters").touch()
+    actor.run(seconds)
+    rows, log = [], RowLog(folder / "rows", agent.spec)
+    while (row := log.read(len(rows))) is not None:
+        rows.append(row)
+    return actor, rows
+
+
+def broken(fault):
+    """A class of robots with a fault."""
+    return type("Broken", (Counting,), {"faults": {(2, 4): fault}})
+
+
+def test_rows_are_decisions_in_order(agent, tmp_path):
+    actor, rows = moved(agent, tmp_path, Counting, rate=0.1)
+    assert len(rows) > 30
+    assert [row["number"] for row in rows] == list(range(len(rows)))
+    for row, after in pairwise(rows):
+        if row["stretch"] == after["stretch"]:
+            assert np.array_equal(row["next_obs"], after["obs"])
+        assert row["next_obs"][1] == row["obs"][1] + 1 == row["reward"]
+    ends = [(row["episode"], row["obs"][1]) for row in rows if row["truncated"]]
+    assert ends[:2] == [(1, 10), (2, 10)]
+    assert [row["obs"][1] for row in rows if row["terminated"]][:1] == [5]
+    applied = np.array(actor.robot.applied)
+    assert applied.min() >= 0
+    assert applied.max() <= 2
+    assert actor.robot.stopped == 1
+    for row, after in pairwise(rows):
+        if row["stretch"] == after["stretch"]:
+            assert abs(after["action"] - row["action"]) <= 0.1 + 1e-6
+
+
+def test_past_actions_end_the_observation(agent, tmp_path):
+    run = config.build(config.load([*LINE, "env.past_actions=2"]))
+    _, rows = moved(run.agent, tmp_path, Counting, past_actions=2)
+    assert rows[0]["obs"].shape == (6,)
+    assert rows[5]["obs"][4:].tolist() == [float(rows[4]["action"][0]), float(rows[3]["action"][0])]
+
+
+def lost(obs):
+    """A connection that is lost."""
+    raise ConnectionError("no datagram")
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [lost, lambda obs: (obs * np.nan, time.monotonic()), lambda obs: (obs, time.monotonic() - 1)],
+    ids=["silent", "nan", "stale"],
+)
+def test_without_an_observation_the_action_is_safe(agent, tmp_path, fault):
+    actor, rows = moved(agent, tmp_path, broken(fault))
+    assert actor.counts.unsafe == actor.counts.stale == 1
+    assert 0.5 in actor.robot.applied
+    second = [row for row in rows if row["episode"] == 2]
+    assert [row["obs"][1] for row in second] == [1, 2, 5, 6, 7, 8, 9, 10, 11, 12]
+    assert second[1]["stretch"] + 1 == second[2]["stretch"]
+
+
+def test_a_robot_that_falls_silent_is_stopped_and_awaited(agent, tmp_path, monkeypatch):
+    monkeypatch.setattr(actors, "RETRY_S", 0.02)
+
+    class Silent(Counting):
+        faults: ClassVar[dict] = {(2, count): lost for count in range(4, 60)}
+
+    actor, rows = moved(agent, tmp_path, Silent, seconds=1.0, silence_s=0.05)
+    assert actor.robot.stopped == 2
+    assert rows[-1]["episode"] > 2
+
+
+@pytest.mark.parametrize(
+    ("method", "line"),
+    [
+        ("observe", r"observe: gives \[3\], and the class says obs = 4"),
+        ("reward", r"reward: gives nan"),
+        ("apply", r"apply: .*test_actor.py:\d+: ZeroDivisionError"),
+    ],
+)
+def test_a_mistake_in_the_class_ends_motion_with_its_line(agent, tmp_path, method, line):
+    wrong = {
+        "observe": lambda self: (np.zeros(3), time.monotonic()),
+        "reward": lambda self, obs, action, next_obs: float("nan"),
+        "apply": lambda self, action: 1 / 0,
+    }
+    stopped = []
+    kind = type(
+        "Wrong", (Counting,), {method: wrong[method], "stop": lambda self: stopped.append(1)}
+    )
+    with pytest.raises(WorldError, match=line):
+        moved(agent, tmp_path, kind)
+    assert len(stopped) == 1
+
+
+def test_a_method_that_does_not_return_ends_motion_and_the_process(agent, tmp_path, monkeypatch):
+    codes, over = [], threading.Event()
+
+    def leave(code):
+        codes.append(code)
+        over.set()
+        time.sleep(0.3)  # so that the thread does not look again
+
+    monkeypatch.setattr(actors.os, "_exit", leave)
+    actor, _ = moved(
+        agent, tmp_path, broken(lambda obs: (obs, over.wait(5) and time.monotonic())), silence_s=0.1
+    )
+    assert codes[0] == actors.LOST
+    assert actor.robot.stopped >= 2
+    assert "observe: did not return in 0.1 s" in (tmp_path / "error").read_text()
+
+
+def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
+    """Its memory is what the file holds; a gap ends the row before; a call may end early."""
+    loop = loop_of(of(agent, broken(lost)), (0,), 20, tmp_path)
+    _, rows = moved(agent, tmp_path / "robot", broken(lost), seconds=0.6)
+    monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
+    state = loop.init()
+    program = loop.compile(state)
+    state, metrics = program(state, jnp.int32(0), jnp.int32(20))
+    state, more = program(state, jnp.int32(20), jnp.int32(10))
+    memory = np.asarray(state.memory.rows)[0, :30, 0]
+    assert np.array_equal(memory[:, :4], [row["obs"] for row in rows[:30]])
+    assert np.array_equal(memory[:, 4], [row["action"][0] for row in rows[:30]])
+    assert np.array_equal(memory[:, -4:], [row["next_obs"] for row in rows[:30]])
+    assert np.flatnonzero(memory[:, 7]).tolist() == [9, 11, 19]  # two time limits, and the gap
+    assert metrics["episode/length"][:, 0, 0].tolist() == [*range(1, 11), *range(1, 11)]
+    assert len(more["episode/done"]) == len(more["robot/late_s"]) == 10
+    while np.isnan(more["sac/critic_loss"]).all():  # it learns while no row comes
+        threading.Timer(0.5, loop.cut_short).start()
+        state, more = program(state, jnp.int32(len(rows)), jnp.int32(20))
+        assert len(more["episode/done"]) == 0
+        break
+    assert program.learned > 0
+
+
+@pytest.mark.parametrize(
+    ("missing", "line"),
+    [("reward", "lacks reward"), ("dt", "lacks dt"), ("low", "lacks low")],
+)
+def test_what_a_class_lacks_is_named(missing, line):
+    names = {name: value for name, value in vars(Counting).items() if name != missing}
+    with pytest.raises(UsageError, match=line):
+        Robot(make=type("Lacking", (), names))
+
+
+@pytest.mark.parametrize("word", ["num_seeds=2", "num_envs=2"])
+def test_one_robot_has_one_learner(word):
+    run = config.build(config.load([*LINE, word]))
+    with pytest.raises(UsageError, match="one robot has one learner"):
+        loop_of(run.agent, run.seeds, 20)
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["task=robot", "algo=sac"], "give MODULE:CLASS of your robot"),
+        ([*LINE, "env.stale=0"], r"env\.stale=0: must be above 0"),
+        ([*LINE, "env.past_actions=-1"], "must be a whole number, 0 or more"),
+        ([*LINE, "episode.delay=1"], "put a Gymnasium wrapper around"),
+    ],
+)
+def test_refusals(words, line):
+    with pytest.raises(UsageError, match=line):
+        config.build(config.load(words))
