@@ -9,7 +9,8 @@ Begin with a task and a method by name, as on the command line (`python -m hybri
     (curve,) = hr.curves(result.folder, "eval/return")  # curve.x [G], curve.each [S, G]
 
 Public are the names in `__all__`: `train`, `load`, `curves`, `make` and `compose` by name; `Agent`,
-`Episode`, `Loop`, `EnvState`, `Spec` and `check` for methods and worlds of your own; the planning
+`Episode`, `Loop`, `EnvState`, `Spec` and `check` for methods and worlds of your own;
+`OnlineLearner` for a loop of your own, such as a robot's; the planning
 cores `sampling` and `adjoint`, whose `plan` takes any `step(x, u)`; and two errors. Parts are in
 their modules, such as `hybrid_rl.learners.sac.SAC`. What is public changes only with a line in the
 changelog; the rest may change without one. docs/python.md has an example of each.
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from hybrid_rl.envs.contract import check
     from hybrid_rl.errors import DivergenceError, UsageError
     from hybrid_rl.named import load, make
+    from hybrid_rl.online import OnlineLearner
     from hybrid_rl.train import train
     from hybrid_rl.training.agent import Agent
     from hybrid_rl.training.episode import Episode
@@ -42,6 +44,7 @@ __all__ = [
     "EnvState",
     "Episode",
     "Loop",
+    "OnlineLearner",
     "Spec",
     "UsageError",
     "adjoint",
@@ -61,6 +64,7 @@ _MEMBERS = {  # public name -> module and name there
     "EnvState": ("types", "EnvState"),
     "Episode": ("training.episode", "Episode"),
     "Loop": ("training.loop", "Loop"),
+    "OnlineLearner": ("online", "OnlineLearner"),
     "Spec": ("types", "Spec"),
     "UsageError": ("errors", "UsageError"),
     "check": ("envs.contract", "check"),

@@ -91,6 +91,7 @@ def main() -> None:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise UsageError(f"run={folder}: another process moves the robot") from error
+        (files / "stop").unlink(missing_ok=True)
         _move(_learning(folder) if learning else _trained(folder, given["mode"]), given, files)
 
 

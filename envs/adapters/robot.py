@@ -18,7 +18,7 @@ a second thread when another method does not return.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NoReturn
 
@@ -34,13 +34,52 @@ METHODS = ("reset", "observe", "apply", "reward", "stop")
 
 
 @dataclass(frozen=True)
-class Robot:
+class Outside:
+    """A world that the caller steps: an observation of `obs` numbers, `act` of an action."""
+
+    obs: int = 1
+    act: int = 1
+    dt: float = 0.05  # [s] between decisions
+
+    def __post_init__(self) -> None:
+        """Check the sizes."""
+        for name in ("obs", "act", "dt"):
+            if not getattr(self, name) > 0:
+                raise UsageError(f"{name}={getattr(self, name)}: must be above 0")
+
+    @property
+    def spec(self) -> Spec:
+        """Its sizes, and the time between decisions."""
+        return Spec(self.obs, self.act, self.dt)
+
+    def reset(self, key: Array) -> EnvState:
+        """A state with zeros for the observation."""
+        zero, no = jnp.zeros(()), jnp.zeros((), bool)
+        return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
+
+    def step(self, state: EnvState, action: Array) -> NoReturn:
+        """No JAX function.
+
+        Raises:
+            UsageError: always.
+        """
+        raise UsageError(
+            f"{type(self).__name__}: steps by itself; no method can plan on it, and evaluate and "
+            "render cannot step it (`python -m hybrid_rl.robot run=DIR` moves a robot)"
+        )
+
+
+@dataclass(frozen=True)
+class Robot(Outside):
     """A robot that learns while it moves. Its sizes are read from its class, without making one.
 
     Raises:
         UsageError: if the class cannot be imported, or lacks something.
     """
 
+    obs: int = field(default=0, init=False)  # these three: of the class
+    act: int = field(default=0, init=False)
+    dt: float = field(default=0.0, init=False)
     make: str | Callable[..., Any] = ""  # MODULE:CLASS, or the class itself
     kwargs: Mapping[str, Any] | None = None  # of the class
     past_actions: int = 0  # that the observation ends with, where actions take a period to act
@@ -116,19 +155,3 @@ class Robot:
         except Exception as error:
             line = in_user_code(error) or gist(error)
             raise UsageError(f"env.make={self.name}: {line}") from error
-
-    def reset(self, key: Array) -> EnvState:
-        """A state with zeros for the observation; the robot's process has the true one."""
-        zero, no = jnp.zeros(()), jnp.zeros((), bool)
-        return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
-
-    def step(self, state: EnvState, action: Array) -> NoReturn:
-        """No JAX function.
-
-        Raises:
-            UsageError: always.
-        """
-        raise UsageError(
-            f"{self.name}: is a robot, so no method can plan on it; choose one that learns its "
-            "model, such as algo=hybrid_stochastic, nn_mppi or sac"
-        )

@@ -38,6 +38,48 @@ RETRY_S = 1.0  # [s] between attempts to reach a robot that does not answer
 ENDED, LOST = 0, 3  # exit codes: asked to stop; the robot does not answer
 
 
+class Decider:
+    """What a controller does in one world, step by step: u = decide(params, obs, decisions).
+
+    It explores if the agent's controller does. at_random: so do its `random_steps`.
+    """
+
+    def __init__(self, agent: Agent, seed: int, at_random: bool) -> None:
+        """Compile."""
+        self.agent, self.at_random = agent, at_random
+        key = jax.random.key(seed)
+        self.like = jax.eval_shape(lambda: agent.params(agent.init(key)))  # of the parameters
+        self._key = jax.random.fold_in(key, int(time.time()))
+        self._rest = jax.jit(lambda: agent.controller.init(agent.spec))()
+        zeros = jax.tree.map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), self.like)
+        first = zeros, self._rest, np.zeros(agent.spec.obs, np.float32), self._key, np.int32(0)
+        self._program = jax.jit(self._decided).lower(*first).compile()
+        self._program(*first)  # the first call takes longer
+        self.begin()
+
+    def begin(self) -> None:
+        """An episode begins."""
+        self._control = self._rest
+
+    def __call__(self, params: Params | None, obs: np.ndarray, decisions: int) -> np.ndarray:
+        """The action [m] at `obs` [o], so many decisions into the run."""
+        step = np.int32(decisions)
+        u, self._control, self._key = self._program(params, self._control, obs, self._key, step)
+        return np.asarray(u)
+
+    def _decided(
+        self, params: Params, control: Any, obs: Array, key: Array, step: Array
+    ) -> tuple[Array, Any, Array]:
+        """Action [m], state of the controller, key."""
+        key, drawing, deciding = jax.random.split(key, 3)
+        world = self.agent.episode.env.reset(key).replace(obs=obs)
+        params = params._replace(decisions=step, world=world)
+        u, control, _ = self.agent.controller.act(params, control, obs, deciding)
+        at_random = jax.random.uniform(drawing, u.shape, minval=-1, maxval=1)
+        random = self.at_random & (step < self.agent.random_steps)
+        return jnp.where(random, at_random, u), control, key
+
+
 @dataclass
 class Counts:
     """Since the process began."""
@@ -69,29 +111,9 @@ class Actor:
         env = self.agent.episode.env
         assert isinstance(env, Robot)
         self.env, self.spec = env, env.spec
-        key = jax.random.key(self.seed)
-        self._like = jax.eval_shape(lambda: self.agent.params(self.agent.init(key)))
-        zeros = jax.tree.map(lambda leaf: np.zeros(leaf.shape, leaf.dtype), self._like)
-        self._key = jax.random.fold_in(key, int(time.time()))
-        self._rest = jax.jit(lambda: self.agent.controller.init(self.spec))()
-        obs = np.zeros(self.spec.obs, np.float32)
-        program = jax.jit(self._program)
-        self._decide = program.lower(zeros, self._rest, obs, self._key, np.int32(0)).compile()
-        self._decide(zeros, self._rest, obs, self._key, np.int32(0))  # the first call takes longer
+        self._decide = Decider(self.agent, self.seed, self.recording)
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
         self._ended = False
-
-    def _program(
-        self, params: Params, control: Any, obs: Array, key: Array, step: Array
-    ) -> tuple[Array, Any, Array]:
-        """Action [m], state of the controller, key; random before `random_steps`."""
-        key, drawing, deciding = jax.random.split(key, 3)
-        world = self.env.reset(key).replace(obs=obs)
-        params = params._replace(decisions=step, world=world)
-        u, control, _ = self.agent.controller.act(params, control, obs, deciding)
-        at_random = jax.random.uniform(drawing, u.shape, minval=-1, maxval=1)
-        random = self.recording & (step < self.agent.random_steps)
-        return jnp.where(random, at_random, u), control, key
 
     def run(self, seconds: float = math.inf) -> int:
         """Move until asked to stop, or for so many seconds; returns the exit code.
@@ -137,7 +159,8 @@ class Actor:
         except OSError:
             return self._silent()
         self._episode, self._stretch = self._episode + 1, self._stretch + 1
-        control, pending, taken, self._return = self._rest, None, 0, 0.0
+        self._decide.begin()
+        pending, taken, self._return = None, 0, 0.0
         began, k, heard = time.monotonic(), 0, time.monotonic()
         past = [self.env.safe] * max(self.env.past_actions, 1)  # the newest first
         while not self._over() and (begin := began + k * self.spec.dt) < end:
@@ -154,10 +177,7 @@ class Actor:
                 taken += 1
                 if self._record(pending, obs, taken):
                     return None
-            u, control, self._key = self._decide(
-                self.params, control, obs, self._key, np.int32(self._number)
-            )
-            action = self._limited(np.asarray(u), past[0])
+            action = self._limited(self._decide(self.params, obs, self._number), past[0])
             if not np.isfinite(action).all():
                 past, pending = [self._safe(), *past[:-1]], self._broken(pending)
                 k += 1
@@ -281,7 +301,7 @@ class Actor:
                 now = file.stat().st_mtime_ns
             except OSError:
                 now = None
-            if now != known and (found := handover.latest(file, self._like)) is not None:
+            if now != known and (found := handover.latest(file, self._decide.like)) is not None:
                 known = now
                 self._version, self.params = found[0], jax.device_put(found[1])
             time.sleep(self.env.handover_s / 2)

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from hybrid_rl.envs.adapters.external import External
-from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.envs.adapters.robot import Outside, Robot
+from hybrid_rl.errors import UsageError
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.host_loop import HostLoop
 from hybrid_rl.training.loop import Loop
@@ -14,10 +15,15 @@ def loop_of(agent: Agent, seeds: tuple[int, ...], stride: int, folder: Path = Pa
     """On the device; on the host where its environment is there; or on a robot.
 
     folder: of the run, in which the files of a robot are.
+
+    Raises:
+        UsageError: for a world that nobody steps.
     """
     env = agent.episode.env
     if isinstance(env, Robot):
         files = folder / "robot"
         files.mkdir(exist_ok=True)
         return RobotLoop(agent, seeds, stride, folder=files)
+    if isinstance(env, Outside):
+        raise UsageError("task=online: is for a loop of yours; use hybrid_rl.OnlineLearner")
     return (HostLoop if isinstance(env, External) else Loop)(agent, seeds, stride)

@@ -81,10 +81,20 @@ class RobotLoop(HostLoop):
 
     def compile(self, state: AgentState, traced: Any = None) -> "RobotProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
-        learn = super(HostLoop, self).compile(state, self.trace(state))
-        observe = super(HostLoop, self).compile(state, self.observing)
-        self.program = RobotProgram(self, observe, learn)
+        self.program = RobotProgram(self, *self.halves(state))
         return self.program
+
+    def halves(self, state: AgentState) -> tuple[Any, Any]:
+        """The compiled programs that observe and that learn; both donate state and rows."""
+        learn = super(HostLoop, self).compile(state, self.trace(state))
+        return super(HostLoop, self).compile(state, self.observing), learn
+
+    def empty(self) -> dict[str, np.ndarray]:
+        """Rows [stride, S, ...] for the metrics of a call."""
+        return {
+            name: np.full(row.shape, np.nan if row.dtype.kind == "f" else 0, row.dtype)
+            for name, row in self.rows.items()
+        }
 
     def cut_short(self) -> None:
         """End the present call of the program after its present row."""
@@ -134,6 +144,23 @@ def _put(rows: Any, metrics: Any, i: Array) -> Any:
     return jax.tree.map(lambda row, m: put(row, m), rows, metrics)
 
 
+def packed(
+    action: Any, next_obs: Any, reward: Any, terminated: Any, truncated: Any, obs: Any
+) -> Any:
+    """(action [1, 1, m], outcome [1, 1, ...]) of one decision, for the program that observes."""
+
+    def each(value: Any, kind: type = np.float32) -> np.ndarray:
+        return np.array(value, kind)[None, None]  # [S, E, ...]; a copy
+
+    ends = each(terminated, bool), each(truncated, bool)
+    return each(action), Outcome(each(next_obs), each(reward), *ends, each(obs))
+
+
+def flags(gap: bool, first: bool, i: int) -> tuple[Any, ...]:
+    """The last arguments of the program that observes."""
+    return np.bool_(gap), np.bool_(first), np.int32(i)
+
+
 class RobotProgram:
     """What trains: (state, first step, rounds) -> (state, metrics [n, S, ...]), n <= rounds."""
 
@@ -160,10 +187,7 @@ class RobotProgram:
         if self.log is None:
             self.log, self.learned = RowLog(self.loop.folder / "rows", self.env.spec), first
             self.last = self.log.read(first - 1) if first else None
-        rows = {
-            name: np.full(row.shape, np.nan if row.dtype.kind == "f" else 0, row.dtype)
-            for name, row in self.loop.rows.items()
-        }
+        rows: Any = self.loop.empty()
         host, updates = [], 0
         while done < count and not self.loop.cut:
             row = self.log.read(first + done)
@@ -187,20 +211,13 @@ class RobotProgram:
 
     def _into(self, state: Any, rows: Any, row: Any, i: int) -> tuple[Any, Any]:
         """The row in the memory of the learner."""
-
-        def each(value: Any) -> np.ndarray:
-            return np.array(value)[None, None]  # [S, E, ...]
-
-        ended, cut = each(row["terminated"] != 0), each(row["truncated"] != 0)
-        got = Outcome(each(row["next_obs"]), each(row["reward"]), ended, cut, each(row["obs"]))
         last, self.last = self.last, row
         gap = first = False
         if last is not None:
             gap = not (last["terminated"] or last["truncated"]) and last["stretch"] < row["stretch"]
             first = last["episode"] != row["episode"]
-        return self.observe(
-            state, rows, each(row["action"]), got, np.bool_(gap), np.bool_(first), np.int32(i)
-        )
+        got = (row[name] for name in ("next_obs", "reward", "terminated", "truncated", "obs"))
+        return self.observe(state, rows, *packed(row["action"], *got), *flags(gap, first, i))
 
     def _publish(self, state: Any, version: int) -> None:
         params = jax.vmap(self.loop.agent.params)(state)
@@ -267,7 +284,6 @@ class RobotProcess:
             self._start()
 
     def _start(self) -> None:
-        (self.folder / "stop").unlink(missing_ok=True)
         self.tries += 1
         run = self.folder.parent.resolve()
         _lower()

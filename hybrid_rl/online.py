@@ -1,0 +1,283 @@
+"""A method in a loop of the user's own: act, observe, and it learns.
+
+    learner = OnlineLearner(["algo=hybrid_stochastic", "settings=light"], obs=17, act=6, dt=0.05)
+    obs = robot.reset()
+    while running:
+        action = learner.act(obs)                                 # [m] in [-1, 1], at once
+        obs, reward, terminated, truncated = robot.step(action)
+        learner.observe(reward, obs, terminated, truncated)
+        obs = robot.reset() if terminated or truncated else obs
+    learner.save("runs/mine")    # a run folder; OnlineLearner.load goes on, hybrid_rl.load acts
+
+learn="background": a thread learns while the caller's loop goes on, at most the updates of one
+decision for each; "between_episodes": at the end of an episode, before `observe` returns; "inline":
+in every `observe`, as in training.
+"""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Self
+
+import jax
+import numpy as np
+from omegaconf import DictConfig, OmegaConf
+
+from hybrid_rl import config as configuration
+from hybrid_rl.checks import check
+from hybrid_rl.envs.adapters.robot import Outside
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.lock import locked
+from hybrid_rl.run.records import flat
+from hybrid_rl.run.rows import Gathered
+from hybrid_rl.run.store import Record, Store
+from hybrid_rl.training.actor import Decider
+from hybrid_rl.training.robot_loop import RobotLoop, flags, packed
+from hybrid_rl.types import Params
+
+MODES = ("background", "between_episodes", "inline")
+HANDOVER_S = 0.1  # [s] between two sets of parameters that `act` gets from the thread
+OUTSIDE = f"{Outside.__module__}.{Outside.__name__}"
+
+
+class OnlineLearner:
+    """One learner, in a loop of the caller's.
+
+    Raises:
+        UsageError: for an override that fits nothing, or a value out of range.
+    """
+
+    def __init__(
+        self,
+        method: Sequence[str] | DictConfig = (),
+        *,
+        obs: int = 0,
+        act: int = 0,
+        dt: float = 0.05,
+        learn: str = "background",
+        seed: int = 0,
+    ) -> None:
+        """Compile; this takes some seconds.
+
+        Args:
+            method: overrides as of the command line, such as algo=sac; total_steps bounds the
+                memory [decisions].
+            obs: numbers in an observation.
+            act: numbers in an action.
+            dt: [s] between decisions.
+            learn: one of MODES.
+            seed: of all random numbers.
+        """
+        if learn not in MODES:
+            raise UsageError(f"learn={learn}: choose one of {', '.join(MODES)}")
+        if isinstance(method, DictConfig):
+            self.config = method
+        else:
+            self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed)
+        check(self.config)
+        prepare(self.config)
+        run = configuration.build(self.config)
+        self._loop = RobotLoop(run.agent, run.seeds, 1)
+        self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec
+        self._state = self._loop.init()
+        self._observe, self._learn = self._loop.halves(self._state)
+        self._rows: Any = self._loop.empty()
+        self._decide = Decider(run.agent, run.seeds[0], at_random=True)
+        self._waiting: deque[tuple[Any, ...]] = deque()
+        self._pending: tuple[np.ndarray, np.ndarray] | None = None
+        self._start(0)
+
+    def _start(self, decisions: int) -> None:
+        """Go on after so many decisions, in another episode."""
+        self.decisions, self._seen, self._learned = decisions, decisions, decisions
+        self._first, self._handed, self._error = True, 0.0, None
+        self._closed = False
+        self._params = self._now()
+        if self._mode == "background":
+            self._thread = threading.Thread(target=self._follow, daemon=True)
+            self._thread.start()
+
+    @property
+    def updates(self) -> int:
+        """Decisions that were learned from so far."""
+        return self._learned
+
+    @property
+    def metrics(self) -> dict[str, float]:
+        """The newest metrics of the learners, such as sac/critic_loss."""
+        with self._lock:
+            rows = {name: np.asarray(value) for name, value in self._rows.items()}
+        known = {name: float(value.ravel()[0]) for name, value in rows.items() if "/" in name}
+        return {name: value for name, value in known.items() if np.isfinite(value)}
+
+    def act(self, obs: Any) -> np.ndarray:
+        """The action [m] in [-1, 1] at `obs` [o]; random for the method's `random_steps`.
+
+        Raises:
+            UsageError: for an observation of another size, or with numbers that are not finite;
+                without `observe` since the last action.
+        """
+        self._check()
+        if self._pending is not None:
+            raise UsageError("act: the last action has no outcome yet; call observe first")
+        obs = self._sound("obs", obs, self._spec.obs)
+        action = self._decide(self._params, obs, self.decisions)
+        self._pending = obs, action
+        return action
+
+    def observe(
+        self,
+        reward: float,
+        next_obs: Any,
+        terminated: bool = False,
+        truncated: bool = False,
+        executed: Any = None,
+    ) -> None:
+        """What the last action led to.
+
+        Args:
+            reward: of the decision.
+            next_obs: [o] after it, the true last one where the episode ends.
+            terminated: whether the episode has ended for good.
+            truncated: whether it was cut off, by a time limit for example.
+            executed: the action [m] that acted, if it was another one, such as a safe one.
+
+        Raises:
+            UsageError: as `act`; without an action before.
+        """
+        self._check()
+        if self._pending is None:
+            raise UsageError("observe: there is no action yet; call act first")
+        after = self._sound("next_obs", next_obs, self._spec.obs)
+        if not np.isfinite(reward):
+            raise UsageError(f"observe: reward={reward}: must be finite")
+        obs, action = self._pending
+        if executed is not None:
+            action = self._sound("executed", executed, self._spec.act)
+        self._pending = None
+        cut = bool(truncated and not terminated)
+        self._waiting.append((action, after, reward, bool(terminated), cut, obs, self._first))
+        self.decisions, self._first = self.decisions + 1, bool(terminated or cut)
+        if self._first:
+            self._decide.begin()
+        if self._mode == "inline" or (self._mode == "between_episodes" and self._first):
+            while self._advance():
+                pass
+            self._params = self._now()
+
+    def interrupt(self) -> None:
+        """The episode was broken off without an outcome: the last action is forgotten."""
+        self._pending, self._first = None, True
+        self._decide.begin()
+
+    def _follow(self) -> None:
+        """Learn in the background."""
+        try:
+            while not self._closed:
+                if not self._advance():
+                    time.sleep(1e-3)
+                if time.monotonic() - self._handed > HANDOVER_S:
+                    self._params, self._handed = self._now(), time.monotonic()
+        except Exception as error:  # the caller's thread raises it
+            self._error = error
+
+    def _advance(self) -> bool:
+        """Take one decision into the memory, or else learn once; False if nothing is left."""
+        with self._lock:
+            if self._waiting:
+                *row, first = self._waiting.popleft()
+                gap = first and self._seen > 0
+                self._state, self._rows = self._observe(
+                    self._state, self._rows, *packed(*row), *flags(gap, first, 0)
+                )
+                self._seen += 1
+            elif self._learned < self._seen:
+                step = np.int32(self._learned)
+                self._state, self._rows = self._learn(self._state, self._rows, np.int32(0), step)
+                jax.block_until_ready(self._state.key)
+                self._learned += 1
+            else:
+                return False
+            return True
+
+    def _now(self) -> Params:
+        """A copy of the newest parameters."""
+        with self._lock:
+            params = jax.vmap(self._loop.agent.params)(self._state)
+            return jax.device_put(jax.tree.map(lambda leaf: np.array(leaf)[0], params))
+
+    def save(self, folder: Path | str) -> None:
+        """Write a run folder, after what waits has been taken into the memory.
+
+        Raises:
+            UsageError: if it cannot be written to.
+            CheckpointError: if the checkpoint could not be written.
+        """
+        path = Path(folder)
+        while self._waiting:
+            self._advance()
+        with locked(run_folder.writable(path, "folder"), "folder"), self._lock:
+            values: Any = OmegaConf.to_container(self.config)
+            store = Store(path / "checkpoints", self._loop, True, flat(values))
+            record = Record([[]], [None], step=self._seen)
+            store.save(self._state, Gathered(), record)
+            run_folder.write(path, self.config)
+
+    @classmethod
+    def load(cls, folder: Path | str, learn: str = "background") -> Self:
+        """Go on from a folder of `save`, in a new episode.
+
+        Raises:
+            UsageError: if the folder holds no such run.
+            CheckpointError: if its checkpoint is not sound.
+        """
+        config = run_folder.read(Path(folder), "folder")
+        if config.env.get("_target_") != OUTSIDE:
+            raise UsageError(f"folder={folder}: was not written by OnlineLearner.save")
+        learner = cls(config, learn=learn)
+        learner.close()
+        store = Store(Path(folder) / "checkpoints", learner._loop, True, {})
+        state, _, record, _ = store.restore()
+        learner._state = state
+        learner._start(record.step)
+        return learner
+
+    def close(self) -> None:
+        """End the thread."""
+        self._closed = True
+        if self._mode == "background":
+            self._thread.join()
+
+    def __enter__(self) -> Self:
+        """Itself; its thread ends with the block."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End the thread."""
+        self.close()
+
+    def _check(self) -> None:
+        if self._error is not None:
+            raise self._error
+        if self._closed:
+            raise UsageError("this learner is closed")
+
+    def _sound(self, name: str, given: Any, size: int) -> np.ndarray:
+        """The numbers as float32 [size]."""
+        values = np.array(given, np.float32)
+        if values.shape != (size,):
+            raise UsageError(f"{name} is {list(values.shape)}; it must be [{size}]")
+        if not np.isfinite(values).all():
+            entry = int(np.flatnonzero(~np.isfinite(values))[0])
+            raise UsageError(f"{name}: entry {entry} is not finite")
+        return values
+
+
+def _config(method: Sequence[str], sizes: dict[str, Any], seed: int) -> DictConfig:
+    """The configuration of a method in a world of these sizes."""
+    given = [f"env.{name}={value}" for name, value in sizes.items()]
+    return configuration.load(["task=online", *given, f"seed={seed}", *method])

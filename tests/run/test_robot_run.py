@@ -1,0 +1,59 @@
+"""A run on a stand-in robot in processes of their own: it learns, goes on, and acts."""
+
+import re
+import socket
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import hybrid_rl
+from hybrid_rl.data.row_log import RowLog
+from hybrid_rl.envs.adapters.stand_in import Cartpole
+from hybrid_rl.types import Spec
+
+pytestmark = pytest.mark.turns(3)
+SPEC = Spec(Cartpole.obs, len(Cartpole.low), Cartpole.dt)
+
+
+@pytest.fixture
+def port():
+    """That of a stand-in, which ends with the test."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", 0))
+        number = free.getsockname()[1]
+    line = [sys.executable, "-m", "hybrid_rl.stand_in", "robot=cartpole", f"port={number}"]
+    with subprocess.Popen([*line, "faulty=0.02"], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        yield number
+        process.terminate()
+
+
+def test_a_run_on_a_robot(port, tmp_path):
+    make = "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole"
+    line = ["task=robot", make, f"env.kwargs={{port:{port}}}", "algo=sac", "policy.hidden=[8]"]
+    line += ["critic.hidden=[8]", "random_steps=20", "checkpoint_every=50", "log_every=25"]
+    folder, rows = tmp_path / "run", []
+    line += ["policy_learner.batch_size=8", "episode.steps=30", f"run_dir={folder}"]
+    result = hybrid_rl.train([*line, "total_steps=100"], on_row=rows.append, progress=False)
+    assert result["finished"]
+    means = [row for row in rows if "robot/late_s" in row]
+    assert [row["step"] for row in means] == [25, 50, 75, 100]
+    assert means[-1]["robot/updates_per_s"] > 0
+    result = hybrid_rl.train([f"resume={folder}", "total_steps=150"], progress=False)
+    assert result["total_steps"] == 150
+    log, sound = RowLog(folder / "robot" / "rows", SPEC), 0
+    while (row := log.read(sound)) is not None:
+        assert np.abs(row["action"]).max() <= 1
+        sound += 1
+    assert sound >= 150
+    moved = subprocess.run(
+        [sys.executable, "-m", "hybrid_rl.robot", f"run={folder}", "seconds=1"],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert moved.returncode == 0, moved.stderr
+    assert int(re.search(r"(\d+) decisions, ", moved.stdout)[1]) > 10

@@ -1,0 +1,129 @@
+"""A learner in a loop of the user's own."""
+
+import time
+
+import numpy as np
+import pytest
+
+import hybrid_rl
+from hybrid_rl import OnlineLearner
+from hybrid_rl.errors import UsageError
+
+METHOD = ["algo=sac", "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4"]
+METHOD += ["random_steps=0", "total_steps=100"]
+
+
+def made(learn="inline", *more):
+    """A learner in a world of two numbers."""
+    return OnlineLearner([*METHOD, *more], obs=2, act=1, learn=learn)
+
+
+def drive(learner, decisions, episode=5, first=0):
+    """(obs, action) of decisions in a world that counts, with the time limit `episode`."""
+    taken = []
+    for i in range(first, first + decisions):
+        obs = np.array([i % episode, 1.0])
+        action = learner.act(obs)
+        taken.append((obs, action))
+        learner.observe(float(i), [i % episode + 1, 1.0], truncated=i % episode == episode - 1)
+    return taken
+
+
+def memory(learner, count):
+    """Rows [count, width] of the replay memory."""
+    return np.asarray(learner._state.memory.rows)[0, :count, 0]
+
+
+@pytest.mark.parametrize("learn", ["inline", "between_episodes"])
+def test_the_memory_holds_what_was_done(learn):
+    learner = made(learn)
+    taken = drive(learner, 10)
+    rows = memory(learner, 10)
+    assert np.array_equal(rows[:, :2], [obs for obs, _ in taken])
+    assert np.array_equal(rows[:, 2], [action[0] for _, action in taken])
+    assert rows[:, 3].tolist() == list(range(10))
+    assert np.flatnonzero(rows[:, 5]).tolist() == [4, 9]
+    assert learner.decisions == learner.updates == 10
+    assert np.isfinite(learner.metrics["sac/critic_loss"])
+
+
+def test_what_acted_is_remembered_and_a_break_ends_the_decision_before():
+    learner = made()
+    learner.act([0, 0])
+    learner.observe(1.0, [1, 1], executed=[0.25])
+    learner.act([1, 1])
+    learner.interrupt()  # without an outcome
+    learner.act([5, 5])
+    learner.observe(2.0, [6, 6], terminated=True)
+    rows = memory(learner, 2)
+    assert rows[0, 2] == 0.25
+    assert rows[:, 5].tolist() == [1, 0]
+    assert rows[:, 4].tolist() == [0, 1]
+
+
+def test_it_learns_in_the_background():
+    with made("background") as learner:
+        first = learner._params
+        drive(learner, 20)
+        until = time.monotonic() + 20
+        while learner.updates < 20 and time.monotonic() < until:
+            time.sleep(0.01)
+        time.sleep(0.2)
+        assert learner.updates == 20
+        assert learner._params is not first
+    with pytest.raises(UsageError, match="closed"):
+        learner.act([0, 0])
+
+
+def test_what_is_saved_goes_on_and_acts(tmp_path):
+    learner = made()
+    drive(learner, 10)
+    learner.save(tmp_path / "run")
+    again = OnlineLearner.load(tmp_path / "run", learn="inline")
+    assert again.decisions == 10
+    assert np.array_equal(memory(again, 10), memory(learner, 10))
+    drive(again, 5, first=10)
+    again.save(tmp_path / "run")
+    assert OnlineLearner.load(tmp_path / "run", learn="inline").decisions == 15
+    policy = hybrid_rl.load(tmp_path / "run").policy()
+    assert policy(np.zeros(2)).shape == (1,)
+
+
+@pytest.mark.parametrize(
+    ("call", "line"),
+    [
+        (lambda each: each.act([0]), r"obs is \[1\]; it must be \[2\]"),
+        (lambda each: each.act([0, np.nan]), "obs: entry 1 is not finite"),
+        (lambda each: each.observe(0.0, [0, 0]), "there is no action yet"),
+        (lambda each: (each.act([0, 0]), each.act([0, 0])), "call observe first"),
+        (lambda each: (each.act([0, 0]), each.observe(np.inf, [0, 0])), "reward=inf"),
+        (
+            lambda each: (each.act([0, 0]), each.observe(0.0, [0, 0], executed=[1, 2])),
+            r"executed is \[2\]",
+        ),
+    ],
+)
+def test_mistakes_are_one_line(call, line):
+    learner = _shared()
+    learner.interrupt()
+    with pytest.raises(UsageError, match=line):
+        call(learner)
+
+
+def test_wrong_arguments_are_refused(tmp_path):
+    with pytest.raises(UsageError, match="learn=later: choose one of"):
+        made("later")
+    with pytest.raises(UsageError, match=r"obs=0: must be above 0"):
+        OnlineLearner(METHOD, act=1)
+    with pytest.raises(UsageError, match="folder="):
+        OnlineLearner.load(tmp_path)
+
+
+SHARED = []
+
+
+def _shared():
+    """One learner for all mistakes, which it survives."""
+    if not SHARED:
+        SHARED.append(made())
+    return SHARED[0]
