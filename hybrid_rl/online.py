@@ -35,7 +35,7 @@ from hybrid_rl.run.lock import locked
 from hybrid_rl.run.records import flat
 from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.store import Record, Store
-from hybrid_rl.training.actor import Decider
+from hybrid_rl.training.decider import Decider
 from hybrid_rl.training.robot_loop import RobotLoop, flags, packed
 from hybrid_rl.types import Params
 

@@ -120,12 +120,17 @@ def _steps(world: Any, asked: int, out: Path) -> int:
     return min(world.steps, FIRST * _stride(world))
 
 
-def _shown(given: dict[str, Any], changes: dict[str, str], out: Path) -> tuple[Any, str, Film]:
-    """(world with its clock, whose actions, episode) that the arguments name."""
+def _shown(
+    given: dict[str, Any], changes: dict[str, str], out: Path, trained: Any
+) -> tuple[Any, str, Film]:
+    """(world with its clock, whose actions, episode) that the arguments name.
+
+    trained: None with task=T.
+    """
     from hybrid_rl.envs.mujoco.scenery import check_drawable
 
     seed, asked, number = (given[name] for name in ("seed", "episode_steps", "episode"))
-    if given["task"]:
+    if trained is None:
         from hybrid_rl.demonstrate import scripted
         from hybrid_rl.training.rollout import evaluation_keys
 
@@ -134,13 +139,38 @@ def _shown(given: dict[str, Any], changes: dict[str, str], out: Path) -> tuple[A
         begun = replace(world, steps=_steps(world, asked, out))
         key = evaluation_keys(seed or 0, number + 1)[-1]
         return world, "scripted expert", film(begun, controller, params, key)
-    from hybrid_rl.trained import chosen
-
-    trained = chosen(given)
     _check(check_drawable, trained.episode.env)
     steps = _steps(trained.episode, asked, out)
     shown = episode(trained, given["mode"] or "full", seed, steps, number)
     return trained.episode, f"step {trained.step:,}", shown
+
+
+def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
+    """Draw an episode of a Gymnasium environment, which draws itself."""
+    import jax
+
+    from hybrid_rl.analysis.drawing import write
+    from hybrid_rl.training.host_loop import seed_of
+    from hybrid_rl.training.rollout import evaluation_keys
+
+    if given["at"] or (given["width"], given["height"]) != (640, 480):
+        raise UsageError("at, width, height: a Gymnasium environment draws itself in its own size")
+    seed, world = given["seed"], trained.episode
+    policy = trained.policy(seed, given["mode"] or "full")
+    key = evaluation_keys(trained.seeds[0] if seed is None else seed, given["episode"] + 1)[-1]
+    seeds = [seed_of(*map(int, jax.random.key_data(key)))]
+    copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")
+    obs, total, pictures = copies.reset()[0], 0.0, [copies.picture()]
+    for _ in range(given["episode_steps"] or world.steps):
+        got = copies.step(policy(obs)[None])
+        obs, total = got.following[0], total + float(got.reward[0])
+        if got.terminated[0] or got.truncated[0]:
+            break
+        pictures.append(copies.picture())
+    copies.close()
+    fps = 1 / world.spec.dt
+    write(out, len(pictures), fps, lambda shown, smooth: [pictures[i] for i in shown])
+    print(f"{out}: {len(pictures)} pictures, return {total:,.1f}, step {trained.step:,}")
 
 
 def _check(check: Callable[..., None], *values: Any) -> None:
@@ -182,8 +212,10 @@ def main() -> None:
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
     from hybrid_rl.analysis.drawing import SUFFIXES, draw_beside
+    from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.envs.mujoco.scenery import scene_of
+    from hybrid_rl.trained import chosen
 
     default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
     out = Path(given["out"] or default)
@@ -198,7 +230,11 @@ def main() -> None:
     if given["mode"] == "training" and given["run"]:
         _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
         return
-    world, by, shown = _shown(given, changes, out)
+    trained = None if given["task"] else chosen(given)
+    if trained is not None and isinstance(trained.episode.env, External):
+        _outside(trained, given, out)
+        return
+    world, by, shown = _shown(given, changes, out, trained)
     if given["at"]:
         last = len(shown.poses) - 1
         poses = shown.poses[np.minimum(given["at"], last)]

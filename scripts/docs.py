@@ -75,7 +75,7 @@ PAGES = {
         *("docs/files", "docs/renamed", "CONTRIBUTING"),
     ],
     "Notebooks": NOTEBOOKS,
-    "Methods": ["docs/methods", "All methods <methods/index>"],
+    "Methods": ["docs/methods", "docs/tasks", "All methods <methods/index>"],
     "Results": ["docs/atlas", "docs/results/README"],
     "Reference": ["Reference <reference/index>", "CHANGELOG", "Software paper <paper/paper>"],
 }

@@ -39,7 +39,7 @@ ALLOWED = {
     "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "protocols", "core", "networks"},
     "envs": {"types", "fields", "protocols", "errors", "envs"},
-    "training": {*SHARED, "envs", "data", "training"},
+    "training": {"errors", *SHARED, "envs", "data", "training"},
     "archive": {"types", "protocols"},
     "data": {*SHARED, "parts", "archive"},
     "beliefs": {*SHARED, "archive"},

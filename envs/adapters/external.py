@@ -13,7 +13,7 @@ Source: Gymnasium's documentation, "Env", "AutoresetMode".
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from importlib import import_module
 from typing import Any, NamedTuple, NoReturn
 
@@ -109,9 +109,11 @@ class External:
             return env
         return FlattenObservation(env)
 
-    def copies(self, seeds: Sequence[int], steps: int, repeat: int = 1) -> "Copies":
+    def copies(
+        self, seeds: Sequence[int], steps: int, repeat: int = 1, render_mode: str | None = None
+    ) -> "Copies":
         """One copy for each seed; steps: decisions until the time limit of each."""
-        return Copies(self, seeds, steps, repeat)
+        return Copies(self, seeds, steps, repeat, render_mode)
 
 
 class Known(NamedTuple):
@@ -135,14 +137,22 @@ class Outcome(NamedTuple):
 class Copies:
     """N copies of an environment, which step side by side."""
 
-    def __init__(self, env: External, seeds: Sequence[int], steps: int, repeat: int) -> None:
+    def __init__(
+        self,
+        env: External,
+        seeds: Sequence[int],
+        steps: int,
+        repeat: int,
+        render_mode: str | None = None,
+    ) -> None:
         self.env, self.seeds, self.steps, self.repeat = env, list(map(int, seeds)), steps, repeat
+        self.render_mode = render_mode
         self.decisions = np.zeros(len(self.seeds), int)  # of the episode
         self._obs = np.zeros((len(self.seeds), env.spec.obs), np.float32)
 
     @cached_property
     def _vector(self) -> Any:
-        makers = [self.env.one for _ in self.seeds]
+        makers = [partial(self.env.one, self.render_mode) for _ in self.seeds]
         options: dict[str, Any] = {"autoreset_mode": AutoresetMode.DISABLED}
         if self.env.processes:
             return AsyncVectorEnv(makers, context="spawn", **options)
@@ -179,6 +189,17 @@ class Copies:
         cut = (np.asarray(cut) | (self.decisions >= self.steps)) & ~np.asarray(ended)
         done = ended | cut
         return Outcome(obs, reward, np.array(ended), cut, self._next(obs, done))
+
+    def picture(self) -> np.ndarray:
+        """The first environment [height, width, 3] (uint8), with render_mode="rgb_array".
+
+        Raises:
+            WorldError: if it gives none.
+        """
+        found = self._call("render", lambda: self._vector.render()[0])
+        if not (isinstance(found, np.ndarray) and found.ndim == 3):
+            raise WorldError(f"{self.env.name}: render: gives no picture, but {type(found)}")
+        return found[: found.shape[0] // 2 * 2, : found.shape[1] // 2 * 2]
 
     def _next(self, obs: np.ndarray, done: np.ndarray) -> np.ndarray:
         """The observations [N, o] that the next decision sees."""

@@ -23,7 +23,7 @@ import numpy as np
 OBSERVED, MOVED = struct.Struct("<qqdf"), struct.Struct("<cq")
 ACTION, RESET, UNPLUG = b"a", b"r", b"u"
 DEAF_S = 0.25  # [s] without an action, after which the stand-in lets go
-BEHIND = 20  # steps behind the clock, after which it begins anew
+BEHIND = 20  # steps behind the clock, after which it begins again
 
 
 class StandIn:
@@ -92,7 +92,10 @@ class StandIn:
         while True:
             try:
                 data = self._socket.recv(4096)
-            except (BlockingIOError, ConnectionRefusedError):  # nothing; or nobody
+            except (
+                BlockingIOError,
+                ConnectionRefusedError,
+            ):  # nothing has arrived, or no stand-in runs
                 return
             if len(data) != OBSERVED.size + 4 * self.obs:
                 continue  # cut
@@ -167,7 +170,7 @@ class Physics:
         self.action, self.heard, self.newest = np.zeros(len(kind.low)), 0.0, -1
         self.episode, self.deaf_until = 0, 0.0
         self.late: list[float] = []  # [s] of each step behind its time
-        self.begun = 0  # times that the clock began anew
+        self.begun = 0  # times that the clock began again
 
     def run(self, seconds: float) -> None:
         """Step until the time is over."""
@@ -191,7 +194,7 @@ class Physics:
         within = float((late < self.kind.step_s).mean())
         return (
             f"stand-in: {len(self.late):,} steps, {100 * within:.2f}% within their period, at most "
-            f"{1e3 * late.max():.1f} ms late, {self.begun} times begun anew; {self.faults:,} "
+            f"{1e3 * late.max():.1f} ms late, {self.begun} times begun again; {self.faults:,} "
             f"faults, {self.beyond} actions beyond the bounds"
         )
 

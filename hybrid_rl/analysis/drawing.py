@@ -1,8 +1,9 @@
 """Positions of a MuJoCo scene, drawn without a display: an array, a video, a GIF, a still."""
 
 import contextlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -27,24 +28,37 @@ def draw(
     scene: MJCF text. qpos: [frames, nq]. fps: [1/s]. width, height: [pixels], even. panel: of the
     number of a frame, a picture [height, w, 3] (uint8), w even, to the right of it.
     """
-    out = Path(out)
+
+    def pictures(shown: Sequence[int], smooth: bool) -> Iterable[np.ndarray]:
+        plain = frames(scene, qpos[list(shown)], width, height, smooth)
+        if panel is None:
+            return plain
+        return (np.hstack([one, panel(i)]) for i, one in zip(shown, plain, strict=True))
+
+    return write(Path(out), len(qpos), fps, pictures)
+
+
+def write(
+    out: Path, count: int, fps: float, pictures: Callable[[Sequence[int], bool], Iterable[Any]]
+) -> Path:
+    """Writes a file of one of SUFFIXES, as `draw`, of `count` pictures.
+
+    pictures: of (which of them, whether the picture is one of a .png) the pictures, even in size.
+    """
     if out.suffix not in SUFFIXES:
         raise ValueError(f"{out}: must end in {', '.join(SUFFIXES)}")
-    shown = range(len(qpos))
+    shown = range(count)
     if out.suffix == ".gif" and fps > GIF_FPS:
         stride = int(np.ceil(fps / GIF_FPS))
         shown, fps = shown[::stride], fps / stride
     if out.suffix == ".png":
-        shown = range(len(qpos) // 2, len(qpos) // 2 + 1)
+        shown = range(count // 2, count // 2 + 1)
     out.parent.mkdir(parents=True, exist_ok=True)
     part = out.with_stem(f".{out.stem}.part")
-    plain = frames(scene, qpos[list(shown)], width, height, out.suffix == ".png")
-    if panel is not None:
-        plain = (np.hstack([one, panel(i)]) for i, one in zip(shown, plain, strict=True))
-    pictures = _counted(plain, len(shown))
-    write = {".mp4": _write_mp4, ".gif": _write_gif, ".png": _write_png}[out.suffix]
+    drawn = _counted(pictures(shown, out.suffix == ".png"), len(shown))
+    to = {".mp4": _write_mp4, ".gif": _write_gif, ".png": _write_png}[out.suffix]
     try:
-        write(part, pictures, fps)
+        to(part, drawn, fps)
         part.replace(out)
     finally:
         part.unlink(missing_ok=True)

@@ -17,7 +17,7 @@ def loop_of(agent: Agent, seeds: tuple[int, ...], stride: int, folder: Path = Pa
     folder: of the run, in which the files of a robot are.
 
     Raises:
-        UsageError: for a world that nobody steps.
+        UsageError: for a world that the caller steps.
     """
     env = agent.episode.env
     if isinstance(env, Robot):

@@ -8,12 +8,7 @@
 goes on behind the last row of its checkpoint, and loses none that came in the meantime.
 """
 
-import fcntl
-import os
-import subprocess
-import sys
 import time
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -29,18 +24,16 @@ from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.external import Outcome
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.errors import WorldError
 from hybrid_rl.training.actor import check_one
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.host_loop import HostLoop, states
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS
 from hybrid_rl.training.metrics import outcome
+from hybrid_rl.training.robot_process import RobotProcess
 
 RESUMED = "the robot went on, or begins a new episode: its rows so far are read first, and the "
 RESUMED += "decisions after them differ from those of a run without the interruption"
-TRIES = 5  # starts of the robot's process in a row without a new decision
 POLL_S = 5e-4  # [s]
-LOWER = 10  # priority of the learner
 
 
 @dataclass
@@ -232,77 +225,3 @@ class RobotProgram:
         own = {f"robot/{name}": table[:, k] for k, name in enumerate(names)}
         own["robot/updates_per_s"] = np.full((done, 1), rate, np.float32)
         return {name: row[:done] for name, row in rows.items()} | own
-
-
-def _lower() -> None:
-    """Lower the priority of this process' threads, those of XLA too, below the robot's."""
-    for thread in Path("/proc/self/task").glob("*"):
-        with suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, int(thread.name), LOWER)
-
-
-class RobotProcess:
-    """The robot's process, started at the first `watch`, and again if it dies."""
-
-    def __init__(self, env: Robot, folder: Path) -> None:
-        """folder: of the files that it shares."""
-        self.env, self.folder = env, folder
-        self.child: subprocess.Popen | None = None
-        self.tries, self.ended, self.looked = 0, False, 0.0
-
-    def alive(self) -> bool:
-        """Whether a process owns the robot: a child of this one, or of a learner before it."""
-        if self.child is not None and self.child.poll() is None:
-            return True
-        with open(self.folder / "lock", "w") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except OSError:
-                return True
-        return False
-
-    def watch(self) -> None:
-        """Start the process if there is none.
-
-        Raises:
-            WorldError: if it ended for a mistake in the robot's class, or does not stay alive.
-        """
-        if time.monotonic() - self.looked < 0.2:
-            return
-        self.looked = time.monotonic()
-        if self.alive():
-            return
-        code = None if self.child is None else self.child.returncode
-        error = self.folder / "error"
-        line = error.read_text() if error.exists() else ""
-        if code == 0:
-            self.ended = True
-        elif code == 2 or self.tries >= TRIES:
-            raise WorldError(line or f"{self.env.name}: its process ended with {code}")
-        else:
-            error.unlink(missing_ok=True)
-            self._start()
-
-    def _start(self) -> None:
-        self.tries += 1
-        run = self.folder.parent.resolve()
-        _lower()
-        flags = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_multi_thread_eigen=false"
-        with open(self.folder / "console", "ab") as out:
-            self.child = subprocess.Popen(
-                [sys.executable, "-m", "hybrid_rl.robot", f"run={run}", "learning=true"],
-                env=os.environ | {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": flags},
-                stdout=out,
-                stderr=out,
-            )
-
-    def stop(self) -> None:
-        """End motion, then the process."""
-        if not self.alive():
-            return
-        (self.folder / "stop").touch()
-        until = time.monotonic() + 10
-        while self.alive() and time.monotonic() < until:
-            time.sleep(0.01)
-        if self.child is not None and self.child.poll() is None:
-            self.child.kill()

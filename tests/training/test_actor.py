@@ -18,7 +18,7 @@ from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.training import actor as actors
 from hybrid_rl.training.actor import Actor
 from hybrid_rl.training.loops import loop_of
-from hybrid_rl.training.robot_loop import RobotProcess
+from hybrid_rl.training.robot_process import RobotProcess
 
 LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
 LINE += ["policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4", "total_steps=200"]
@@ -171,7 +171,7 @@ def test_a_method_that_does_not_return_ends_motion_and_the_process(agent, tmp_pa
     def leave(code):
         codes.append(code)
         over.set()
-        time.sleep(0.3)  # so that the thread does not look again
+        time.sleep(0.3)  # so that the thread does not check again
 
     monkeypatch.setattr(actors.os, "_exit", leave)
     actor, _ = moved(

@@ -1,0 +1,89 @@
+"""The learner's view of the process that owns the robot: it starts it, watches it, and stops it."""
+
+import fcntl
+import os
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.errors import WorldError
+
+TRIES = 5  # starts of the process in a row without a new decision
+LOWER = 10  # priority of the learner
+
+
+class RobotProcess:
+    """The robot's process, started at the first `watch`, and again if it dies."""
+
+    def __init__(self, env: Robot, folder: Path) -> None:
+        """folder: of the files that it shares."""
+        self.env, self.folder = env, folder
+        self.child: subprocess.Popen | None = None
+        self.tries, self.ended, self.checked = 0, False, 0.0
+
+    def alive(self) -> bool:
+        """Whether a process owns the robot: a child of this one, or of a learner before it."""
+        if self.child is not None and self.child.poll() is None:
+            return True
+        with open(self.folder / "lock", "w") as file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                return True
+        return False
+
+    def watch(self) -> None:
+        """Start the process if there is none.
+
+        Raises:
+            WorldError: if it ended for a mistake in the robot's class, or does not stay alive.
+        """
+        if time.monotonic() - self.checked < 0.2:
+            return
+        self.checked = time.monotonic()
+        if self.alive():
+            return
+        code = None if self.child is None else self.child.returncode
+        error = self.folder / "error"
+        line = error.read_text() if error.exists() else ""
+        if code == 0:
+            self.ended = True
+        elif code == 2 or self.tries >= TRIES:
+            raise WorldError(line or f"{self.env.name}: its process ended with {code}")
+        else:
+            error.unlink(missing_ok=True)
+            self._start()
+
+    def _start(self) -> None:
+        self.tries += 1
+        run = self.folder.parent.resolve()
+        _lower()
+        flags = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_multi_thread_eigen=false"
+        with open(self.folder / "console", "ab") as out:
+            self.child = subprocess.Popen(
+                [sys.executable, "-m", "hybrid_rl.robot", f"run={run}", "learning=true"],
+                env=os.environ | {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": flags},
+                stdout=out,
+                stderr=out,
+            )
+
+    def stop(self) -> None:
+        """End motion, then the process."""
+        if not self.alive():
+            return
+        (self.folder / "stop").touch()
+        until = time.monotonic() + 10
+        while self.alive() and time.monotonic() < until:
+            time.sleep(0.01)
+        if self.child is not None and self.child.poll() is None:
+            self.child.kill()
+
+
+def _lower() -> None:
+    """Lower the priority of this process' threads, those of XLA too, below the robot's."""
+    for thread in Path("/proc/self/task").glob("*"):
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, int(thread.name), LOWER)
