@@ -20,7 +20,8 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core.branching import where
-from hybrid_rl.envs.adapters.external import Copies, External, Outcome
+from hybrid_rl.envs.adapters.copies import Copies, Outcome
+from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode

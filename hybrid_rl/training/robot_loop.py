@@ -22,7 +22,7 @@ from jax import Array
 from hybrid_rl.core.branching import where
 from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
-from hybrid_rl.envs.adapters.external import Outcome
+from hybrid_rl.envs.adapters.copies import Outcome
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.training.actor import check_one
 from hybrid_rl.training.agent import AgentState
