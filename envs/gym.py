@@ -37,7 +37,7 @@ def limits() -> dict[str, int]:
     return {
         task["env"]["_target_"]: task["episode"]["steps"] * task["episode"]["action_repeat"]
         for task in tasks
-        if task["episode"]["steps"]
+        if task["episode"]["steps"] and ".adapters." not in task["env"]["_target_"]
     }
 
 

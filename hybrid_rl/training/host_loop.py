@@ -49,10 +49,11 @@ class HostLoop(Loop):
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that learns; that of the other one is kept."""
         began, zero = perf_counter(), jnp.zeros((), jnp.int32)
-        decide = jax.vmap(self.agent.decide, (0, None))
-        parts = (SEEDS, REPLICATED), SEEDS
-        self.deciding = self.shard(decide, *parts, donate_argnums=0).trace(state, zero)
-        u, _, planned = jax.eval_shape(decide, state, zero)
+        decide = jax.vmap(self._decide, (0, 0, 0, 0, None))
+        parts = (SEEDS, SEEDS, SEEDS, SEEDS, REPLICATED), SEEDS
+        given = state.learners, state.control, state.env, state.key, zero
+        self.deciding = self.shard(decide, *parts, donate_argnums=1).trace(*given)
+        u, _, planned = jax.eval_shape(decide, *given)
         env = state.env
         got = Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
         parts = (SEEDS, METRICS, SEEDS, SEEDS, SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
@@ -82,6 +83,17 @@ class HostLoop(Loop):
             return state.replace(control=self.agent.first_control())
 
         return self.shard(jax.vmap(one), SEEDS, SEEDS, donate_argnums=0)(state, obs)
+
+    def _decide(
+        self, learners: Any, control: Any, env: EnvState, key: Array, step: Array
+    ) -> tuple[Array, Any, dict[str, Array]]:
+        """Actions [E, m] of one learner, the states of its controllers, and metrics.
+
+        The memory is no argument, as each array of a call takes time.
+        """
+        state = AgentState(env, control, None, learners, key)
+        u, after, planned = self.agent.decide(state, step)
+        return u, after.control, planned
 
     def _step(
         self, state: AgentState, planned: Any, u: Array, got: Outcome, step: Array
@@ -128,7 +140,10 @@ class HostProgram:
         rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
         for i in range(int(rounds)):
             step = np.int32(first + i * envs)
-            u, state, planned = self.decide(state, step)
+            u, control, planned = self.decide(
+                state.learners, state.control, state.env, state.key, step
+            )
+            state = state.replace(control=control)
             got = self.copies.step(np.asarray(u).reshape(-1, u.shape[-1]))
             got = Outcome(*(value.reshape(*each, *value.shape[1:]) for value in got))
             state, rows = self.learn(state, rows, planned, u, got, np.int32(i), step)
