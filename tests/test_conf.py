@@ -59,6 +59,7 @@ TASKS = {  # methods that need another task than the pendulum
 }
 METHODS = [path.stem for path in sorted((config.CONF / "algo").glob("*.yaml"))]
 NOT_HERE = ("pendulum", "gymnasium", "playground")  # with all methods, on the host, not installed
+NOT_HERE += ("robot", "online")  # of the user
 EACH = [  # every method on one task, the default on the default task, one on every task
     *((TASKS.get(algo, "pendulum"), algo) for algo in METHODS),
     ("halfcheetah", "hybrid_stochastic"),

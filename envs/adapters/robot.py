@@ -18,7 +18,7 @@ a second thread when another method does not return.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NoReturn
 
@@ -33,24 +33,10 @@ from hybrid_rl.types import EnvState, Spec
 METHODS = ("reset", "observe", "apply", "reward", "stop")
 
 
-@dataclass(frozen=True)
-class Outside:
-    """A world that the caller steps: an observation of `obs` numbers, `act` of an action."""
+class Unstepped:
+    """A world of which JAX knows the sizes alone."""
 
-    obs: int = 1
-    act: int = 1
-    dt: float = 0.05  # [s] between decisions
-
-    def __post_init__(self) -> None:
-        """Check the sizes."""
-        for name in ("obs", "act", "dt"):
-            if not getattr(self, name) > 0:
-                raise UsageError(f"{name}={getattr(self, name)}: must be above 0")
-
-    @property
-    def spec(self) -> Spec:
-        """Its sizes, and the time between decisions."""
-        return Spec(self.obs, self.act, self.dt)
+    spec: Spec
 
     def reset(self, key: Array) -> EnvState:
         """A state with zeros for the observation."""
@@ -70,16 +56,33 @@ class Outside:
 
 
 @dataclass(frozen=True)
-class Robot(Outside):
+class Outside(Unstepped):
+    """A world that the caller steps: an observation of `obs` numbers, `act` of an action."""
+
+    obs: int = 1
+    act: int = 1
+    dt: float = 0.05  # [s] between decisions
+
+    def __post_init__(self) -> None:
+        """Check the sizes."""
+        for name in ("obs", "act", "dt"):
+            if not getattr(self, name) > 0:
+                raise UsageError(f"{name}={getattr(self, name)}: must be above 0")
+
+    @property
+    def spec(self) -> Spec:
+        """Its sizes, and the time between decisions."""
+        return Spec(self.obs, self.act, self.dt)
+
+
+@dataclass(frozen=True)
+class Robot(Unstepped):
     """A robot that learns while it moves. Its sizes are read from its class, without making one.
 
     Raises:
         UsageError: if the class cannot be imported, or lacks something.
     """
 
-    obs: int = field(default=0, init=False)  # these three: of the class
-    act: int = field(default=0, init=False)
-    dt: float = field(default=0.0, init=False)
     make: str | Callable[..., Any] = ""  # MODULE:CLASS, or the class itself
     kwargs: Mapping[str, Any] | None = None  # of the class
     past_actions: int = 0  # that the observation ends with, where actions take a period to act

@@ -91,7 +91,8 @@ class HostLoop(Loop):
 
         The memory is no argument, as each array of a call takes time.
         """
-        state = AgentState(env, control, None, learners, key)
+        memory: Any = None
+        state = AgentState(env, control, memory, learners, key)
         u, after, planned = self.agent.decide(state, step)
         return u, after.control, planned
 
