@@ -55,7 +55,8 @@ def runs_here(name, given):
         return "study" not in given and "x" not in given and metrics <= METRICS
     if name == "render" and given.get("mode") == "training":  # test_belief_frames.py
         return False
-    return name not in ("train", "benchmark") and "..." not in given.values()  # test_benchmark.py
+    elsewhere = ("train", "benchmark", "stand_in", "robot")  # test_benchmark.py, test_robot_run.py
+    return name not in elsewhere and "..." not in given.values()
 
 
 @pytest.fixture(scope="module")
