@@ -93,9 +93,10 @@ def test_rows_are_decisions_in_order(agent, tmp_path):
         if row["stretch"] == after["stretch"]:
             assert np.array_equal(row["next_obs"], after["obs"])
         assert row["next_obs"][1] == row["obs"][1] + 1 == row["reward"]
-    ends = [(row["episode"], row["obs"][1]) for row in rows if row["truncated"]]
-    assert ends[:2] == [(1, 10), (2, 10)]
-    assert [row["obs"][1] for row in rows if row["terminated"]][:1] == [5]
+    for episode in (1, 2):  # a missed deadline leaves decisions out
+        assert [row["truncated"] for row in rows if row["episode"] == episode] == [0] * 9 + [1]
+    third = [row for row in rows if row["episode"] == 3]
+    assert [row["terminated"] for row in third] == [row["next_obs"][1] > 5 for row in third]
     applied = np.array(actor.robot.applied)
     assert applied.min() >= 0
     assert applied.max() <= 2
@@ -109,7 +110,15 @@ def test_past_actions_end_the_observation(agent, tmp_path):
     run = config.build(config.load([*LINE, "env.past_actions=2"]))
     _, rows = moved(run.agent, tmp_path, Counting, past_actions=2)
     assert rows[0]["obs"].shape == (6,)
-    assert rows[5]["obs"][4:].tolist() == [float(rows[4]["action"][0]), float(rows[3]["action"][0])]
+    triples = [
+        three
+        for three in zip(rows, rows[1:], rows[2:], strict=False)
+        if len({int(row["stretch"]) for row in three}) == 1
+    ]
+    assert len(triples) > 5
+    for one, two, three in triples:
+        past = [float(two["action"][0]), float(one["action"][0])]
+        assert three["obs"][4:].tolist() == past
 
 
 def lost(obs):
@@ -123,22 +132,26 @@ def lost(obs):
     ids=["silent", "nan", "stale"],
 )
 def test_without_an_observation_the_action_is_safe(agent, tmp_path, fault):
-    actor, rows = moved(agent, tmp_path, broken(fault))
+    actor, rows = moved(agent, tmp_path, broken(fault), stale=20.0)
     assert actor.counts.unsafe == actor.counts.stale == 1
     assert 0.5 in actor.robot.applied
-    second = [row for row in rows if row["episode"] == 2]
-    assert [row["obs"][1] for row in second] == [1, 2, 5, 6, 7, 8, 9, 10, 11, 12]
-    assert second[1]["stretch"] + 1 == second[2]["stretch"]
+    second = {int(row["obs"][1]): int(row["stretch"]) for row in rows if row["episode"] == 2}
+    assert len(second) == 10
+    assert not second.keys() & {3, 4}  # the decision before has no outcome
+    before, after = (
+        [s for at, s in second.items() if (at < 3) == early] for early in (True, False)
+    )
+    assert max(before) < min(after)
 
 
 def test_a_robot_that_falls_silent_is_stopped_and_awaited(agent, tmp_path, monkeypatch):
     monkeypatch.setattr(actors, "RETRY_S", 0.02)
 
     class Silent(Counting):
-        faults: ClassVar[dict] = {(2, count): lost for count in range(4, 60)}
+        faults: ClassVar[dict] = {(2, count): lost for count in range(4, 25)}
 
     actor, rows = moved(agent, tmp_path, Silent, seconds=1.0, silence_s=0.05)
-    assert actor.robot.stopped == 2
+    assert actor.robot.stopped >= 2
     assert rows[-1]["episode"] > 2
 
 
@@ -195,7 +208,12 @@ def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
     assert np.array_equal(memory[:, :4], [row["obs"] for row in rows[:30]])
     assert np.array_equal(memory[:, 4], [row["action"][0] for row in rows[:30]])
     assert np.array_equal(memory[:, -4:], [row["next_obs"] for row in rows[:30]])
-    assert np.flatnonzero(memory[:, 7]).tolist() == [9, 11, 19]  # two time limits, and the gap
+    cut = [row["stretch"] != after["stretch"] for row, after in pairwise(rows[:31])]
+    ended = [bool(row["terminated"]) for row in rows[:30]]
+    assert sum(cut) >= 3  # time limits, and the gap
+    wanted = [c and not e for c, e in zip(cut, ended, strict=True)]
+    assert (memory[:, 7] == 1).tolist()[:29] == wanted[:29]  # the last one's follower is unread
+    assert (memory[:, 6] == 1).tolist() == ended
     assert metrics["episode/length"][:, 0, 0].tolist() == [*range(1, 11), *range(1, 11)]
     assert len(more["episode/done"]) == len(more["robot/late_s"]) == 10
     while np.isnan(more["sac/critic_loss"]).all():  # it learns while no row comes
