@@ -3,7 +3,7 @@
     observe -> decide with the newest parameters -> limit -> apply -> append a row -> sleep
 
 Files in a folder connect it with the learner: `rows` (data.row_log) in one direction, `parameters`
-(data.handover) in the other, and `stop`, whose existence ends the motion. So each of both can be
+(data.handover) in the other, and `stop`, whose existence ends the motion. So either process can be
 killed and started again while the other one goes on.
 
 Times are those of one monotonic clock. Decision k begins at t0 + k dt; after a missed deadline the
@@ -34,7 +34,7 @@ from hybrid_rl.types import Params
 
 RESET_S = 120.0  # [s] that a robot's `reset` may take
 RETRY_S = 1.0  # [s] between attempts to reach a robot that does not answer
-ENDED, LOST = 0, 3  # exit codes: asked to stop; the robot does not answer
+LOST = 3  # exit code: the robot does not answer
 
 
 @dataclass
@@ -70,10 +70,10 @@ class Actor:
         self.env, self.spec = env, env.spec
         self._decide = Decider(self.agent, self.seed, self.recording)
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
-        self._ended = False
+        self._made, self._ended = time.time(), False
 
-    def run(self, seconds: float = math.inf) -> int:
-        """Move until asked to stop, or for so many seconds; returns the exit code.
+    def run(self, seconds: float = math.inf) -> None:
+        """Move until asked to stop, or for so many seconds.
 
         Raises:
             WorldError: if a method of the robot's is wrong; motion has ended then.
@@ -98,15 +98,15 @@ class Actor:
             self._ended, self._allowed = True, math.inf
             gc.enable()
             self.robot.stop()
-        return ENDED
 
     def _over(self) -> bool:
         """Whether to stop: a signal, the file `stop`, or no sign of the learner for too long."""
         if self.asked or (self.folder / "stop").exists():
             return True
-        if not self.recording or self.params is None:
+        if not self.recording:
             return False
-        seen = (self.folder / "parameters").stat().st_mtime
+        file = self.folder / "parameters"
+        seen = max(file.stat().st_mtime if file.exists() else 0.0, self._made)
         return time.time() - seen > self.env.alone_s
 
     def _drive(self, end: float) -> None:
@@ -174,13 +174,14 @@ class Actor:
     def _observed(self, past: list[np.ndarray]) -> tuple[np.ndarray | None, float]:
         """(observation [o] with past actions, its time); None if there is none to act on."""
         try:
-            obs, stamp = self._call("observe", self.robot.observe)
-        except WorldError:
-            raise
-        except Exception:  # a robot that does not answer
+            given = self._call("observe", self.robot.observe)
+        except OSError:  # a robot that does not answer
             self.counts.stale += 1
             return None, 0.0
-        obs = np.array(obs, np.float32)
+        if not (isinstance(given, tuple) and len(given) == 2):
+            line = "must return (observation, its time.monotonic())"
+            raise WorldError(f"{self.env.name}: observe: {line}")
+        obs, stamp = np.array(given[0], np.float32), given[1]
         if obs.shape != (self.env.kind.obs,):
             line = f"gives {list(obs.shape)}, and the class says obs = {self.env.kind.obs}"
             raise WorldError(f"{self.env.name}: observe: {line}")

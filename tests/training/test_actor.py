@@ -72,7 +72,6 @@ def moved(agent, folder, kind, seconds=0.4, **fields):
     """(actor, its rows) after it moved for so long with the first parameters."""
     agent = of(agent, kind, **fields)
     actor = Actor(agent, folder, params=agent.params(agent.init(jax.random.key(0))))
-    (folder / "parameters").touch()
     actor.run(seconds)
     rows, log = [], RowLog(folder / "rows", agent.spec)
     while (row := log.read(len(rows))) is not None:
@@ -121,6 +120,15 @@ def test_past_actions_end_the_observation(agent, tmp_path):
         assert three["obs"][4:].tolist() == past
 
 
+def test_it_ends_without_a_learner(agent, tmp_path):
+    actor = Actor(of(agent, Counting, alone_s=0.2), tmp_path)
+    began = time.monotonic()
+    actor.run()
+    assert 0.1 < time.monotonic() - began < 5
+    assert actor.robot.stopped == 1
+    assert not actor.robot.applied
+
+
 def lost(obs):
     """A connection that is lost."""
     raise ConnectionError("no datagram")
@@ -159,6 +167,7 @@ def test_a_robot_that_falls_silent_is_stopped_and_awaited(agent, tmp_path, monke
     ("method", "line"),
     [
         ("observe", r"observe: gives \[3\], and the class says obs = 4"),
+        ("alone", r"observe: must return \(observation, its time\.monotonic\(\)\)"),
         ("reward", r"reward: gives nan"),
         ("apply", r"apply: .*test_actor.py:\d+: ZeroDivisionError"),
     ],
@@ -166,6 +175,7 @@ def test_a_robot_that_falls_silent_is_stopped_and_awaited(agent, tmp_path, monke
 def test_a_mistake_in_the_class_ends_motion_with_its_line(agent, tmp_path, method, line):
     wrong = {
         "observe": lambda self: (np.zeros(3), time.monotonic()),
+        "alone": lambda self: np.zeros(4),
         "reward": lambda self, obs, action, next_obs: float("nan"),
         "apply": lambda self, action: 1 / 0,
     }
