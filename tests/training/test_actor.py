@@ -179,10 +179,9 @@ def test_a_mistake_in_the_class_ends_motion_with_its_line(agent, tmp_path, metho
         "reward": lambda self, obs, action, next_obs: float("nan"),
         "apply": lambda self, action: 1 / 0,
     }
-    stopped = []
-    kind = type(
-        "Wrong", (Counting,), {method: wrong[method], "stop": lambda self: stopped.append(1)}
-    )
+    stopped, name = [], "observe" if method == "alone" else method
+    given = {name: wrong[method], "stop": lambda self: stopped.append(1)}
+    kind = type("Wrong", (Counting,), given)
     with pytest.raises(WorldError, match=line):
         moved(agent, tmp_path, kind)
     assert len(stopped) == 1
