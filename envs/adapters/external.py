@@ -18,13 +18,13 @@ from importlib import import_module
 from typing import Any, NamedTuple, NoReturn
 
 import gymnasium
-import jax.numpy as jnp
 import numpy as np
 from gymnasium.spaces import Box
 from gymnasium.wrappers import FlattenObservation
 from jax import Array
 
 from hybrid_rl.envs.adapters.copies import Copies
+from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.errors import UsageError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
@@ -34,7 +34,7 @@ HUGE = 100_000  # entries; an image has as many
 
 
 @dataclass(frozen=True)
-class External:
+class External(Unstepped):
     """An environment that Gymnasium makes, of which one copy is made to read its spaces.
 
     Raises:
@@ -73,11 +73,6 @@ class External:
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
         return self.known.spec
-
-    def reset(self, key: Array) -> EnvState:
-        """A state with zeros for the observation; the loop on the host puts the true one."""
-        zero, no = jnp.zeros(()), jnp.zeros((), bool)
-        return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
 
     def step(self, state: EnvState, action: Array) -> NoReturn:
         """No JAX function.

@@ -20,39 +20,16 @@ a second thread when another method does not return.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NoReturn
+from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
-from jax import Array
 
 from hybrid_rl.envs.adapters.external import Items, imported
+from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.errors import UsageError, gist, in_user_code
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import Spec
 
 METHODS = ("reset", "observe", "apply", "reward", "stop")
-
-
-class Unstepped:
-    """A world of which JAX knows the sizes alone."""
-
-    spec: Spec
-
-    def reset(self, key: Array) -> EnvState:
-        """A state with zeros for the observation."""
-        zero, no = jnp.zeros(()), jnp.zeros((), bool)
-        return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
-
-    def step(self, state: EnvState, action: Array) -> NoReturn:
-        """No JAX function.
-
-        Raises:
-            UsageError: always.
-        """
-        raise UsageError(
-            f"{type(self).__name__}: steps by itself; no method can plan on it, and evaluate and "
-            "render cannot step it (`python -m hybrid_rl.robot run=DIR` moves a robot)"
-        )
 
 
 @dataclass(frozen=True)
