@@ -225,11 +225,9 @@ def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
     assert (memory[:, 6] == 1).tolist() == ended
     assert metrics["episode/length"][:, 0, 0].tolist() == [*range(1, 11), *range(1, 11)]
     assert len(more["episode/done"]) == len(more["robot/late_s"]) == 10
-    while np.isnan(more["sac/critic_loss"]).all():  # it learns while no row comes
-        threading.Timer(0.5, loop.cut_short).start()
-        state, more = program(state, jnp.int32(len(rows)), jnp.int32(20))
-        assert len(more["episode/done"]) == 0
-        break
+    threading.Timer(0.5, loop.cut_short).start()
+    state, more = program(state, jnp.int32(len(rows)), jnp.int32(20))  # it learns: no row comes
+    assert len(more["episode/done"]) == 0
     assert program.learned > 0
 
 
