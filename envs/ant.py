@@ -99,6 +99,13 @@ class Ant:
             return ~((obs[0] >= 0.2) & (obs[0] <= 1.0))
         return ~(obs[0] > 0.26)
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Height [m], velocity [m/s, m/s], turning rate [rad/s] of the torso at obs [27].
+
+        `speed` is the velocity along x.
+        """
+        return {"height": obs[0], "speed": obs[13], "velocity": obs[13:15], "turning": obs[18]}
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text("ant.xml")

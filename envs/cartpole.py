@@ -64,6 +64,10 @@ class Cartpole:
             data, jnp.cos(data.qpos[1]) if self.reward == "cos" else _dm_control(data, action)
         )
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Position [m] and speed [m/s] of the cart, and the pole's height, -1 to 1, at obs [5]."""
+        return {"position": obs[0], "speed": obs[1], "height": obs[2]}
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(ASSET)

@@ -72,6 +72,10 @@ class HalfCheetah:
         limits = jnp.asarray(model.jnt_range[3:], jnp.float32)
         return pybullet_reward(alive, speed, action, data.qpos[3:], data.qvel[3:], limits)
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Height of the torso above its start [m], pitch [rad] and speed [m/s] at obs [17]."""
+        return {"height": obs[0], "pitch": obs[1], "speed": obs[8]}
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text("halfcheetah.xml")

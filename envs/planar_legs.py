@@ -93,6 +93,10 @@ class PlanarLegs(ABC):
         joints = self._body.model.nq - 1
         return ~self.alive(obs[:joints], obs[joints:])
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Height of the torso [m], pitch [rad] and speed [m/s] at obs [o]."""
+        return {"height": obs[0], "pitch": obs[1], "speed": obs[self._body.model.nq - 1]}
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(self.asset)

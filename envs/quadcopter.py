@@ -99,6 +99,13 @@ class Quadcopter:
         u = self.hovering / MAX_CONTROL
         return obs, jnp.full(4, u if self.bidirectional else 2 * u - 1)
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Angular velocity [rad/s] and velocity [m/s] in the body's frame at obs [o].
+
+        `motion` is both, one after the other.
+        """
+        return {"spin": obs[3:6], "velocity": obs[6:9], "motion": obs[3:9]}
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(SCENE)

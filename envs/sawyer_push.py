@@ -183,6 +183,10 @@ class SawyerPush:
         }
         return [groups[name] for name in self.extra]
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """The block's position seen from the target, and from the rod [m] at obs [o]."""
+        return {"block": obs[2:4] / self.state_scale, "reach": obs[:2] / self.state_scale}
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(SCENE)

@@ -31,7 +31,7 @@ from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 
 READ = (  # the keys that a run reads, and with them all keys that they refer to
-    *(*COUNTS, *SECTIONS, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
+    *(*COUNTS, *SECTIONS, "reward", "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("matmul_precision", "distributed", "logger"),
 )
@@ -166,7 +166,8 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
     for key, value in changes.items():
         section, _, name = key.partition(".")
         part = Episode if section == "episode" else part_class(changed.env._target_)
-        known = [field.name for field in fields(part) if field.name != "env"]
+        hidden = ("env", "reward") if section == "episode" else ()
+        known = [field.name for field in fields(part) if field.name not in hidden]
         if name not in known:
             whose = f"the {section} of task {config.task}"
             raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
@@ -187,6 +188,7 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
             )
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
+    given["reward"] = _instantiate(parts.get("reward") or None, "reward")
     if isinstance(env, External | Robot):
         given |= _on_host(env, given)
     return Episode(env, **given), notes
@@ -198,10 +200,11 @@ def _on_host(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
     Raises:
         UsageError: if it has none, or for a disturbance, which only a wrapper can add there.
     """
-    for key in ("delay", "sensor_noise", "action_noise"):
+    for key in ("delay", "sensor_noise", "action_noise", "reward"):
         if given.get(key):
             line = "is for the environments in JAX; put a Gymnasium wrapper around this one"
-            raise UsageError(f"episode.{key}={given[key]}: {line}")
+            where = "reward" if key == "reward" else f"episode.{key}={given[key]}"
+            raise UsageError(f"{where}: {line}")
     if given.get("steps") is not None:
         return {}
     if isinstance(env, Robot) or env.known.steps is None:
@@ -234,7 +237,7 @@ def physics(config: DictConfig) -> str | None:
 
 def _on_this_machine(config: DictConfig) -> DictConfig:
     """The sections, in which every copy of the world has its physics resolved."""
-    parts: Any = OmegaConf.masked_copy(config, list(SECTIONS))
+    parts: Any = OmegaConf.masked_copy(config, [*SECTIONS, *{"reward"} & set(config)])
     name = physics(config)
 
     def visit(node: Any) -> None:

@@ -3,9 +3,13 @@
     python -m hybrid_rl.evaluate run=runs/hopper/sac/TIME mode=policy episodes=20
     python -m hybrid_rl.evaluate policy=halfcheetah
     python -m hybrid_rl.evaluate policy=halfcheetah episode.delay=1 episode.sensor_noise=0.01
+    python -m hybrid_rl.evaluate run=DIR reward=speed reward.target=5
 
 With env.KEY=VALUE or episode.KEY=VALUE the world differs from that of the training, and the
 controller does not; the file is then DIR/evaluation_<mode>_<changes>.json.
+
+With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
+model that the run has learned; nothing is trained. planner=NAME is another planner.
 
 Without exploration, with the learners as they were at the newest checkpoint. From Python,
 `hybrid_rl.trained.load` reads a run back, and `evaluate` gives its returns.
@@ -33,6 +37,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
+from hybrid_rl.goals import retargeted
 from hybrid_rl.run import memory
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.trained import Trained, chosen
@@ -41,9 +46,13 @@ from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 
 GROUPS = {name: f"another value of a key of its {name}" for name in ("env", "episode")}
+GOAL = ("reward", "planner")
+GROUPS |= {name: f"a key of the {name} that is given" for name in GOAL}
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     POLICY,
+    Argument("reward", "", "another reward, of conf/reward; empty: that of the training"),
+    Argument("planner", "", "another planner, of conf/controller; empty: gradient for a reward"),
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )
@@ -93,10 +102,13 @@ def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
     episodes, name = given["episodes"], given["run"] or given["policy"]
-    trained = chosen(given)
+    goal = {key: given[key] for key in GOAL if given[key]}
+    goal |= {key: changes.pop(key) for key in list(changes) if key.split(".")[0] in GOAL}
+    trained = retargeted(chosen(given), [f"{key}={value}" for key, value in goal.items()])
     if changes:
         assert trained.config is not None
         trained = replace(trained, episode=configuration.disturbed(trained.config, changes))
+    changes = goal | changes
     for note in trained.notes:
         print(note)
     values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))

@@ -136,7 +136,7 @@ def _wrong(kind: Any, value: Any) -> str:
         return "" if must.hold(value) else must.words if must.has else f"must {must.words}"
     if get_origin(kind) is Literal:
         return "" if value in of else f"choose one of {', '.join(map(str, of))}"
-    if get_origin(kind) is not tuple:
+    if get_origin(kind) is not tuple or isinstance(value, float | int):
         return ""
     each = of[:1] * len(value) if of[-1] is Ellipsis else of
     if len(each) != len(value):
@@ -146,7 +146,7 @@ def _wrong(kind: Any, value: Any) -> str:
 
 def _tuples(kind: Any, value: Any) -> Any:
     """A value of this type with tuples for its lists and arrays."""
-    if get_origin(kind) is not tuple:
+    if get_origin(kind) is not tuple or isinstance(value, float | int):
         return value
     return tuple(_tuples(get_args(kind)[0], each) for each in value)
 

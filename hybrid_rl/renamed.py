@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from hybrid_rl.errors import UsageError
 
 VERSION = "0.3"
+OF_NETWORK = ("hidden", "activation", "normalise", "ends", "rule", "scale", "members", "next_state")
 RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it; the first that fits
     "settings=mbpo": "learning=mbpo",
     "mbpo.learner.early": "policy_learner.during_random",
@@ -19,14 +20,16 @@ RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it; th
     "policy_learner.early": "policy_learner.during_random",
     "policy_learner.expand": "policy_learner.value_expansion",
     "policy_learner.lookahead": "policy_learner.steps, which 0 turns off",
-    "objective=known_reward": "objective=predicted_return reward=known",
-    "objective=quadratic": "objective=predicted_return reward=quadratic",
-    "objective.state_weights": "reward.state_weights, with reward=quadratic",
-    "objective.action_weights": "reward.action_weights, with reward=quadratic",
+    "objective=known_reward": "objective=predicted_return reward_model=known",
+    "objective=quadratic": "objective=predicted_return reward_model=quadratic",
+    "objective.state_weights": "reward_model.state_weights, with reward_model=quadratic",
+    "objective.action_weights": "reward_model.action_weights, with reward_model=quadratic",
     "task_objective.state_weights": "goal.state_weights",
     "task_objective.action_weights": "goal.action_weights",
     "model_objective.state_weights": "goal.state_weights",
     "model_objective.action_weights": "goal.action_weights",
+    **{f"reward={name}": f"reward_model={name}" for name in ("network", "known", "quadratic")},
+    **{f"reward.{key}": f"reward_model.{key}" for key in OF_NETWORK},
     "dagger_learner.recent": "nothing: no method used it",
     "target=likely": "nothing: no method used it",
     "target=feature_information": "nothing: no method used it",

@@ -44,7 +44,7 @@ OF = {"tasks": ("physics",), "worlds": ("physics",), "plans": ("plan",), "learne
 PLANNED = (
     "planner",
     "objective",
-    "reward",
+    "reward_model",
     "model",
     "policy",
     "critic",

@@ -3,7 +3,8 @@
 Stochastic hybrid learning (thesis Algorithm 3) with proposals from the policy; MPPI on a
 learned model with proposals from noise. `execute` chooses the action from the weighted
 candidates: `mean` executes sum_k w_k v_k (the thesis); `sample` draws one of them, which keeps the
-policy's exploration in the data. With `model=world` candidates run through the world's states.
+policy's exploration in the data; `best` executes the candidate of the greatest return. With
+`model=world` candidates run through the world's states.
 
 An objective that is a sum over time weighs each decision of a candidate by the return from that
 decision on; any other objective weighs all of them by J (Williams et al. 2017).
@@ -17,7 +18,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, lifting, sampling
+from hybrid_rl.core import agreement, lifting, sampling
 from hybrid_rl.fields import Count, FieldError, Positive, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
 from hybrid_rl.types import EnvState, Params, Path, Spec
@@ -52,7 +53,7 @@ class SamplingController:
     temperature: Positive = 0.1  # lambda [return]; [std of returns] with normalise
     normalise: bool = False
     log_density: bool = False  # the thesis' p(v) in the weight
-    execute: Literal["mean", "sample"] = "mean"
+    execute: Literal["mean", "sample", "best"] = "mean"
     rest: float = 0.0  # [u] initial plan, and the last action of a shifted one
     agreement_every: Count = 1  # decisions between comparisons with `policy`
 
@@ -102,6 +103,9 @@ class SamplingController:
         action = plan[0]
         if self.execute == "sample":
             action = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
+        if self.execute == "best":
+            plan = samples.path.u[jnp.argmax(returns[:, 0])]
+            action = plan[0]
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
             "planner/planned_return": w[:, 0] @ returns[:, 0],
@@ -134,8 +138,8 @@ class SamplingController:
     def _agreement(self, params: Params, x: Any, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """Metrics of the difference between the weighted mean and the policy's action.
 
-        The share |mu| / (|mu| + |u - mu|) is 1 if the plan follows the policy, else near 0. NaN
-        between multiples of `agreement_every`. None on the world itself, which has no derivatives.
+        NaN between multiples of `agreement_every`. None on the world itself, which has no
+        derivatives.
         """
         if self.policy is None or isinstance(x, EnvState):
             return {}
@@ -152,26 +156,16 @@ class SamplingController:
 
     def _comparison(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """The metrics of `_agreement`."""
-        policy: Any = self.policy
 
         def step(x: Array, u: Array) -> Array:
             return self.model.step(params.model, x, u)
 
-        def mean(x: Array) -> Array:
-            return policy.mean(params.policy, x)
-
         def value(path: Path) -> Array:
             return to_go(path)[0]
 
-        insertion = adjoint.insertion_ahead(step, mean, value, x, plan[0], self.horizon)
-        own = jnp.linalg.norm(mean(x))
-        correction = jnp.linalg.norm(plan[0] - mean(x))
-        return {
-            "planner/mode_insertion_gradient": insertion,
-            **adjoint.per_variance(insertion, policy.variance(params.policy, x)),
-            "planner/policy_share": own / (own + correction + 1e-6),
-        }
+        policy: Any = self.policy
+        return agreement.metrics(step, policy, params, value, x, plan[0], self.horizon)
 
     def greedy(self) -> "SamplingController":
-        """The controller that executes the weighted mean."""
-        return replace(self, execute="mean")
+        """The controller that executes the weighted mean, or the best candidate."""
+        return self if self.execute == "best" else replace(self, execute="mean")

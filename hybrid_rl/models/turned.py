@@ -12,7 +12,7 @@ Source: frames that move with the state make any function equivariant (Puny et a
 Averaging, section 2, with one frame); as a model of dynamics our choice.
 """
 
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Any, Protocol, cast
 
 import jax
 from jax import Array
@@ -93,6 +93,12 @@ class Turned:
         """Next states [B, n] for noise [B, n] ~ N(0, I) in the frame. The key is consumed."""
         a, y, v = jax.vmap(self._into)(x, u)
         return jax.vmap(self.world.turned)(self.model.draw(params, y, v, noise, key), a)
+
+    def step_and_disagreement(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
+        """Mean of the next planning state [n], and the `disagreement` [n]."""
+        (a, *at), ensemble = self._into(x, u), cast(Any, self.model)
+        mean, disagreement = ensemble.step_and_disagreement(params, *at)
+        return self.world.turned(mean, a), disagreement
 
     def disagreement(self, params: Any, x: Array, u: Array) -> Array:
         """Standard deviation [n] of the members in the frame, in running std of the change."""

@@ -1,23 +1,44 @@
-"""v ~ pi(x): closed-loop candidates, each drawn at its imagined state (thesis Algorithm 3)."""
+"""v = s clip(pi(x)): closed-loop candidates, each drawn at its imagined state (thesis Algorithm 3).
 
-from dataclasses import dataclass
+With several `strengths` s the candidates are divided among them: a robot that runs slower than its
+policy is closer to a weaker policy than to noise. `quiet` candidates have no noise.
+"""
+
 from typing import Any
 
+import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import Fraction, Positive, part
 from hybrid_rl.protocols import Policy
 from hybrid_rl.types import Params, Spec
 
 
-@dataclass(frozen=True)
+@part
 class PolicyProposal:
-    """Candidates from the learned policy."""
+    """Candidates from the learned policy.
+
+    Raises:
+        ValueError: for strengths that are not positive, or a share outside [0, 1].
+    """
 
     policy: Policy
+    strengths: tuple[Positive, ...] = (1.0,)  # factors on the actions, one for each candidate
+    quiet: Fraction = 0.0  # share of the candidates, of each strength, that act by the mean
 
-    def init(self, spec: Spec, quantile: Array) -> tuple[()]:
-        """No carry."""
-        return ()
+    @property
+    def _plain(self) -> bool:
+        return self.strengths == (1.0,) and not self.quiet
+
+    def init(self, spec: Spec, quantile: Array) -> tuple:
+        """The factors on the actions and on the noise of a path; without strengths, no carry."""
+        if self._plain:
+            return ()
+        position = quantile * len(self.strengths)
+        number = jnp.floor(position).astype(jnp.int32)
+        return jnp.array(self.strengths)[number], (position - number >= self.quiet).astype(
+            jnp.float32
+        )
 
     def shaped(self, noise: Array) -> Array:
         """The noise [T, m] itself."""
@@ -26,6 +47,9 @@ class PolicyProposal:
     def __call__(
         self, params: Params, carry: Any, x: Array, plan: Array, noise: Array
     ) -> tuple[Array, Array, Any]:
-        """A candidate v [m] ~ pi(x), and log pi(v|x) []; the plan is not used."""
-        v, log_prob = self.policy.sample(params.policy, x, noise)
-        return v, log_prob, carry
+        """A candidate v [m] ~ pi(x), and log pi(v|x) [] before its factor; the plan is not used."""
+        if self._plain:
+            return *self.policy.sample(params.policy, x, noise), carry
+        strength, loud = carry
+        v, log_prob = self.policy.sample(params.policy, x, loud * noise)
+        return strength * v, log_prob, carry

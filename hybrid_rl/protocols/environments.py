@@ -29,11 +29,25 @@ class BalancedEnv(Env, Protocol):
         """The observation [o] and the action [m] at rest."""
 
 
-class RewardedEnv(Env, Protocol):
-    """An environment whose reward is a known function of observations and action."""
+class Goal(Protocol):
+    """A reward that is a known function of observations and action.
+
+    One with jumps may have `smoothed`, with the same arguments, for planners that take gradients.
+    """
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [m] at the observation x [o], which led to `after` [o]."""
+
+
+class RewardedEnv(Env, Goal, Protocol):
+    """An environment whose reward is a known function of observations and action."""
+
+
+class MeasuredEnv(Env, Protocol):
+    """An environment whose observation has quantities with a name and a unit."""
+
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Name -> value [] or [k] at obs [o], such as the speed [m/s] of a robot."""
 
 
 class AnalyticEnv(BalancedEnv, Protocol):
@@ -56,3 +70,4 @@ class AnalyticEnv(BalancedEnv, Protocol):
 Analytic = Annotated[AnalyticEnv, has("dynamics", "needs an analytic environment")]
 Balanced = Annotated[BalancedEnv, has("equilibrium", "needs an environment with an equilibrium")]
 Rewarded = Annotated[RewardedEnv, has("reward_of", "needs an environment with a known reward")]
+Measured = Annotated[MeasuredEnv, has("quantities", "needs an environment with `quantities`")]

@@ -1,28 +1,44 @@
-"""r(x, u, x') is the environment's own function of observations and action: nothing is learned.
+"""r(x, u, x') is a known function of observations and action: nothing is learned.
 
-The dynamics may be learned. A reward of your own is a class with a method `reward_of`, in place of
-`world`, or one with a method `outcome`, in place of this part.
+It is that of the environment, or another goal, a class with a method `reward_of`. The dynamics may
+be learned. With `ends`, a reward part that predicts them, nothing is expected after an end.
 """
+
+from typing import cast
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import part
-from hybrid_rl.protocols import Rewarded
+from hybrid_rl.fields import check, part
+from hybrid_rl.protocols import Env, Goal, Reward, Rewarded
 from hybrid_rl.types import Params
 
 
 @part
 class KnownReward:
-    """The reward of `world`, for episodes that do not end.
+    """The reward of `goal`, or that of `world`.
 
     Raises:
-        ValueError: for an environment whose reward is not a function of observations and action.
+        ValueError: without a goal, for an environment whose reward is not a function of
+            observations and action.
     """
 
-    world: Rewarded
+    world: Env
+    goal: Goal | None = None  # None: the environment's own reward
+    ends: Reward | None = None  # predicts ends; None: episodes do not end
+
+    def __post_init__(self) -> None:
+        """Check the environment."""
+        if self.goal is None:
+            check(self, "world", Rewarded)
 
     def outcome(self, params: Params, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
-        """The reward [] of u [m] at x [n], whose first entries are the observation; no end."""
-        o = self.world.spec.obs
-        return self.world.reward_of(x[:o], u, after[:o]), jnp.full((), -jnp.inf)
+        """The reward [] of u [m] at x [n], and the logit [] of the episode ending there.
+
+        The first entries of x and of `after` [n] are the observation.
+        """
+        o, pays = self.world.spec.obs, cast(Goal, self.world if self.goal is None else self.goal)
+        reward = getattr(pays, "smoothed", pays.reward_of)(x[:o], u, after[:o])
+        if self.ends is None:
+            return reward, jnp.full((), -jnp.inf)
+        return reward, self.ends.outcome(params, x, u, after)[1]

@@ -47,7 +47,7 @@ class Duration:
 def instead(config: DictConfig) -> str:
     """settings=light for hybrid learning and its baselines; fewer decisions for other methods."""
     light: Any = OmegaConf.load(CONF / "settings" / "light.yaml")
-    networks = ["reward"]
+    networks = ["reward_model"]
     learner = str(OmegaConf.select(config, "policy_learner._target_"))
     if learner.endswith((".SAC", ".ModelBased")):
         networks.append("critic")

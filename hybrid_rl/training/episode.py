@@ -14,7 +14,7 @@ from jax import Array
 
 from hybrid_rl.core.branching import when_any, where
 from hybrid_rl.envs import sensor_noise
-from hybrid_rl.protocols import Env
+from hybrid_rl.protocols import Env, Goal
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
@@ -41,6 +41,7 @@ class Episode:
     delay: int = 0  # decisions until an action arrives
     sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
     action_noise: float = 0.0  # [u] std of what is added to an action when it arrives
+    reward: Goal | None = None  # what it pays; None: the environment's own reward
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -119,7 +120,11 @@ class Episode:
 
     def _substep(self, state: EnvState, action: Array) -> EnvState:
         with EXACT():
-            return self.env.step(state, action)
+            now = self.env.step(state, action)
+            if self.reward is None:
+                return now
+            u = jnp.clip(action, -1.0, 1.0)
+            return now.replace(reward=self.reward.reward_of(state.obs, u, now.obs))
 
     def auto_reset(self, state: EnvState, key: Array) -> EnvState:
         """`state`, or the first state of a new episode if it is done. The key is consumed.

@@ -285,5 +285,5 @@ def test_a_reward_of_the_next_state_is_learned() -> None:
     r, end = outcome(params, test.obs, test.action, test.next_obs)
     assert float(jnp.abs(r - test.reward).mean()) < 0.1
     assert float(((end > 0) == (test.terminated > 0)).mean()) > 0.95
-    with pytest.raises(ValueError, match=r"reward\.next_state=true: .*reward_discount=0"):
+    with pytest.raises(ValueError, match=r"reward_model\.next_state=true: .*reward_discount=0"):
         ModelLearner(Gaussian(), reward, reward_discount=0.9)

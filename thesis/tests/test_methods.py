@@ -61,6 +61,8 @@ def needs(composed: DictConfig) -> str:
     kinds: set[str] = set()
 
     def visit(node: Any) -> None:
+        if "goal" in node and node.goal is None:  # of a known reward
+            kinds.add("reward_of")
         if node.get("world") == composed.env:
             kind = get_class(node._target_).__annotations__["world"]
             kinds.update(each.has for each in get_args(kind)[1:] if isinstance(each, Must))
@@ -142,7 +144,7 @@ def test_thesis_parameters() -> None:
         assert c.policy_learner.batch_size == c.model_learner.batch_size == 128
         assert (c.policy_learner.updates, c.model.hidden) == (1, [200])
         assert not c.critic.layer_norm
-        assert not c.reward.ends
+        assert not c.reward_model.ends
     robots = {  # figure -> task, H, T, K, lambda, policy
         "fig_3_3": ("sawyer_push", 10, 100, 10, 0.01, [128, 128]),
         "fig_3_5": ("ant", 20, 400, 40, 1.0, [128, 64]),

@@ -95,7 +95,7 @@ class ModelLearner:
         """Check what depends on the model."""
         if self.reward_discount and getattr(self.reward, "next_state", False):
             raise ValueError(
-                "reward.next_state=true: the value of x' would need the state after it; give "
+                "reward_model.next_state=true: the value of x' would need the state after it; give "
                 "model_learner.reward_discount=0"
             )
         if not 0 <= self.holdout <= 0.5:

@@ -1,0 +1,86 @@
+"""A trained run on another reward, or with another planner; nothing is trained.
+
+    evaluate run=DIR reward=speed reward.target=5
+    evaluate run=DIR planner=sampling planner.samples=256
+
+`reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
+maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
+without a learned model keeps its policy, which knows nothing of the reward.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from hydra import compose, initialize_config_dir
+from hydra.errors import HydraException
+from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+
+from hybrid_rl import config as configuration
+from hybrid_rl.composition import CONF, explain
+from hybrid_rl.errors import UsageError
+from hybrid_rl.trained import Trained, built
+
+KEYS = ("reward", "planner", "planner_alone")  # of conf/retarget.yaml, which a user may change
+
+
+def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
+    """`trained` with the goal and the planner that the overrides name.
+
+    overrides: reward=NAME, reward.KEY=VALUE, planner=NAME, planner.KEY=VALUE, as of commands.
+
+    Raises:
+        UsageError: for a name, a key or a value that does not exist or does not fit the task.
+    """
+    if not overrides:
+        return trained
+    assert trained.config is not None
+    goal = _composed(overrides)
+    if trained.agent is None:
+        return _paid(trained, goal, overrides)
+    config: Any = OmegaConf.to_container(trained.config, resolve=True)
+    kept = {key: value for key, value in config.items() if key not in KEYS}
+    changed: Any = OmegaConf.merge(kept, _fitting(config, goal))
+    OmegaConf.resolve(changed)
+    run = built(changed)
+    return replace(trained, episode=run.agent.episode, controllers=run.controllers, config=changed)
+
+
+def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
+    """The parts of `goal` that a run with this configuration can use."""
+    goal = goal.copy()
+    if goal.reward is None:  # another planner for the reward of the training
+        goal.planner.objective = "${objective}"
+        goal.planner_alone.objective = "${model_objective}"
+    lacking = {"model", "reward_model"} - set(config)
+    if lacking:
+        names = ("reward",)
+    elif "policy" not in config:
+        goal.controllers = {"full": "${planner_alone}"}
+        names = ("reward", "goal_reward", "goal_objective", "planner_alone", "controllers")
+    else:
+        names = tuple(map(str, goal))
+    return OmegaConf.masked_copy(goal, list(names))
+
+
+def _paid(trained: Trained, goal: DictConfig, overrides: Sequence[str]) -> Trained:
+    """A policy from a file, in an environment that pays another reward."""
+    if lost := [text for text in overrides if text.startswith("planner")]:
+        raise UsageError(f"{lost[0]}: a policy's file holds no model to plan with; give run=DIR")
+    config: Any = OmegaConf.merge(trained.config, OmegaConf.masked_copy(goal, ["reward"]))
+    OmegaConf.resolve(config)
+    return replace(trained, episode=configuration.episodes(config), config=config)
+
+
+def _composed(overrides: Sequence[str]) -> DictConfig:
+    """conf/retarget.yaml with the overrides of a command."""
+    words = [
+        f"controller@{text}" if text.split("=")[0] in ("planner", "planner_alone") else text
+        for text in overrides
+    ]
+    try:
+        with initialize_config_dir(str(CONF), version_base="1.3"):
+            return compose("retarget", words)
+    except (HydraException, OmegaConfBaseException) as error:
+        raise UsageError(explain(error)) from error

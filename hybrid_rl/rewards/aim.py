@@ -1,0 +1,44 @@
+"""r = b - |q(x') - q*| - c |u|^2: hold a quantity of the environment at a target.
+
+q is a quantity of the environment, such as the speed of a robot, and q* its target, a number or one
+for each of its entries. b is that of core.alive.
+"""
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core.alive import bonus
+from hybrid_rl.fields import FieldError, NotNegative, part
+from hybrid_rl.protocols import Measured
+
+
+@part
+class Aim:
+    """A quantity of `world` at its target.
+
+    Raises:
+        ValueError: for an environment without quantities, or one that has no such quantity, or
+            another number of entries.
+    """
+
+    world: Measured
+    quantity: str = "speed"
+    target: tuple[float, ...] | float = 1.0  # q*, in the quantity's unit
+    effort: NotNegative = 0.05  # c, of actions in [-1, 1]
+    alive: NotNegative | None = None  # b; None: 3 where a fall ends the episode, else 0
+
+    def __post_init__(self) -> None:
+        """Check the quantity and its size."""
+        known = self.world.quantities(jnp.zeros(self.world.spec.obs))
+        if self.quantity not in known:
+            raise FieldError(self, "quantity", f"choose one of {', '.join(known)}")
+        size = known[self.quantity].size
+        if size != jnp.asarray(self.target).size:
+            words = f"{self.quantity} needs {size} number{'s' if size > 1 else ''}"
+            raise FieldError(self, "target", words)
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [m], which led to the observation `after` [o]."""
+        q = self.world.quantities(after)[self.quantity]
+        away = jnp.linalg.norm(q - jnp.asarray(self.target).reshape(q.shape))
+        return bonus(self.world, self.alive) - away - self.effort * jnp.sum(u**2)
