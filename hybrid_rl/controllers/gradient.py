@@ -123,13 +123,15 @@ class GradientController:
 
         _, (xs, apart) = jax.lax.scan(forward, x, u, unroll=adjoint.scan_unroll(len(u)))
         J = value(Path(jnp.concatenate([x[None], xs]), u))
-        return _Scored(u, J - self.disagreement_price * apart.sum(), apart.sum())
+        score = J - self.disagreement_price * apart.sum()
+        return _Scored(u, jnp.where(jnp.isfinite(score), score, -jnp.inf), apart.sum())
 
     def _improved(self, params: Params, value: Return, x: Array, u: Array) -> Array:
         """Candidates u [C, T, m] after the gradient steps."""
 
         def iterate(u: Array, _: None) -> tuple[Array, None]:
             g = jax.vmap(jax.grad(lambda u: self._scored(params, value, x, u).score))(u)
+            g = jnp.nan_to_num(g, posinf=0.0, neginf=0.0)  # of a path that leaves all bounds
             size = jnp.sqrt(jnp.mean(g**2, (1, 2), keepdims=True))
             return jnp.clip(u + self.step * g / (size + 1e-6), -1, 1), None
 

@@ -1,0 +1,173 @@
+"""Returns on rewards that a run was never trained on, by who acts: policy, planner, or both.
+
+    python -m scripts.new_goals run=DIR goals="speed 2;speed -2;level" steps=200 out=FILE
+
+Each goal is a reward of conf/reward, with its target if it has one. All rows have the same first
+states and nothing is trained. `still` acts with zeros; `times f` is the policy's action times f.
+"""
+
+import json
+from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.cli.arguments import Argument, read, whole
+from hybrid_rl.controllers.constant import ConstantController
+from hybrid_rl.controllers.sampling import SamplingController
+from hybrid_rl.errors import UsageError
+from hybrid_rl.goals import retargeted
+from hybrid_rl.proposals.knots import KnotsProposal
+from hybrid_rl.proposals.mixture import MixtureProposal
+from hybrid_rl.proposals.noise import NoiseProposal
+from hybrid_rl.proposals.policy import PolicyProposal
+from hybrid_rl.run.provenance import device
+from hybrid_rl.trained import Trained, load
+from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
+
+FACTORS = (0.8, 0.6, 0.4, 0.2)
+ARGUMENTS = (
+    Argument("run", "", "folder of a run with a learned model", needed="run=DIR"),
+    Argument("goals", "speed 2", "REWARD TARGET; several with ; between them"),
+    Argument("rows", "", "of these only, with ; between them; empty: all"),
+    Argument("env", "", "KEY=VALUE of the environment, where goals need another"),
+    Argument("steps", 200, "decisions of an episode", whole()),
+    Argument("episodes", 3, "of each seed", whole()),
+    Argument("out", "new_goals.json", "the numbers"),
+)
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """One of several goals, by a number that a compiled program takes as its argument."""
+
+    goals: tuple[Any, ...]
+    index: Array  # []
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of the chosen goal."""
+        return jnp.stack([each.reward_of(x, u, after) for each in self.goals])[self.index]
+
+    def smoothed(self, x: Array, u: Array, after: Array) -> Array:
+        """The same, without jumps where the goal can."""
+        each = [getattr(goal, "smoothed", goal.reward_of)(x, u, after) for goal in self.goals]
+        return jnp.stack(each)[self.index]
+
+
+@dataclass(frozen=True)
+class Times:
+    """A controller whose action is multiplied by a factor."""
+
+    controller: Any
+    factor: float
+
+    def init(self, spec: Any) -> Any:
+        """The controller's."""
+        return self.controller.init(spec)
+
+    def act(self, params: Any, state: Any, obs: Array, key: Array) -> tuple:
+        """The controller's action times the factor."""
+        u, state, metrics = self.controller.act(params, state, obs, key)
+        return self.factor * u, state, metrics
+
+
+def swapped(part: Any, old: Any, new: Any) -> Any:
+    """`part` with `new` in place of every part that equals `old`, at any depth."""
+    if part == old:
+        return new
+    if not is_dataclass(part) or isinstance(part, type):
+        return part
+    inner = {each.name: getattr(part, each.name) for each in fields(part)}
+    changed = {name: swapped(value, old, new) for name, value in inner.items()}
+    changed = {name: value for name, value in changed.items() if value is not inner[name]}
+    return replace(part, **changed) if changed else part
+
+
+def rows(trained: Trained) -> dict[str, Any]:
+    """Name -> controller, for the goal of `trained`."""
+    both: Any = trained.controllers["full"]
+    policy = trained.controllers["policy"]
+    noise = NoiseProposal(0.5, 0.8) if trained.episode.spec.act > 2 else KnotsProposal(5, std=0.7)
+    sampling = partial(
+        SamplingController, both.model, both.objective, normalise=True, temperature=0.3
+    )
+    own, scaled = PolicyProposal(both.policy), both.proposal
+    return {
+        "still": ConstantController(),
+        "policy": policy,
+        **{f"policy times {factor}": Times(policy, factor) for factor in FACTORS},
+        "planner: noise": sampling(proposal=noise, horizon=15, samples=128),
+        "planner: gradient": replace(trained.controllers["planner"], proposal=noise),
+        "both: mixture": sampling(proposal=MixtureProposal(own, noise), horizon=15, samples=128),
+        "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
+        "both: gradient": both,
+        "both: gradient, price 1": replace(both, disagreement_price=1.0),
+        "both: gradient, no price": replace(both, disagreement_price=0.0),
+        "both: gradient, one strength": replace(both, proposal=PolicyProposal(both.policy)),
+    }
+
+
+def measured(trained: Trained, goals: list[Any], controller: Any, episodes: int) -> np.ndarray:
+    """Returns [G, S, episodes] of `controller`, made for goals[0], on each of the goals."""
+    keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
+
+    def one(index: Array, params: Any, keys: Array) -> Array:
+        goal = OneOf(tuple(goals), index)
+        episode = replace(trained.episode, reward=goal)
+        acts = swapped(controller, goals[0], goal)
+        return evaluate_episodes(episode, acts, params, keys)["return"]
+
+    each = jax.vmap(jax.vmap(one, (None, 0, 0)), (0, None, None))
+    return np.asarray(jax.jit(each)(jnp.arange(len(goals)), trained.params, keys))
+
+
+def main() -> None:
+    """The command."""
+    given: Any = read(__doc__, ARGUMENTS)[0]
+    run = load(given["run"])
+    named = [each.strip() for each in given["goals"].split(";")]
+    aimed = [retargeted(run, overrides(name)) for name in named]
+    first = replace(aimed[0], episode=replace(aimed[0].episode, steps=given["steps"]))
+    goals = [each.episode.reward for each in aimed]
+    if given["env"]:
+        first, goals = in_another(first, goals, given["env"])
+    table = {"machine": device(), "run": run.task, "seeds": list(run.seeds), "step": run.step}
+    found: dict[str, Any] = {**table, "steps": given["steps"], "goals": named, "rows": {}}
+    for name, controller in rows(first).items():
+        if given["rows"] and name not in given["rows"].split(";"):
+            continue
+        got = measured(first, goals, controller, given["episodes"])
+        found["rows"][name] = dict(zip(named, got.mean(-1).round(2).tolist(), strict=True))
+        shown = ", ".join(f"{goal} {np.mean(r):.1f}" for goal, r in found["rows"][name].items())
+        print(f"{name}: {shown}", flush=True)
+        Path(given["out"]).write_text(json.dumps(found, indent=1) + "\n")
+
+
+def overrides(name: str) -> list[str]:
+    """The overrides of a goal: REWARD, REWARD TARGET, or REWARD QUANTITY TARGET."""
+    reward, *rest = name.split()
+    keys = ("target",) if len(rest) == 1 else ("quantity", "target")
+    return [f"reward={reward}", *(f"reward.{k}={v}" for k, v in zip(keys, rest, strict=False))]
+
+
+def in_another(trained: Trained, goals: list[Any], change: str) -> tuple[Trained, list[Any]]:
+    """`trained` and goals in an environment with another value of a field."""
+    old: Any = trained.episode.env
+    key, _, text = change.partition("=")
+    if not hasattr(old, key):
+        raise UsageError(f"env={change}: the environment has no {key}")
+    new = replace(old, **{key: json.loads(text)})
+    there = {name: swapped(c, old, new) for name, c in trained.controllers.items()}
+    episode = swapped(trained.episode, old, new)
+    return replace(trained, episode=episode, controllers=there), [
+        swapped(goal, old, new) for goal in goals
+    ]
+
+
+if __name__ == "__main__":
+    main()
