@@ -46,6 +46,7 @@ SLOW = [  # MJX compiles these for up to 40 s each; the other robots always run
         "quadcopter",
         "walker2d",
         "ant",
+        "humanoid",
         "panda_stack",
         "sawyer_push",
         "sawyer_torque",

@@ -25,6 +25,7 @@ from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
+from hybrid_rl.envs.humanoid import Humanoid
 from hybrid_rl.envs.walker2d import Walker2d
 
 WORLDS = {  # name -> environment, its fields, Gymnasium's
@@ -33,6 +34,7 @@ WORLDS = {  # name -> environment, its fields, Gymnasium's
     "walker": (Walker2d, {}, "Walker2d-v5"),
     "ant, points": (Ant, {"reward": "gymnasium"}, "Ant-v5"),
     "ant, capsules": (Ant, {"reward": "gymnasium", "contacts": "capsules"}, "Ant-v5"),
+    "humanoid": (Humanoid, {"observation": "full"}, "Humanoid-v5"),
 }
 EPISODES, LONGEST = 20, 100  # decisions
 BLOCKS, BLOCK = 150, 100  # steps of a block
@@ -51,7 +53,7 @@ def differences(name: str, physics: str) -> dict[str, Any]:
         for _ in range(LONGEST):
             data = reset(jnp.asarray(theirs.data.qpos), jnp.asarray(theirs.data.qvel))
             action = rng.uniform(-1, 1, ours.spec.act).astype(np.float32)
-            _, right, terminated, _, info = theirs.step(action)
+            _, right, terminated, _, info = theirs.step(theirs.action_space.high * action)
             after = step(empty.replace(data=data), action)
             pairs = ((after.data.qpos, theirs.data.qpos), (after.data.qvel, theirs.data.qvel))
             state.append(max(np.abs(np.asarray(a) - b).max() for a, b in pairs))

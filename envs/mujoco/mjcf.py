@@ -15,6 +15,11 @@ import mujoco
 import numpy as np
 
 FOLDER = Path(__file__).parents[1] / "assets"
+FOR_SENSORS = ("cacc", "cfrc_int", "cfrc_ext")  # fields of MjData, for these sensors:
+DYNAMIC = [
+    getattr(mujoco.mjtSensor, f"mjSENS_{name}").value
+    for name in ("ACCELEROMETER", "FORCE", "TORQUE", "FRAMELINACC", "FRAMEANGACC")
+]
 
 
 def path(asset: str) -> Path:
@@ -91,6 +96,19 @@ def load(asset: str) -> mujoco.MjModel:
             "silently reset a simulation that diverged"
         )
     return model
+
+
+@cache
+def shape(asset: str, name: str) -> tuple[int, ...]:
+    """The shape of the field `name` of MjData of `asset`.
+
+    Raises:
+        ValueError: for a field that MuJoCo computes only for sensors which `asset` lacks.
+    """
+    model = load(asset)
+    if name in FOR_SENSORS and not np.isin(model.sensor_type, DYNAMIC).any():
+        raise ValueError(f"{asset}: MuJoCo computes {name} for a <framelinacc> sensor: add one")
+    return getattr(mujoco.MjData(model), name).shape
 
 
 def _set(spec: mujoco.MjSpec, key: str, value: float) -> None:

@@ -24,15 +24,16 @@ Fields = dict[str, jax.Array]  # of mjx.Data, by name
 OUTPUTS = ("qpos", "qvel", "act", "qacc_warmstart", "sensordata")  # of a step
 
 
-def step(asset: str, impl: str, n: int, fields: Fields) -> Fields:
+def step(asset: str, impl: str, n: int, fields: Fields, reads: tuple[str, ...] = ()) -> Fields:
     """`OUTPUTS` after `n` steps from `fields` (qpos, qvel, act, qacc_warmstart, ctrl).
 
-    `impl` is jax or warp. All outputs are NaN for a state that is not finite and, with Warp, when
+    `impl` is jax or warp. To sensordata are appended `reads`: fields of MjData after mj_forward at
+    the new state. All outputs are NaN for a state that is not finite and, with Warp, when
     contacts or constraints exceed the allocated lists.
     """
     if impl == "jax":
-        return _step(asset, impl, n, template(asset, impl), fields)
-    one = _batched_step(asset, n)(jax.tree.map(lambda x: x[None], fields))
+        return _step(asset, impl, n, reads, template(asset, impl), fields)
+    one = _batched_step(asset, n, reads)(jax.tree.map(lambda x: x[None], fields))
     return jax.tree.map(lambda x: x[0], one)
 
 
@@ -83,7 +84,14 @@ def template(asset: str, impl: str, worlds: int = 1) -> tuple[Any, Any]:
         return model, mjx.make_data(plain, impl=impl, **sizes)
 
 
-def _step(asset: str, impl: str, n: int, model_and_data: tuple[Any, Any], fields: Fields) -> Fields:
+def _step(
+    asset: str,
+    impl: str,
+    n: int,
+    reads: tuple[str, ...],
+    model_and_data: tuple[Any, Any],
+    fields: Fields,
+) -> Fields:
     """`OUTPUTS` of one simulation."""
     model, data = model_and_data
     with jax.numpy_rank_promotion("allow"):
@@ -91,7 +99,11 @@ def _step(asset: str, impl: str, n: int, model_and_data: tuple[Any, Any], fields
         data = jax.lax.fori_loop(0, n, lambda _, d: mjx.step(model, d), data)
         outputs = {name: getattr(data, name) for name in OUTPUTS}
         late = mjcf.of_acceleration(asset)
-        if not late.all():  # sensors of the new positions and velocities
+        if reads:
+            now = mjx.forward(model, data)
+            read = [now.sensordata, *(_read(now, name).ravel() for name in reads)]
+            outputs["sensordata"] = jnp.concatenate(read)
+        elif not late.all():  # sensors of the new positions and velocities
             now = mjx.forward(model, data) if impl == "warp" else _sense(model, data)
             outputs["sensordata"] = jnp.where(late, data.sensordata, now.sensordata)
     if impl == "jax":
@@ -102,6 +114,12 @@ def _step(asset: str, impl: str, n: int, model_and_data: tuple[Any, Any], fields
     return jax.tree.map(lambda x: jnp.where(invalid, jnp.nan, x), outputs)
 
 
+def _read(data: mjx.Data, name: str) -> jax.Array:
+    """The field `name` of MjData, of which some belong to the implementation."""
+    own = data._impl if hasattr(data._impl, name) else data
+    return getattr(own, name)
+
+
 def _sense(model: mjx.Model, data: mjx.Data) -> mjx.Data:
     """`data` with the sensors of its present positions and velocities, in pure JAX."""
     data = mjx.sensor_pos(model, mjx.fwd_position(model, data))
@@ -109,13 +127,13 @@ def _sense(model: mjx.Model, data: mjx.Data) -> mjx.Data:
 
 
 @cache
-def _batched_step(asset: str, n: int) -> Any:
+def _batched_step(asset: str, n: int, reads: tuple[str, ...]) -> Any:
     """A step of W simulations as one Warp batch, whose lists have the size for all of them."""
 
     @jax.custom_batching.custom_vmap
     def advance(fields: Fields) -> Fields:
         model_and_data = template(asset, "warp", len(fields["qpos"]))
-        return jax.vmap(partial(_step, asset, "warp", n, model_and_data))(fields)
+        return jax.vmap(partial(_step, asset, "warp", n, reads, model_and_data))(fields)
 
     @advance.def_vmap
     def _(size: int, batched: list[dict[str, bool]], fields: Fields) -> tuple[Fields, Any]:

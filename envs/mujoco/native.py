@@ -1,7 +1,7 @@
 """MuJoCo C on CPU threads, called from a compiled JAX program.
 
     x = [qpos, qvel, act, warmstart, ctrl] -> n mj_steps in float64
-      -> y = [qpos, qvel, act, warmstart, sensors]
+      -> y = [qpos, qvel, act, warmstart, sensors, reads]
 
 Stateless: every call passes in and returns everything that a step depends on, so that one pool of
 simulations serves all seeds and environments, and the results are the same bit for bit with any
@@ -13,6 +13,7 @@ Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 import os
 from collections.abc import Callable
 from functools import cache, partial
+from math import prod
 from typing import NamedTuple
 
 import jax
@@ -23,6 +24,7 @@ from mujoco.batch import Batch
 from hybrid_rl.envs.mujoco import mjcf, xla_callback
 
 _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
+_ALL = mujoco.mjtStage.mjSTAGE_ACC.value  # also forces
 
 
 class _Pool(NamedTuple):
@@ -32,6 +34,7 @@ class _Pool(NamedTuple):
     inputs: np.ndarray  # [N, D] float64: qpos, qvel, act, warmstart, ctrl
     sensors: np.ndarray  # [N, nsensordata] float64
     late: np.ndarray  # [nsensordata] bool: sensors of accelerations
+    reads: list[np.ndarray]  # each [N, ...] float64: fields of MjData
 
 
 def cores() -> int:
@@ -42,12 +45,12 @@ def cores() -> int:
 
 
 @cache
-def _idle(asset: str, worlds: int, threads: int) -> list[_Pool]:
+def _idle(asset: str, worlds: int, threads: int, reads: tuple[str, ...]) -> list[_Pool]:
     """Pools that are not in use; calls of several devices at the same time need one each."""
     return []
 
 
-def _pool(asset: str, worlds: int, threads: int) -> _Pool:
+def _pool(asset: str, worlds: int, threads: int, reads: tuple[str, ...]) -> _Pool:
     """A new pool; with threads=0 the host's devices divide its processors among them.
 
     Raises:
@@ -62,18 +65,22 @@ def _pool(asset: str, worlds: int, threads: int) -> _Pool:
     if model.nhistory:
         raise ValueError(f"{asset}: actuators or sensors with a delay are not supported")
     sensors = batch.bind("sensordata")
-    return _Pool(batch, inputs, sensors, mjcf.of_acceleration(asset))
+    bound = [batch.bind(name) for name in reads]
+    return _Pool(batch, inputs, sensors, mjcf.of_acceleration(asset), bound)
 
 
-def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> None:
+def _advance(
+    asset: str, threads: int, n: int, reads: tuple[str, ...], x: np.ndarray, y: np.ndarray
+) -> None:
     """Write the result of `n` physics steps from x [N, D] into y [N, D']."""
-    idle = _idle(asset, len(x), threads)
+    idle = _idle(asset, len(x), threads, reads)
     try:
         pool = idle.pop()
     except IndexError:
-        pool = _pool(asset, len(x), threads)
-    moved = y.shape[1] - pool.sensors.shape[1]
-    stage = 0 if pool.late.all() else _MOVED
+        pool = _pool(asset, len(x), threads, reads)
+    outputs = [pool.sensors, *(field.reshape(len(x), -1) for field in pool.reads)]
+    moved = y.shape[1] - sum(output.shape[1] for output in outputs)
+    stage = _ALL if reads else 0 if pool.late.all() else _MOVED
     finite = np.isfinite(x.sum(1))
     ids = None if finite.all() else np.flatnonzero(finite)
     pool.inputs[:] = x
@@ -82,23 +89,26 @@ def _advance(asset: str, threads: int, n: int, x: np.ndarray, y: np.ndarray) -> 
     else:
         pool.batch.forward(ids, stage)
     y[:, :moved] = pool.inputs[:, :moved]
-    y[:, moved:] = pool.sensors
-    late = pool.late
+    y[:, moved:] = np.concatenate(outputs, 1)
+    late = np.flatnonzero(pool.late)
     idle.append(pool)
-    if not n:
-        y[:, moved:][:, late] = 0.0
+    if not (n or reads):
+        y[:, moved + late] = 0.0
     if ids is not None:
         y[~finite] = np.nan
 
 
 @cache
-def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
+def _call(
+    asset: str, threads: int, n: int, reads: tuple[str, ...]
+) -> Callable[[jax.Array], jax.Array]:
     """The function x [D] -> y [D']: a foreign call on the CPU, a JAX callback on other devices."""
     model = mjcf.load(asset)
     width = model.nq + 2 * model.nv + model.na + model.nsensordata
+    width += sum(prod(mjcf.shape(asset, name)) for name in reads)
     out = jax.ShapeDtypeStruct((width,), np.float32)
-    advance = partial(_advance, asset, threads, n)
-    name = f"hybrid_rl.native:{asset}:{threads}:{n}"
+    advance = partial(_advance, asset, threads, n, reads)
+    name = f"hybrid_rl.native:{asset}:{threads}:{n}:{','.join(reads)}"
     xla_callback.register(name, advance)
 
     def callback(x: jax.Array) -> np.ndarray:
@@ -116,10 +126,10 @@ def _call(asset: str, threads: int, n: int) -> Callable[[jax.Array], jax.Array]:
     return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
 
 
-def step(asset: str, threads: int, n: int, x: jax.Array) -> jax.Array:
-    """y = [qpos, qvel, act, warmstart, sensors] after `n` steps from x.
+def step(asset: str, threads: int, n: int, x: jax.Array, reads: tuple[str, ...] = ()) -> jax.Array:
+    """y = [qpos, qvel, act, warmstart, sensors, reads] after `n` steps from x.
 
-    x: [qpos, qvel, act, warmstart, ctrl]. n = 0 only evaluates the sensors of positions and
-    velocities.
+    x: [qpos, qvel, act, warmstart, ctrl]. reads: fields of MjData after mj_forward at the new
+    state. n = 0 only evaluates these and the sensors of positions and velocities.
     """
-    return _call(asset, threads, n)(x)
+    return _call(asset, threads, n, reads)(x)

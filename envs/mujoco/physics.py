@@ -20,11 +20,13 @@ Source: MuJoCo's documentation, "Computation: the state" (mjSTATE_INTEGRATION).
 
 from dataclasses import dataclass
 from importlib.util import find_spec
+from math import prod
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import mujoco
+import numpy as np
 from flax import struct
 from jax import Array
 
@@ -38,8 +40,9 @@ IMPLEMENTATIONS = ("auto", "native", "mjx", "warp")
 class PhysicsState:
     """Everything that a step depends on, and the sensors after it; float32.
 
-    A field that the model lacks is None, not empty: Shardy of jax 0.11 ends the process when it
-    shards an array without entries.
+    After the sensors come the `reads` of Physics, with which all sensors are of this state. A field
+    that the model lacks is None, not empty: Shardy of jax 0.11 ends the process when it shards an
+    array without entries.
     """
 
     qpos: Array  # [nq] positions [m, rad]
@@ -88,6 +91,7 @@ class Physics:
     asset: str  # file in assets/, an absolute path, or MJCF text
     implementation: str = "auto"
     threads: int = 0  # of native; 0: one per core
+    reads: tuple[str, ...] = ()  # fields of MjData, such as cinert; costs one mj_forward a decision
 
     def __post_init__(self) -> None:
         check(self.implementation)
@@ -104,7 +108,8 @@ class Physics:
         zeros = [_or_none(jnp.zeros(size, jnp.float32)) for size in sizes]
         moved = (jnp.asarray(q, jnp.float32) for q in (qpos, qvel))
         state = PhysicsState(*moved, *zeros, asset=self.asset)
-        return state if mjcf.of_acceleration(self.asset).all() else self._advance(state, 0)
+        complete = mjcf.of_acceleration(self.asset).all() and not self.reads
+        return state if complete else self._advance(state, 0)
 
     def step(self, state: PhysicsState, ctrl: Array, n: int) -> PhysicsState:
         """The state after `n` physics steps with constant ctrl [nu]."""
@@ -116,6 +121,14 @@ class Physics:
         assert state.sensors is not None
         return state.sensors[sensor.adr[0] : sensor.adr[0] + sensor.dim[0]]
 
+    def read(self, state: PhysicsState, name: str) -> Array:
+        """The field `name` of MjData, one of `reads`, at `state`."""
+        shapes = [mjcf.shape(self.asset, each) for each in self.reads]
+        ends = self.model.nsensordata + np.cumsum([prod(shape) for shape in shapes])
+        index = self.reads.index(name)
+        assert state.sensors is not None
+        return state.sensors[: ends[index]][-prod(shapes[index]) :].reshape(shapes[index])
+
     def _advance(self, state: PhysicsState, n: int) -> PhysicsState:
         implementation = resolve(self.implementation)
         if implementation == "native":
@@ -126,7 +139,7 @@ class Physics:
         model = self.model
         parts = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
         x = jnp.concatenate([part for part in parts if part is not None])
-        out = native.step(self.asset, self.threads, n, x)
+        out = native.step(self.asset, self.threads, n, x, self.reads)
         ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
         qpos, qvel, act, rest = jnp.split(out, ends)
         warmstart, sensors = jnp.split(rest, (model.nv,))
@@ -149,7 +162,7 @@ class Physics:
             "ctrl": state.ctrl,
         }
         fields = {name: x for name, x in fields.items() if x is not None}
-        out = mjx_warp.step(self.asset, impl, n, fields)
+        out = mjx_warp.step(self.asset, impl, n, fields, self.reads)
         qpos, qvel, act, warmstart, sensors = (_or_none(out[name]) for name in mjx_warp.OUTPUTS)
         return state.replace(qpos=qpos, qvel=qvel, act=act, warmstart=warmstart, sensors=sensors)
 

@@ -7,6 +7,7 @@ import pytest
 from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
 
 from hybrid_rl.envs.mujoco import mjx_warp
+from hybrid_rl.envs.mujoco.physics import Physics
 
 pytestmark = pytest.mark.turns(2)
 
@@ -25,6 +26,16 @@ def env():
 def test_agrees_with_mujoco(env, lane):
     obs = np.asarray(rollout(env).obs[lane])
     assert np.abs(obs - reference("hopper", "warp", lane)).max() < 1e-4  # measured: 4e-6
+
+
+def test_reads_what_mujoco_c_computes(env):
+    names = ("subtree_com", "cinert", "cvel")
+    bodies = [Physics("hopper.xml", each, reads=names) for each in ("native", "warp")]
+    first = env.reset(jax.random.key(0)).data
+    after = [body.step(body.reset(first.qpos, first.qvel), jnp.ones(3), 4) for body in bodies]
+    for name in names:
+        native, warp = (body.read(s, name) for body, s in zip(bodies, after, strict=True))
+        np.testing.assert_allclose(warp, native, atol=1e-4)
 
 
 def test_nan_stays_in_its_lane(env):
@@ -61,6 +72,7 @@ def test_an_overflow_gives_nan(env, small_lists):
         ("hopper.xml", 11, 38),
         ("walker2d.xml", 14, 62),  # 7 capsules on a floor, 6 joint limits
         ("halfcheetah.xml", 16, 70),  # 8 capsules on a floor, 6 joint limits
+        ("humanoid.xml", 138, 242),  # 12 capsules, 5 spheres on a floor, 109 pairs, 17 limits
     ],
 )
 def test_capacities(asset, contacts, rows):

@@ -53,7 +53,7 @@ def test_finite_and_never_truncated(env):
     assert not path.truncated.any()
 
 
-@pytest.mark.parametrize("task", ["ant", "quadcopter", *ARMS, "sawyer_torque"])
+@pytest.mark.parametrize("task", ["ant", "humanoid", "quadcopter", *ARMS, "sawyer_torque"])
 def test_finite_for_long(task):
     """Random decisions beyond the end of episodes."""
     env = TASKS[task](physics="native")

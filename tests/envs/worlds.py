@@ -24,6 +24,7 @@ from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
+from hybrid_rl.envs.humanoid import Humanoid
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.quadcopter import Quadcopter
@@ -59,6 +60,7 @@ TASKS = {
     "walker2d": Walker2d,
     "cartpole": Cartpole,
     "ant": Ant,
+    "humanoid": Humanoid,
     "quadcopter": Quadcopter,
     "sawyer_push": SawyerPush,
     "panda_stack": PandaStack,
@@ -68,11 +70,13 @@ TASKS = {
 }
 FIELDS = {
     "ant": {"integrator": "euler"},
+    "humanoid": {"integrator": "euler"},
     "quadcopter": {"task": "track", "damping": True},
     "panda_stack": {"grip": "action"},
 }
 SIMULATED = tuple(task for task in TASKS if task not in ANALYTIC)
 ARMS = ("sawyer_push", "panda_stack")  # controls depend on states
+COMPUTED = (*ARMS, "quadcopter", "humanoid")  # controls are not the actions
 TOUCHING, LIFTED, OTHER, BROKEN = (0, 0), (0, 1), (1, 0), (1, 1)  # lanes [seed, env]
 IMPLEMENTATIONS = ("native", "mjx")
 
@@ -92,6 +96,7 @@ REFERENCE = {
     "walker2d": Reference("walker2d.xml", 4, (1,)),
     "cartpole": Reference("cartpole.xml", 1),
     "ant": Reference("ant_euler.xml", 5, (2,)),
+    "humanoid": Reference("humanoid_euler.xml", 5, (2,)),
     "quadcopter": Reference("quadcopter.xml", 1),
     "sawyer_push": Reference("sawyer_push.xml", 20, (9,), 30.0),
     "panda_stack": Reference("panda_stack.xml", 20, (11, 18), 30.0),
@@ -116,7 +121,7 @@ def observe(task, data, state):
     match task:
         case "cartpole":
             return np.array([qpos[0], qvel[0], np.cos(qpos[1]), np.sin(qpos[1]), qvel[1]])
-        case "ant":
+        case "ant" | "humanoid":
             return np.concatenate([qpos[2:], qvel])
         case "quadcopter":
             rotation = data.body("quadcopter").xmat.reshape(3, 3)  # updated in `reference`
@@ -213,14 +218,14 @@ def follow(env, x, actions) -> np.ndarray:
 def reference(task, implementation, lane):
     """Observations [DECISIONS, o] of MuJoCo C in float64, stepped by mj_step alone.
 
-    Controls are the actions, or those that the arm or vehicle computed from them.
+    Controls are the actions, or those that the environment computed from them.
     """
     env = make(task, implementation)
     asset, steps, *_ = REFERENCE[task]
     model, state, path = mjcf.load(asset), start(env), rollout(env)
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = state.data.qpos[lane], state.data.qvel[lane]
-    controls = path.data.ctrl if task in (*ARMS, "quadcopter") else actions(env)
+    controls = path.data.ctrl if task in COMPUTED else actions(env)
     observed = []
     for t, ctrl in enumerate(np.asarray(controls)[lane]):
         data.ctrl[:] = ctrl

@@ -1,0 +1,102 @@
+"""Humanoid: a robot with two legs and two arms runs forward.
+
+    r = 5 [healthy] + 1.25 dx/dt - 0.1 |c|^2 - min(5e-7 |f|^2, 10);
+    healthy: 1 < z < 2 m; terminates when not healthy
+
+x: centre of mass [m]; z: height of the torso; a: seventeen torques, as fractions of their limits;
+c = 0.4 a: controls; f: forces and torques of contacts [14, 6] (cfrc_ext). Start: qpos and qvel ~
+U(-0.01, 0.01) around the upright pose; a decision is 5 steps of 0.003 s.
+
+    short   o = (qpos without x and y, qvel) [45]
+    full    o = (short, cinert, cvel, qfrc_actuator, f) [348], as Humanoid-v5 by default
+
+A decision ends in the state of Humanoid-v5, whose solver is another one: 2e-5 in MuJoCo C, 1e-4 in
+MJX, 2e-4 in Warp. Gymnasium takes x, f, cinert and cvel from the last stage of the integrator; ours
+are those of the state after the step. So the reward differs by 0.002 on average, and by 0.2 on
+impact. With the integrator euler rates differ by 0.5 rad/s a decision (median), at most 3.
+
+Source: Tassa, Erez, Todorov 2012; parameters of Gymnasium's Humanoid-v5.
+"""
+
+from typing import Literal
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.fields import part
+from hybrid_rl.types import EnvState, Spec
+
+ASSETS = {"rk4": "humanoid.xml", "euler": "humanoid_euler.xml"}  # by integrator
+STEPS = 5  # physics steps per decision
+DT = 0.015  # [s] of a decision
+LIMIT = 0.4  # of a control
+REWARD_READS = ("subtree_com", "cfrc_ext")
+OBSERVATION_READS = {"short": (), "full": ("cinert", "cvel", "qfrc_actuator")}
+
+
+@part
+class Humanoid:
+    """Humanoid; `physics` is native, mjx, warp or auto."""
+
+    physics: str = "auto"
+    observation: Literal["short", "full"] = "short"
+    integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler costs a quarter
+
+    def __post_init__(self) -> None:
+        check(self.physics)
+
+    @property
+    def spec(self) -> Spec:
+        """Observation size, action size and decision interval."""
+        return Spec(obs=45 if self.observation == "short" else 348, act=17, dt=DT)
+
+    @property
+    def _body(self) -> Physics:
+        reads = REWARD_READS + OBSERVATION_READS[self.observation]
+        return Physics(ASSETS[self.integrator], self.physics, reads=reads)
+
+    def reset(self, key: Array) -> EnvState:
+        """A random initial state."""
+        key_pos, key_vel = jax.random.split(key)
+        upright = jnp.asarray(self._body.model.qpos0, jnp.float32)
+        qpos = upright + jax.random.uniform(key_pos, (24,), jnp.float32, -0.01, 0.01)
+        qvel = jax.random.uniform(key_vel, (23,), jnp.float32, -0.01, 0.01)
+        zero = jnp.float32(0.0)
+        return self._state(self._body.reset(qpos, qvel), zero, jnp.zeros((), bool), zero)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [17] in [-1, 1]."""
+        control = LIMIT * jnp.clip(action, -1.0, 1.0)
+        data = self._body.step(state.data, control, STEPS)
+        x, before = (self._body.read(each, "subtree_com")[0, 0] for each in (data, state.data))
+        speed, ended = (x - before) / DT, self.ended(data.qpos[2:])
+        contact = jnp.minimum(5e-7 * (self._body.read(data, "cfrc_ext") ** 2).sum(), 10.0)
+        reward = 5.0 * ~ended + 1.25 * speed - 0.1 * (control**2).sum() - contact
+        return self._state(data, reward, ended, speed)
+
+    def _state(
+        self, data: PhysicsState, reward: Array, terminated: Array, speed: Array
+    ) -> EnvState:
+        seen = [data.qpos[2:], data.qvel]
+        if self.observation == "full":
+            inertia, velocity, torque, force = (
+                self._body.read(data, name) for name in (*OBSERVATION_READS["full"], "cfrc_ext")
+            )
+            seen += [inertia[1:].ravel(), velocity[1:].ravel(), torque[6:], force[1:].ravel()]
+        no = jnp.zeros((), bool)
+        return EnvState(data, jnp.concatenate(seen), reward, terminated, no, {"speed": speed}, {})
+
+    def ended(self, obs: Array) -> Array:
+        """Whether [] an episode terminates at obs [o], of which it needs the height."""
+        return ~((obs[0] > 1.0) & (obs[0] < 2.0))
+
+    def scene(self) -> str:
+        """MJCF text of the scene for rendering."""
+        return mjcf.text("humanoid.xml")
+
+    def pose(self, state: EnvState) -> Array:
+        """Joint positions qpos [24] for rendering."""
+        return state.data.qpos
