@@ -93,6 +93,10 @@ class Humanoid:
         """Whether [] an episode terminates at obs [o], of which it needs the height."""
         return ~((obs[0] > 1.0) & (obs[0] < 2.0))
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Height of the torso [m] and speed along x [m/s] at obs [o]."""
+        return {"height": obs[0], "speed": obs[22]}
+
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text("humanoid.xml")

@@ -91,6 +91,7 @@ def swapped(part: Any, old: Any, new: Any) -> Any:
 def rows(trained: Trained) -> dict[str, Any]:
     """Name -> controller, for the goal of `trained`."""
     both: Any = trained.controllers["full"]
+    alone: Any = trained.controllers["planner"]
     policy = trained.controllers["policy"]
     noise = NoiseProposal(0.5, 0.8) if trained.episode.spec.act > 2 else KnotsProposal(5, std=0.7)
     sampling = partial(
@@ -102,7 +103,7 @@ def rows(trained: Trained) -> dict[str, Any]:
         "policy": policy,
         **{f"policy times {factor}": Times(policy, factor) for factor in FACTORS},
         "planner: noise": sampling(proposal=noise, horizon=15, samples=128),
-        "planner: gradient": replace(trained.controllers["planner"], proposal=noise),
+        "planner: gradient": replace(alone, proposal=noise),
         "both: mixture": sampling(proposal=MixtureProposal(own, noise), horizon=15, samples=128),
         "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
         "both: gradient": both,
