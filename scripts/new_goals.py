@@ -34,7 +34,11 @@ FACTORS = (0.8, 0.6, 0.4, 0.2)
 ARGUMENTS = (
     Argument("run", "", "folder of a run with a learned model", needed="run=DIR"),
     Argument("goals", "speed 2", "REWARD TARGET; several with ; between them"),
-    Argument("rows", "", "of these only, with ; between them; empty: all"),
+    Argument(
+        "rows",
+        "",
+        "of these only, with ; between them, or KEY=VALUE of the gradient planner; empty: all",
+    ),
     Argument("env", "", "KEY=VALUE of the environment, where goals need another"),
     Argument("steps", 200, "decisions of an episode", whole()),
     Argument("episodes", 3, "of each seed", whole()),
@@ -97,20 +101,26 @@ def rows(trained: Trained) -> dict[str, Any]:
     sampling = partial(
         SamplingController, both.model, both.objective, normalise=True, temperature=0.3
     )
-    own, scaled = PolicyProposal(both.policy), both.proposal
-    return {
+    own = PolicyProposal(both.policy)
+    scaled = PolicyProposal(both.policy, both.strengths, both.quiet)
+    found = {
         "still": ConstantController(),
         "policy": policy,
         **{f"policy times {factor}": Times(policy, factor) for factor in FACTORS},
         "planner: noise": sampling(proposal=noise, horizon=15, samples=128),
-        "planner: gradient": replace(alone, proposal=noise),
+        "planner: gradient": alone,
         "both: mixture": sampling(proposal=MixtureProposal(own, noise), horizon=15, samples=128),
         "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
         "both: gradient": both,
-        "both: gradient, price 1": replace(both, disagreement_price=1.0),
-        "both: gradient, no price": replace(both, disagreement_price=0.0),
-        "both: gradient, one strength": replace(both, proposal=PolicyProposal(both.policy)),
     }
+    return found
+
+
+def varied(both: Any, name: str) -> Any:
+    """`both` with the fields of a name such as "tail=20 horizon=10"."""
+    pairs = [each.split("=") for each in name.split()]
+    values = {key: json.loads(value) for key, value in pairs}
+    return replace(both, **{k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
 
 
 def measured(trained: Trained, goals: list[Any], controller: Any, episodes: int) -> np.ndarray:
@@ -139,9 +149,9 @@ def main() -> None:
         first, goals = in_another(first, goals, given["env"])
     table = {"machine": device(), "run": run.task, "seeds": list(run.seeds), "step": run.step}
     found: dict[str, Any] = {**table, "steps": given["steps"], "goals": named, "rows": {}}
-    for name, controller in rows(first).items():
-        if given["rows"] and name not in given["rows"].split(";"):
-            continue
+    known = rows(first)
+    for name in given["rows"].split(";") if given["rows"] else known:
+        controller = known.get(name) or varied(first.controllers["full"], name)
         got = measured(first, goals, controller, given["episodes"])
         found["rows"][name] = dict(zip(named, got.mean(-1).round(2).tolist(), strict=True))
         shown = ", ".join(f"{goal} {np.mean(r):.1f}" for goal, r in found["rows"][name].items())

@@ -1,16 +1,18 @@
-"""Receding-horizon control by gradient ascent through the model, from several starts.
+"""Receding-horizon control by gradient ascent on corrections of a policy, from several starts.
 
-    v_k ~ proposal,  k = 1..K                          roll-outs in the model
-    v <- clip(v + step g / rms(g)),  g = dS/dv         of the best of them, and of the last plan
-    S = J - price sum_t d_t                            the best of these acts
+    u_t = clip(s pi(x_t) + v_t)         a candidate: a strength s and corrections v [T, m]
+    v <- v + step g / rms(g),  g = dS/dv        the best candidates, and the last plan
+    S = J - price sum_t d_t             over T decisions, and `tail` more with v = 0
 
-d_t is the mean over the entries of the state of the ensemble's disagreement, in running standard
-deviations of the change. Without it, gradients lead to where the model is wrong. With roll-outs of
-the policy at several strengths as starts, the policy remembers what the model cannot find by
-itself, and the gradient corrects it for the goal at hand.
+The best candidate acts. The policy stays in the loop, so that it steadies the imagined path, and
+the tail says what it makes of the state where the corrections end: without it, a plan of one second
+stops working for the seconds after it. d_t is the mean over the entries of the state of the
+ensemble's disagreement, in running standard deviations of the change; without this price gradients
+lead to where the model is wrong. Without a policy, s = 0: shooting, from noise.
 
-Sources: gradient steps from roll-outs of a policy as in Dream-MPC (2026); several strengths, the
-step by its root mean square and the price are our choice.
+Sources: corrections of a policy as in thesis Algorithm 2; gradient steps from roll-outs of a policy
+as in Dream-MPC (2026); a tail of the policy as in roll-out algorithms (Bertsekas). Several
+strengths, the step by its root mean square and the price are our choice.
 """
 
 from typing import Any, NamedTuple
@@ -20,122 +22,144 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, agreement, lifting, sampling
-from hybrid_rl.fields import Count, Natural, NotNegative, Positive, part
-from hybrid_rl.protocols import Model, Objective, Policy, Proposal
+from hybrid_rl.fields import Count, Discount, Fraction, Natural, NotNegative, Positive, part
+from hybrid_rl.protocols import Model, Objective, Policy
 from hybrid_rl.types import Params, Path, Return, Spec
+
+
+class Candidate(NamedTuple):
+    """A policy's strength, and corrections."""
+
+    s: Array  # []
+    v: Array  # [T, m]
 
 
 class GradientState(NamedTuple):
     """The planner's state between two decisions."""
 
-    plan: Array  # [T, m]
-    carries: Any  # [K, ...] of the proposal
+    plan: Candidate  # from the next decision on
     u: Array  # [m] the previous action
     memory: Any  # of the objective
 
 
-class _Scored(NamedTuple):
-    """Open-loop candidates."""
+class Scored(NamedTuple):
+    """A candidate in the model."""
 
-    u: Array  # [K, T, m]
-    score: Array  # [K] S
-    disagreement: Array  # [K] sum over time
+    score: Array  # [] S
+    disagreement: Array  # [] sum over time
+    u: Array  # [m] its first action
 
 
 @part
 class GradientController:
-    """A planner over K starts and T decisions.
+    """A planner over K candidates and T decisions.
 
     Raises:
-        ValueError: for counts, a step or a price out of range.
+        ValueError: for counts, a noise, a step or a price out of range.
     """
 
     model: Model
     objective: Objective
-    proposal: Proposal
-    policy: Policy | None = None  # only for metrics that compare it with the plan
+    policy: Policy | None = None  # None: no strengths, no tail
+    strengths: tuple[NotNegative, ...] = (1.0, 0.8, 0.6, 0.4, 0.2)  # the candidates have in turn
     horizon: Count = 20  # T [decisions]
+    tail: Natural = 0  # [decisions] of the policy after them
     samples: Count = 32  # K
+    noise: NotNegative = 0.3  # [u] std of the candidates' corrections
+    correlation: Discount = 0.8  # of the noise of successive decisions
+    quiet: Fraction = 0.34  # share of the candidates without noise
     refined: Count = 5  # of the K, which gradients improve
     iterations: Natural = 5
     step: Positive = 0.05  # [u] root mean square of an iteration's change
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
 
     def init(self, spec: Spec) -> GradientState:
-        """A plan of zeros, and the initial carries and memory."""
-        carries = jax.vmap(lambda q: self.proposal.init(spec, q))(
-            jnp.arange(self.samples) / self.samples
-        )
-        plan = jnp.zeros((self.horizon, spec.act))
-        return GradientState(plan, carries, plan[0], self.objective.init(spec))
+        """No corrections, and the objective's initial memory."""
+        v = jnp.zeros((self.horizon, spec.act))
+        first = jnp.float32(self.strengths[0] if self.policy is not None else 0.0)
+        return GradientState(Candidate(first, v), v[0], self.objective.init(spec))
 
     def act(
         self, params: Params, state: GradientState, obs: Array, key: Array
     ) -> tuple[Array, GradientState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
-        preparing, rolling = jax.random.split(key)
+        preparing, drawing = jax.random.split(key)
         x = lifting.start(self.model, params, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)
-        starts = self._starts(params, state, x, rolling)
-        score = jax.vmap(lambda u: self._scored(params, value, x, u))
-        first = score(starts)
-        best = first.u[jax.lax.top_k(first.score, min(self.refined, self.samples))[1]]
-        u = self._improved(params, value, x, jnp.concatenate([state.plan[None], best]))
-        found = score(u)
-        plan, scored = jax.tree.map(lambda leaf: leaf[jnp.argmax(found.score)], (u, found))
+        score = jax.vmap(lambda one: self._scored(params, value, x, one))
+        drawn = self._drawn(state, drawing)
+        first = score(drawn)
+        best = jax.lax.top_k(first.score, min(self.refined, self.samples))[1]
+        starts = jax.tree.map(lambda a, b: jnp.concatenate([a[None], b[best]]), state.plan, drawn)
+        refined = self._refined(params, value, x, starts)
+        each = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), refined, starts)
+        found = score(each)
+        plan, chosen = jax.tree.map(lambda leaf: leaf[jnp.argmax(found.score)], (each, found))
         metrics = {
-            "planner/planned_return": scored.score + self.disagreement_price * scored.disagreement,
-            "planner/disagreement": scored.disagreement / self.horizon,
+            "planner/planned_return": chosen.score + self.disagreement_price * chosen.disagreement,
+            "planner/disagreement": chosen.disagreement / (self.horizon + self.tail),
             "planner/gain": found.score.max() - first.score.max(),
-            **self._agreement(params, value, x, plan[0]),
+            "planner/strength": plan.s,
+            **self._agreement(params, value, x, chosen.u),
         }
-        after = GradientState(sampling.shift(plan), state.carries, plan[0], memory)
-        return plan[0], after, metrics
+        after = GradientState(Candidate(plan.s, sampling.shift(plan.v)), chosen.u, memory)
+        return chosen.u, after, metrics
 
     def greedy(self) -> "GradientController":
         """The same controller: the best candidate acts."""
         return self
 
-    def _starts(self, params: Params, state: GradientState, x: Array, key: Array) -> Array:
-        """Candidates [K, T, m] of the proposal. The key is consumed."""
-        noise = jax.random.normal(key, (self.samples, *state.plan.shape))
-        samples = sampling.imagine(
-            lambda x, u: self.model.step(params.model, x, u),
-            lambda carry, x, *a: self.proposal(params, carry, lifting.seen(x), *a),
-            state.carries,
-            x,
-            state.plan,
-            jax.vmap(self.proposal.shaped)(noise),
-        )
-        return samples.path.u
+    def _drawn(self, state: GradientState, key: Array) -> Candidate:
+        """Candidates [K, ...] with the strengths in turn. The key is consumed."""
+        K, c = self.samples, self.correlation
+        e = jax.random.normal(key, (self.horizon, K, state.plan.v.shape[1]))
 
-    def _scored(self, params: Params, value: Return, x: Array, u: Array) -> _Scored:
-        """The candidate u [T, m] from x [n]."""
+        def along(before: Array, new: Array) -> tuple[Array, Array]:
+            now = c * before + jnp.sqrt(1 - c**2) * new
+            return now, now
+
+        e = jnp.concatenate([e[:1], jax.lax.scan(along, e[0], e[1:])[1]]).swapaxes(0, 1)
+        each = jnp.array(self.strengths if self.policy is not None else (0.0,), jnp.float32)
+        number, count = jnp.arange(K), len(each)
+        loud = number // count >= self.quiet * K / count
+        if self.policy is None:  # around the last plan
+            return Candidate(jnp.zeros(K), state.plan.v + self.noise * e)
+        return Candidate(each[number % count], self.noise * e * loud[:, None, None])
+
+    def _scored(self, params: Params, value: Return, x: Array, one: Candidate) -> Scored:
+        """The candidate from x [n]."""
         model: Any = self.model
         both = getattr(model, "step_and_disagreement", None)
+        v = jnp.concatenate([one.v, jnp.zeros((self.tail, one.v.shape[1]))])
 
-        def forward(x: Array, u: Array) -> tuple[Array, tuple[Array, Array]]:
+        def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, Array, Array]]:
+            u = v
+            if self.policy is not None:
+                u = one.s * self.policy.mean(params.policy, x) + v
+            u = jnp.clip(u, -1, 1)
             if both is None:
                 after, apart = model.step(params.model, x, u), jnp.zeros(())
             else:
                 after, apart = both(params.model, x, u)
-            return after, (after, jnp.mean(apart))
+            return after, (after, u, jnp.mean(apart))
 
-        _, (xs, apart) = jax.lax.scan(forward, x, u, unroll=adjoint.scan_unroll(len(u)))
-        J = value(Path(jnp.concatenate([x[None], xs]), u))
-        score = J - self.disagreement_price * apart.sum()
-        return _Scored(u, jnp.where(jnp.isfinite(score), score, -jnp.inf), apart.sum())
+        _, (xs, us, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))
+        path = Path(jnp.concatenate([x[None], xs]), us)
+        score = value(path) - self.disagreement_price * apart.sum()
+        return Scored(jnp.where(jnp.isfinite(score), score, -jnp.inf), apart.sum(), us[0])
 
-    def _improved(self, params: Params, value: Return, x: Array, u: Array) -> Array:
-        """Candidates u [C, T, m] after the gradient steps."""
+    def _refined(self, params: Params, value: Return, x: Array, starts: Candidate) -> Candidate:
+        """Candidates [C, ...] after the gradient steps."""
 
-        def iterate(u: Array, _: None) -> tuple[Array, None]:
-            g = jax.vmap(jax.grad(lambda u: self._scored(params, value, x, u).score))(u)
-            g = jnp.nan_to_num(g, posinf=0.0, neginf=0.0)  # of a path that leaves all bounds
+        def score(v: Array, s: Array) -> Array:
+            return self._scored(params, value, x, Candidate(s, v)).score
+
+        def iterate(v: Array, _: None) -> tuple[Array, None]:
+            g = jnp.nan_to_num(jax.vmap(jax.grad(score))(v, starts.s), posinf=0.0, neginf=0.0)
             size = jnp.sqrt(jnp.mean(g**2, (1, 2), keepdims=True))
-            return jnp.clip(u + self.step * g / (size + 1e-6), -1, 1), None
+            return jnp.clip(v + self.step * g / (size + 1e-6), -2, 2), None
 
-        return jax.lax.scan(iterate, u, None, length=self.iterations)[0]
+        return Candidate(starts.s, jax.lax.scan(iterate, starts.v, length=self.iterations)[0])
 
     def _agreement(self, params: Params, value: Return, x: Array, u: Array) -> dict[str, Array]:
         """Metrics of the action u [m] against the policy's."""

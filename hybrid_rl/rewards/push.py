@@ -1,0 +1,45 @@
+"""r = b - |q - q*| - w |e| - c |u|^2: push an object to another position than the task's target.
+
+q is the object's position seen from the task's target, e that seen from the hand [m]; b is that of
+core.alive.
+"""
+
+import jax.numpy as jnp
+from jax import Array
+
+from hybrid_rl.core.alive import bonus
+from hybrid_rl.fields import FieldError, NotNegative, part
+from hybrid_rl.protocols import Measured
+
+QUANTITIES = ("block", "reach")
+
+
+@part
+class Push:
+    """The quantities `block` and `reach` of `world`.
+
+    Raises:
+        ValueError: for an environment that lacks one of them.
+    """
+
+    world: Measured
+    target: tuple[float, ...] = (0.1, 0.0)  # q* [m]
+    reach: NotNegative = 0.8  # w
+    effort: NotNegative = 0.01  # c, of actions in [-1, 1]
+    alive: NotNegative | None = 0.0  # b
+
+    def __post_init__(self) -> None:
+        """Check that the environment has what the reward measures."""
+        known = self.world.quantities(jnp.zeros(self.world.spec.obs))
+        if missing := [name for name in QUANTITIES if name not in known]:
+            raise FieldError(self, "world", f"has no {missing[0]}, only {', '.join(known)}")
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [m], which led to the observation `after` [o]."""
+        q = self.world.quantities(after)
+        away = q["block"] - jnp.asarray(self.target)
+        cost = sum(
+            weight * jnp.sqrt(jnp.sum(error**2) + 1e-12)  # whose gradient at 0 is finite
+            for weight, error in ((1.0, away), (self.reach, q["reach"]))
+        )
+        return bonus(self.world, self.alive) - cost - self.effort * jnp.sum(u**2)
