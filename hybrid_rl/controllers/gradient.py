@@ -62,10 +62,10 @@ class GradientController:
     objective: Objective
     policy: Policy | None = None  # None: no strengths, no tail
     strengths: tuple[NotNegative, ...] = (1.0, 0.8, 0.6, 0.4, 0.2)  # the candidates have in turn
-    horizon: Count = 20  # T [decisions]
-    tail: Natural = 0  # [decisions] of the policy after them
+    horizon: Count = 10  # T [decisions]
+    tail: Natural = 20  # [decisions] of the policy after them
     samples: Count = 32  # K
-    noise: NotNegative = 0.3  # [u] std of the candidates' corrections
+    noise: NotNegative = 0.1  # [u] std of the candidates' corrections
     correlation: Discount = 0.8  # of the noise of successive decisions
     quiet: Fraction = 0.34  # share of the candidates without noise
     refined: Count = 5  # of the K, which gradients improve
