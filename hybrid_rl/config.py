@@ -129,8 +129,7 @@ def build(config: DictConfig) -> Run:
     whole(config.replay, "capacity", "replay.")
     with _usage(config):
         parts = _on_this_machine(config)
-        episode, notes = _episode(parts)
-        controllers = {k: _instantiate(v, f"controllers.{k}") for k, v in parts.controllers.items()}
+        episode, notes, controllers = _acting(parts)
         agent = Agent(
             episode,
             controllers["full"],
@@ -142,6 +141,24 @@ def build(config: DictConfig) -> Run:
         )
         agent.check(rounds * config.num_envs)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
+
+
+def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Controller]]:
+    """The episodes, notes about them, and the controllers as they act in training."""
+    each = {k: _instantiate(v, f"controllers.{k}") for k, v in parts.controllers.items()}
+    return *_episode(parts), each
+
+
+def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller]]:
+    """The episodes of `config`, and the controllers without exploration.
+
+    Raises:
+        UsageError: for a value out of range.
+    """
+    with _usage(config):
+        check_kinds(config)
+        episode, _, controllers = _acting(_on_this_machine(config))
+    return episode, {mode: each.greedy() for mode, each in controllers.items()}
 
 
 def episodes(config: DictConfig) -> Episode:
@@ -237,7 +254,8 @@ def physics(config: DictConfig) -> str | None:
 
 def _on_this_machine(config: DictConfig) -> DictConfig:
     """The sections, in which every copy of the world has its physics resolved."""
-    parts: Any = OmegaConf.masked_copy(config, [*SECTIONS, *{"reward"} & set(config)])
+    sections = [key for key in (*SECTIONS, "reward") if key in config]
+    parts: Any = OmegaConf.masked_copy(config, sections)
     name = physics(config)
 
     def visit(node: Any) -> None:
@@ -270,7 +288,8 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         line = str(error)
         if isinstance(error, FieldError) and error.line.startswith("world=") and error.lacks:
             names = ", ".join(tasks_with(error.lacks))
-            line = f"task={config.task}: {who or config.algo} {error.words}; choose one of {names}"
+            who = who or config.get("algo") or "this"
+            line = f"task={config.task}: {who} {error.words}; choose one of {names}"
         field, equals, rest = line.partition("=")
         if field in config.env and field not in config:  # of a world of the user's
             line = f"env.{line}"

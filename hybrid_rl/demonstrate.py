@@ -32,7 +32,7 @@ from omegaconf import OmegaConf
 from hybrid_rl import config as configuration
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, output, read, whole
+from hybrid_rl.cli.arguments import Argument, flag, output, read, whole
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.demonstrations import save
@@ -52,6 +52,7 @@ ARGUMENTS = (
     Argument("run", "", "instead: folder of a trained run"),
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
     Argument("policy", "", "with run=DIR: the file for its policy's parameters"),
+    Argument("models", False, "with policy=FILE: also model and reward, to plan with", flag),
     Argument("command", "", "with policy=FILE: how it was trained, kept in the file"),
     Argument("episodes", 10, "how many", whole()),
     Argument("seed", 0, "of the first states", whole(least=0)),
@@ -136,11 +137,29 @@ def _write_policy(given: dict[str, Any], changes: dict[str, str]) -> None:
         raise UsageError(f"run={folder}: has no policy with parameters")
     try:
         about = description(folder, run, given["command"])
-        save_policy(file, run.task, run.episode.spec, params.policy, about)
+        models = _models(folder, run, params, about) if given["models"] else {}
+        save_policy(file, run.task, run.episode.spec, params.policy, about, models)
     except ValueError as error:
         raise UsageError(str(error)) from error
-    count = sum(leaf.size for leaf in jax.tree.leaves(params.policy))
-    print(f"{file}: the policy of {given['run']}, {count:,} parameters, task {run.task}")
+    count = sum(leaf.size for leaf in jax.tree.leaves((params.policy, models)))
+    what = "policy and models" if models else "policy"
+    print(f"{file}: the {what} of {given['run']}, {count:,} parameters, task {run.task}")
+
+
+def _models(
+    folder: Path, run: Trained, params: Params, about: dict[str, Any] | None
+) -> dict[str, Any]:
+    """The parameters to plan with, whose parts are added to `about`.
+
+    Raises:
+        UsageError: for a run that learned none.
+    """
+    config: Any = run.config
+    nodes = {name: config.get(name) for name in ("model", "reward_model")}
+    if about is None or not all(nodes.values()) or params.model is None or params.reward is None:
+        raise UsageError(f"models=true: {folder} has no policy with a learned model and reward")
+    about |= {name: OmegaConf.to_container(node) for name, node in nodes.items()}
+    return {"model": params.model, "reward_model": params.reward}
 
 
 def description(folder: Path, trained: Trained, command: str) -> dict[str, Any] | None:

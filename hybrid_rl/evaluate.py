@@ -21,7 +21,6 @@ if __name__ == "__main__":
     interrupt.install()
 
 import json
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -32,27 +31,22 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from hybrid_rl import config as configuration
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import POLICY, Argument, read, whole
+from hybrid_rl.cli.arguments import CHANGES, GOAL, POLICY, Argument, read, whole
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import retargeted
+from hybrid_rl.goals import chosen
 from hybrid_rl.run import memory
 from hybrid_rl.run.integrity import write_text
-from hybrid_rl.trained import Trained, chosen
+from hybrid_rl.trained import Trained
 from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
 from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 
-GROUPS = {name: f"another value of a key of its {name}" for name in ("env", "episode")}
-GOAL = ("reward", "planner")
-GROUPS |= {name: f"a key of the {name} that is given" for name in GOAL}
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     POLICY,
-    Argument("reward", "", "another reward, of conf/reward; empty: that of the training"),
-    Argument("planner", "", "another planner, of conf/controller; empty: gradient for a reward"),
+    *GOAL,
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )
@@ -100,15 +94,9 @@ def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str,
 
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    given, changes = read(__doc__, ARGUMENTS, CHANGES)
     episodes, name = given["episodes"], given["run"] or given["policy"]
-    goal = {key: given[key] for key in GOAL if given[key]}
-    goal |= {key: changes.pop(key) for key in list(changes) if key.split(".")[0] in GOAL}
-    trained = retargeted(chosen(given), [f"{key}={value}" for key, value in goal.items()])
-    if changes:
-        assert trained.config is not None
-        trained = replace(trained, episode=configuration.disturbed(trained.config, changes))
-    changes = goal | changes
+    trained, changes = chosen(given, changes)
     for note in trained.notes:
         print(note)
     values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))

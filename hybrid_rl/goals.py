@@ -8,7 +8,7 @@ maximises it in the learned model, from roll-outs of the policy (conf/retarget.y
 without a learned model keeps its policy, which knows nothing of the reward.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,11 +18,32 @@ from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
+from hybrid_rl.cli.arguments import GOAL
 from hybrid_rl.composition import CONF, explain
 from hybrid_rl.errors import UsageError
-from hybrid_rl.trained import Trained, built
+from hybrid_rl.trained import Trained
+from hybrid_rl.trained import chosen as named
 
 KEYS = ("reward", "planner", "planner_alone")  # of conf/retarget.yaml, which a user may change
+
+
+def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Trained, dict[str, str]]:
+    """The run or policy that a command names, as its other arguments change it, and these.
+
+    given: run, policy and GOAL; changes: group.KEY=VALUE of CHANGES, of the command line.
+
+    Raises:
+        UsageError: for a run, a name, a key or a value that is unusable.
+    """
+    ours = tuple(each.name for each in GOAL)
+    goal = {key: given[key] for key in ours if given[key]}
+    goal |= {key: value for key, value in changes.items() if key.split(".")[0] in ours}
+    trained = retargeted(named(given), [f"{key}={value}" for key, value in goal.items()])
+    rest = {key: value for key, value in changes.items() if key not in goal}
+    if rest:
+        assert trained.config is not None
+        trained = replace(trained, episode=configuration.disturbed(trained.config, rest))
+    return trained, {**goal, **rest}
 
 
 def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
@@ -31,46 +52,40 @@ def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
     overrides: reward=NAME, reward.KEY=VALUE, planner=NAME, planner.KEY=VALUE, as of commands.
 
     Raises:
-        UsageError: for a name, a key or a value that does not exist or does not fit the task.
+        UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
+            planner where no model was learned.
     """
     if not overrides:
         return trained
-    assert trained.config is not None
-    goal = _composed(overrides)
-    if trained.agent is None:
-        return _paid(trained, goal, overrides)
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
+    goal = _fitting(config, _composed(overrides))
+    if "planner" not in goal:
+        for lost in (text for text in overrides if text.startswith("planner")):
+            raise UsageError(f"{lost}: there is no learned model to plan with")
     kept = {key: value for key, value in config.items() if key not in KEYS}
-    changed: Any = OmegaConf.merge(kept, _fitting(config, goal))
+    changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
-    run = built(changed)
-    return replace(trained, episode=run.agent.episode, controllers=run.controllers, config=changed)
+    episode, controllers = configuration.acting(changed)
+    return replace(
+        trained,
+        episode=episode,
+        controllers={**trained.controllers, **controllers},
+        config=changed,
+    )
 
 
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     """The parts of `goal` that a run with this configuration can use."""
     goal = goal.copy()
-    if goal.reward is None:  # another planner for the reward of the training
+    if goal.reward is None and "objective" in config:  # another planner, for the reward of training
         goal.planner.objective = "${objective}"
         goal.planner_alone.objective = "${model_objective}"
-    lacking = {"model", "reward_model"} - set(config)
-    if lacking:
-        names = ("reward",)
-    elif "policy" not in config:
-        goal.controllers = {"full": "${planner_alone}"}
-        names = ("reward", "goal_reward", "goal_objective", "planner_alone", "controllers")
-    else:
-        names = tuple(map(str, goal))
-    return OmegaConf.masked_copy(goal, list(names))
-
-
-def _paid(trained: Trained, goal: DictConfig, overrides: Sequence[str]) -> Trained:
-    """A policy from a file, in an environment that pays another reward."""
-    if lost := [text for text in overrides if text.startswith("planner")]:
-        raise UsageError(f"{lost[0]}: a policy's file holds no model to plan with; give run=DIR")
-    config: Any = OmegaConf.merge(trained.config, OmegaConf.masked_copy(goal, ["reward"]))
-    OmegaConf.resolve(config)
-    return replace(trained, episode=configuration.episodes(config), config=config)
+    if {"model", "reward_model"} - set(config):
+        return OmegaConf.masked_copy(goal, ["reward"])
+    if "policy" not in config:
+        goal.planner = goal.planner_alone
+        goal.controllers = {"full": "${planner}"}
+    return goal
 
 
 def _composed(overrides: Sequence[str]) -> DictConfig:

@@ -2,6 +2,7 @@
 
     python -m hybrid_rl.render run=DIR [out=DIR/video.mp4] [mode=full] [seed=] [episode_steps=]
     python -m hybrid_rl.render policy=NAME [out=NAME.mp4] [episode_steps=]
+    python -m hybrid_rl.render policy=halfcheetah reward=speed reward.target=2
     python -m hybrid_rl.render run=DIR mode=training [seed=] [out=X.mp4]
     python -m hybrid_rl.render task=T [out=T.mp4] [seed=0] [episode_steps=] [env.KEY=VALUE ...]
 
@@ -9,9 +10,10 @@
 with at=0,20,40 for those after so many decisions, side by side.
 
 The episode is one of the run's own evaluation, the first unless episode=N: same key, no
-exploration. policy=NAME is a trained policy of policies/, or a file. With task=T the task's expert
-acts, which is scripted. Without a graphics card a video shows the first 200 pictures, which
-take half a minute; episode_steps=N shows N decisions.
+exploration. policy=NAME is a trained policy of policies/, or a file. reward, planner, env.KEY and
+episode.KEY are as with `evaluate`. With task=T the task's expert acts, which is scripted. Without a
+graphics card a video shows the first 200 pictures, which take half a minute; episode_steps=N shows
+N decisions.
 
 mode=training is the first episode of training of a method that learns a belief over two
 coordinates, such as a map of contacts. A panel, as wide as the picture is high, shows what the
@@ -31,13 +33,23 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import POLICY, Argument, numbers, output, read, whole
+from hybrid_rl.cli.arguments import (
+    CHANGES,
+    GOAL,
+    POLICY,
+    Argument,
+    numbers,
+    output,
+    read,
+    whole,
+)
 from hybrid_rl.errors import UsageError
 
 ARGUMENTS = (
     Argument("run", "", "folder of a trained run"),
     POLICY,
     Argument("task", "", "instead: a task with a scripted expert"),
+    *GOAL,
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
     Argument("mode", "", "of run=DIR: full, policy, planner or training; empty: full"),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
@@ -47,7 +59,7 @@ ARGUMENTS = (
     Argument("width", 640, "of the picture, in pixels", whole(even=True)),
     Argument("height", 480, "of the picture, in pixels", whole(even=True)),
 )
-GROUPS = {name: f"with task=T: a key of its {name}" for name in ("env", "episode", "expert")}
+GROUPS = {**CHANGES, "expert": "with task=T: a key of its expert"}
 FAR = 0.01  # of an observation in a replayed scene; more is reported
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
 FIRST = 200  # pictures of a video that the processor draws, unless episode_steps is given
@@ -207,15 +219,17 @@ def main() -> None:
             "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
             "policy=NAME a trained policy, task=T shows the task's scripted expert"
         )
-    if not given["task"] and changes:
-        raise UsageError("env, episode, expert: a run has its own; give them with task=T")
+    if not given["task"] and any(key.startswith("expert.") for key in changes):
+        raise UsageError("expert: is of a task; give it with task=T")
+    if given["task"] and (given["reward"] or given["planner"]):
+        raise UsageError("reward, planner: a scripted expert has none; give run=DIR or policy=NAME")
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
     from hybrid_rl.analysis.drawing import SUFFIXES, draw_beside
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.envs.mujoco.scenery import scene_of
-    from hybrid_rl.trained import chosen
+    from hybrid_rl.goals import chosen
 
     default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
     out = Path(given["out"] or default)
@@ -230,7 +244,7 @@ def main() -> None:
     if given["mode"] == "training" and given["run"]:
         _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
         return
-    trained = None if given["task"] else chosen(given)
+    trained = None if given["task"] else chosen(given, changes)[0]
     if trained is not None and isinstance(trained.episode.env, External):
         _outside(trained, given, out)
         return

@@ -25,6 +25,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.config import Run
 from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.data import archive
 from hybrid_rl.data.trained import SavedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
@@ -40,6 +41,7 @@ from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params, Spec
 
 PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
+ACTING = ("episode", "policy", "model", "reward_model")  # of `about`, which a planner needs
 UNFIT = (TypeError, AttributeError, LookupError, ArithmeticError, AssertionError, RecursionError)
 
 
@@ -257,16 +259,34 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
     world = {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
     trained = SavedPolicy(None, file, task, env, about["episode"])
     controller = PolicyController(trained.policy, explore=False)
+    params = Params(policy=trained.load(), **_models(prefix, file, task, env, about))
     return Trained(
         task,
         Episode(env, **about["episode"]),
         {"full": controller, "policy": controller},
-        Params(policy=jax.tree.map(lambda leaf: leaf[None], trained.load())),
+        jax.tree.map(lambda leaf: leaf[None], params),
         (about["seed"],),
         about["step"],
         tuple(_origin(about)),
-        OmegaConf.create(world | {"episode": about["episode"]}),
+        OmegaConf.create(world | {name: about[name] for name in ACTING if name in about}),
     )
+
+
+def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) -> dict[str, Any]:
+    """The parameters of model and reward in `file`, by their field of Params; {} without them."""
+    if not {"model", "reward_model"} <= set(about):
+        return {}
+    model, reward = (part(prefix, file, about[name]) for name in ("model", "reward_model"))
+    spec, key = env.spec, jax.random.key(0)
+    like = {
+        "model": jax.eval_shape(lambda: model.init(key, spec)),
+        "reward_model": jax.eval_shape(lambda: reward.init(key, lifted_spec(model, spec))),
+    }
+    found = {
+        name: archive.policy(file, shapes, task, env, about["episode"], name)
+        for name, shapes in like.items()
+    }
+    return {"model": found["model"], "reward": found["reward_model"]}
 
 
 def _described(prefix: str, text: str) -> dict[str, Any]:

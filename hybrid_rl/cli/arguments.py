@@ -21,6 +21,13 @@ def text(name: str, given: str) -> str:
     return given
 
 
+def flag(name: str, given: str) -> bool:
+    """true or false."""
+    if given.lower() not in ("true", "false"):
+        raise UsageError(f"{name}={given}: must be true or false")
+    return given.lower() == "true"
+
+
 def whole(least: int = 1, even: bool = False) -> Kind:
     """A whole number."""
 
@@ -95,6 +102,15 @@ class Argument:
 
 
 POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file")
+
+GOAL = (  # of commands that show a trained run in another world or on another goal
+    Argument("reward", "", "another reward, of conf/reward; empty: that of the training"),
+    Argument("planner", "", "another planner, of conf/controller; empty: gradient for a reward"),
+)
+CHANGES = {
+    **{name: f"another value of a key of its {name}" for name in ("env", "episode")},
+    **{each.name: f"a key of the {each.name} that acts" for each in GOAL},
+}
 
 
 def read(

@@ -27,6 +27,7 @@ PARENTS = (PACKAGE, PACKAGE.parent)  # of FOLDERS in a wheel and in a checkout
 FOLDERS = ("demonstrations", "policies")
 HEADER = ("task", "sizes", "dt")
 ABOUT = "about"
+PARTS = ("policy", "model", "reward_model")  # whose parameters a policy's file may hold
 WRITE = "`python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes one"
 WORDS = ("task", ABOUT)  # arrays that hold text
 SMALL, RATIO = 2**26, 100  # [bytes] of all arrays that any file may hold; bytes of one on the disk
@@ -157,24 +158,29 @@ def check_task(
         raise ValueError(f"{prefix} decides every {arrays['dt']:g} s, this {task} {dt:g} s")
 
 
-def policy_arrays(prefix: str, params: PyTree) -> dict[str, np.ndarray]:
-    """The parameters of a policy by their names in a file.
+def part_arrays(prefix: str, params: PyTree, part: str = "policy") -> dict[str, np.ndarray]:
+    """The parameters of a part, of PARTS, by their names in a file.
 
     Raises:
         ValueError: for one that is not finite.
     """
     leaves = jax.tree_util.tree_leaves_with_path(params)
-    arrays = {_name(path): np.asarray(leaf) for path, leaf in leaves}
+    arrays = {_name(path, part): np.asarray(leaf) for path, leaf in leaves}
     _check_finite(prefix, arrays)
     return arrays
 
 
 def policy(
-    file: str, like: PyTree, task: str, world: Env, episode: Mapping[str, int] | None
+    file: str,
+    like: PyTree,
+    task: str,
+    world: Env,
+    episode: Mapping[str, int] | None,
+    part: str = "policy",
 ) -> PyTree:
     """The parameters in `file` of a policy for `task` in `world`.
 
-    like: their structure and shapes.
+    like: their structure and shapes. part: of PARTS; those of the others are not read.
 
     Raises:
         ValueError: for an unusable file, or one of another task or another policy.
@@ -183,25 +189,29 @@ def policy(
     arrays = read(prefix, file, hint=WRITE)
     check_task(prefix, arrays, task, world, episode)
     leaves, tree = jax.tree_util.tree_flatten_with_path(like)
-    shapes = {_name(path): leaf.shape for path, leaf in leaves}
+    shapes = {_name(path, part): leaf.shape for path, leaf in leaves}
+    others = tuple(f"{name}/" for name in PARTS if name != part)
     for name in sorted({*shapes, *arrays} - {*HEADER, ABOUT}):
+        if name.startswith(others):
+            continue
         if name not in arrays:
-            raise ValueError(f"{prefix} lacks {name}, which this policy has")
+            raise ValueError(f"{prefix} lacks {name}, which this {part} has")
         if name not in shapes:
-            raise ValueError(f"{prefix} has {name}, which this policy lacks")
+            raise ValueError(f"{prefix} has {name}, which this {part} lacks")
         if arrays[name].shape != shapes[name]:
             raise ValueError(
-                f"{prefix} {name} is {arrays[name].shape}, this policy's is {shapes[name]}"
+                f"{prefix} {name} is {arrays[name].shape}, this {part}'s is {shapes[name]}"
             )
     with np.errstate(all="ignore"):  # what becomes infinite is refused
-        kept = {_name(path): arrays[_name(path)].astype(leaf.dtype) for path, leaf in leaves}
+        names = {_name(path, part): leaf.dtype for path, leaf in leaves}
+        kept = {name: arrays[name].astype(dtype) for name, dtype in names.items()}
     _check_finite(prefix, kept)
     return jax.tree.unflatten(tree, map(jnp.asarray, kept.values()))
 
 
-def _name(path: Any) -> str:
-    """The name of the parameter of a policy at `path`."""
-    return "/".join(["policy", jax.tree_util.keystr(path, simple=True, separator="/")])
+def _name(path: Any, part: str) -> str:
+    """The name of the parameter of a part at `path`."""
+    return "/".join([part, jax.tree_util.keystr(path, simple=True, separator="/")])
 
 
 def _check_finite(prefix: str, arrays: Mapping[str, np.ndarray]) -> None:

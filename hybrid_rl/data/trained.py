@@ -21,22 +21,38 @@ from hybrid_rl.protocols import Env
 from hybrid_rl.types import PyTree, Spec
 
 ITSELF = "hybrid_rl.data.trained.SavedPolicy"
+SMALL = 1000  # entries of an array that keeps its precision
 
 
 def save(
-    file: Path | str, task: str, spec: Spec, params: PyTree, about: Mapping[str, Any] | None = None
+    file: Path | str,
+    task: str,
+    spec: Spec,
+    params: PyTree,
+    about: Mapping[str, Any] | None = None,
+    models: Mapping[str, PyTree] | None = None,
 ) -> None:
     """Write the parameters of a policy for `task`, whose decisions have `spec`.
 
-    about: what JSON can hold about its origin.
+    about: what JSON can hold about its origin. models: parameters of `model` and `reward_model`,
+    to plan with, which are written with 16 bits.
 
     Raises:
         ValueError: for parameters that are not finite.
     """
-    arrays = archive.policy_arrays(f"policy={file}:", params)
+    arrays = archive.part_arrays(f"policy={file}:", params)
+    for name, tree in (models or {}).items():
+        halved = jax.tree.map(_halved, tree)
+        arrays |= archive.part_arrays(f"policy={file}:", halved, name)
     if about is not None:
         arrays[archive.ABOUT] = np.array(json.dumps(about))
     archive.write(file, task, spec, arrays)
+
+
+def _halved(leaf: Any) -> np.ndarray:
+    """An array of weights with 16 bits; small arrays, such as statistics, as they are."""
+    leaf = np.asarray(leaf)
+    return leaf.astype(np.float16) if leaf.size > SMALL and leaf.dtype == np.float32 else leaf
 
 
 def described(file: str) -> Any:
