@@ -14,7 +14,7 @@ from typing import Any
 
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
@@ -57,6 +57,9 @@ def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
     """
     if not overrides:
         return trained
+    if not any(text.startswith("reward=") for text in overrides):
+        for text in (each for each in overrides if each.startswith("reward.")):
+            raise UsageError(f"{text}: is a key of a reward; give reward=NAME with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
     goal = _fitting(config, _composed(overrides))
     if "planner" not in goal:
@@ -96,6 +99,9 @@ def _composed(overrides: Sequence[str]) -> DictConfig:
     ]
     try:
         with initialize_config_dir(str(CONF), version_base="1.3"):
-            return compose("retarget", words)
+            goal = compose("retarget", words)
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(explain(error)) from error
+    with open_dict(goal):
+        goal.setdefault("reward", None)
+    return goal

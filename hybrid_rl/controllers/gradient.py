@@ -95,10 +95,11 @@ class GradientController:
         each = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), refined, starts)
         found = score(each)
         plan, chosen = jax.tree.map(lambda leaf: leaf[jnp.argmax(found.score)], (each, found))
+        gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
         metrics = {
             "planner/planned_return": chosen.score + self.disagreement_price * chosen.disagreement,
             "planner/disagreement": chosen.disagreement / (self.horizon + self.tail),
-            "planner/gain": found.score.max() - first.score.max(),
+            "planner/gain": jnp.where(jnp.isfinite(gain), gain, jnp.nan),  # of the gradients
             "planner/strength": plan.s,
             **self._agreement(params, value, x, chosen.u),
         }
@@ -123,7 +124,7 @@ class GradientController:
         number, count = jnp.arange(K), len(each)
         loud = number // count >= self.quiet * K / count
         if self.policy is None:  # around the last plan
-            return Candidate(jnp.zeros(K), state.plan.v + self.noise * e)
+            return Candidate(jnp.zeros(K), state.plan.v[None] + self.noise * e)
         return Candidate(each[number % count], self.noise * e * loud[:, None, None])
 
     def _scored(self, params: Params, value: Return, x: Array, one: Candidate) -> Scored:

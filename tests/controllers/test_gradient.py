@@ -1,0 +1,136 @@
+"""The gradient planner on a mass on a line, with known solutions."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+from test_adjoint_controller import SPEC, Cart, Speed
+
+from hybrid_rl.controllers.gradient import GradientController
+from hybrid_rl.types import Params
+
+
+@dataclass(frozen=True)
+class Doubted(Cart):
+    """The mass, whose members disagree by |u| in every entry."""
+
+    def step_and_disagreement(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
+        """The next state, and the disagreement."""
+        return self.step(params, x, u), jnp.full(2, jnp.abs(u).sum())
+
+
+@dataclass(frozen=True)
+class Steady:
+    """A policy that pushes back with 0.5 and brakes at high speed."""
+
+    def mean(self, params: Any, x: Array) -> Array:
+        """-0.5, less at speed."""
+        return jnp.full(1, -0.5) - x[1]
+
+    def variance(self, params: Any, x: Array) -> Array:
+        """Constant."""
+        return jnp.full(1, 0.25)
+
+
+@dataclass(frozen=True)
+class Still:
+    """J = -sum of squared speeds."""
+
+    def init(self, spec: Any) -> tuple[()]:
+        """No memory."""
+        return ()
+
+    def prepare(self, params: Any, memory: Any, x: Array, u_before: Array, key: Array) -> tuple:
+        """J of a path."""
+        return lambda path: -jnp.sum(path.x[1:, 1] ** 2), memory
+
+
+def act(controller: GradientController, obs: tuple[float, float] = (0.0, 0.0)) -> tuple:
+    """One decision."""
+    state = controller.init(SPEC)
+    return jax.jit(controller.act)(Params(), state, jnp.array(obs), jax.random.key(0))
+
+
+SMALL: dict[str, Any] = {"horizon": 5, "tail": 0, "samples": 8, "refined": 2}
+
+
+def test_without_a_policy_it_climbs_to_the_best_action() -> None:
+    """J of speeds less 0.5 u^2 has its greatest value at u = 0.1 n, n decisions before the end."""
+    planner = GradientController(
+        Cart(), Speed(0.5), **SMALL, iterations=60, step=0.01, noise=0.2, disagreement_price=0
+    )
+    u, state, metrics = act(planner)
+    np.testing.assert_allclose(u, 0.5, atol=0.03)
+    np.testing.assert_allclose(state.plan.v[:4, 0], [0.4, 0.3, 0.2, 0.1], atol=0.03)
+    assert float(metrics["planner/gain"]) > 0
+
+
+def test_disagreement_costs_its_price() -> None:
+    """J rises by 0.5 per u in the first decision; a price above that keeps u at 0."""
+    still, moving = (
+        act(
+            GradientController(Doubted(), Speed(), **SMALL, iterations=12, disagreement_price=price)
+        )[0]
+        for price in (1.0, 0.0)
+    )
+    assert abs(float(still[0])) < 0.1 < 0.5 < float(moving[0])
+
+
+def test_strength_is_chosen_by_the_goal() -> None:
+    """At speed 1 the policy brakes by 1.5; for standing still less is wanted near rest."""
+    planner = GradientController(
+        Cart(), Still(), policy=Steady(), **SMALL, quiet=1.0, iterations=0, strengths=(1.0, 0.5)
+    )
+    _, fast, _ = act(planner, (0.0, 1.0))
+    _, slow, _ = act(planner, (0.0, 0.0))
+    assert (float(fast.plan.s), float(slow.plan.s)) == (1.0, 0.5)
+
+
+def test_the_tail_sees_what_comes_after_the_plan() -> None:
+    """One decision ahead, speed pays; for ten more the policy has to brake at J's expense."""
+
+    @dataclass(frozen=True)
+    class Late(Still):
+        def prepare(self, params: Any, memory: Any, x: Array, u: Array, key: Array) -> tuple:
+            """J pays for speed at once, and takes more for it later."""
+            return lambda path: path.x[1, 1] - 3 * jnp.sum(jnp.abs(path.x[2:, 1])), memory
+
+    given = {**SMALL, "horizon": 1, "strengths": (0.0,), "disagreement_price": 0.0}
+    short, long = (
+        act(GradientController(Cart(), Late(), Steady(), **{**given, "tail": tail}))[0]
+        for tail in (0, 10)
+    )
+    assert float(short[0]) > 0.2
+    assert abs(float(long[0])) < 0.1
+
+
+def test_a_candidate_that_leaves_all_bounds_does_not_act() -> None:
+    """NaN returns neither win nor spoil gradients."""
+
+    @dataclass(frozen=True)
+    class Broken(Cart):
+        def step(self, params: Any, x: Array, u: Array) -> Array:
+            """NaN for a push to the left."""
+            return super().step(params, x, u) + jnp.where(u[0] < -0.05, jnp.nan, 0.0)
+
+    u, _, metrics = act(GradientController(Broken(), Speed(), **SMALL, noise=0.3))
+    assert float(u[0]) > 0
+    assert np.isfinite([float(value) for value in metrics.values()]).all()
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"horizon": 0}, "horizon=0: must be a whole number, 1 or more"),
+        ({"strengths": (1.0, -0.5)}, "strengths=.*: must be 0 or more"),
+        ({"step": 0.0}, "step=0.0: must be above 0"),
+        ({"disagreement_price": -1.0}, "disagreement_price=-1.0: must be 0 or more"),
+    ],
+)
+def test_fields_out_of_range_are_refused(fields: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        GradientController(Cart(), Speed(), **fields)

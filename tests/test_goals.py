@@ -1,0 +1,96 @@
+"""A trained run on rewards that it was not trained on, from its folder and from a policy's file."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tiny import call, only_line, run
+
+from hybrid_rl import demonstrate, evaluate
+from hybrid_rl.cli import command
+from hybrid_rl.controllers.gradient import GradientController
+from hybrid_rl.controllers.sampling import SamplingController
+from hybrid_rl.goals import retargeted
+from hybrid_rl.trained import load, read
+
+AT = ["reward=aim", "reward.quantity=position", "reward.target=0.5"]
+SMALL = ["planner.horizon=3", "planner.tail=2", "planner.samples=6", "planner.refined=2"]
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory) -> Path:
+    """A run of a few decisions with models, policy and critic."""
+    folder = tmp_path_factory.mktemp("goals") / "run"
+    run(folder, "task=cartpole", "algo=hybrid_stochastic", "episode.steps=20")
+    return folder
+
+
+def test_the_environment_pays_and_the_planner_plans(trained: Path) -> None:
+    """Returns of an episode are those of the new reward, along the cart's own positions."""
+    goal = retargeted(load(trained), [*AT, *SMALL])
+    both, alone = goal.controllers["full"], goal.controllers["planner"]
+    assert isinstance(both, GradientController)
+    assert isinstance(alone, GradientController)
+    assert (both.horizon, both.tail, alone.policy) == (3, 2, None)
+    assert goal.controllers["policy"] == load(trained).controllers["policy"]
+    got = evaluate.evaluate(goal, "full", 2)["return"]
+    assert got.shape == (len(goal.seeds), 2)
+    assert (got > -20 * (3 + 0.05)).all()
+    assert (got < 0).all()
+
+
+def test_another_planner_keeps_the_reward_and_its_critic(trained: Path) -> None:
+    """planner=NAME alone is for the reward of the training."""
+    was, now = load(trained), retargeted(load(trained), ["planner=gradient", *SMALL])
+    assert now.episode == was.episode
+    planned = was.controllers["full"]
+    assert isinstance(planned, SamplingController)
+    assert now.controllers["full"].objective == planned.objective  # type: ignore[attr-defined]
+
+
+def test_a_file_with_models_plans_as_the_run_does(trained: Path, tmp_path, capsys) -> None:
+    """Up to the 16 bits of its weights; without them it has a policy alone."""
+    file, bare = tmp_path / "both.npz", tmp_path / "bare.npz"
+    main = lambda *words: call(lambda: command.guarded(demonstrate.main), *words)  # noqa: E731
+    assert main(f"run={trained}", f"policy={file}", "models=true") == 0
+    assert main(f"run={trained}", f"policy={bare}") == 0
+    assert "policy and models of" in capsys.readouterr().out
+    goals = [retargeted(each, [*AT, *SMALL]) for each in (load(trained), read(str(file)))]
+    obs = np.array([0.1, 0.0, 0.9, 0.1, 0.0], np.float32)
+    of_run, of_file = (goal.policy()(obs) for goal in goals)
+    np.testing.assert_allclose(of_run, of_file, atol=0.02)
+    assert set(retargeted(read(str(bare)), AT).controllers) == {"full", "policy"}
+
+
+def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
+    """In its output and in the file's name."""
+    main = lambda *words: call(lambda: command.guarded(evaluate.main), *words)  # noqa: E731
+    assert main(f"run={trained}", "episodes=2", "mode=policy", *AT, "env.reward=cos") == 0
+    assert "reward=aim, reward.quantity=position" in capsys.readouterr().out
+    (file,) = trained.glob("evaluation_policy_reward=aim*.json")
+    assert json.loads(file.read_text())["changes"]["reward.target"] == "0.5"
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        ("reward=fame", "reward=fame: unknown; choose one of aim, height, level"),
+        ("reward.target=2", "reward.target=2: is a key of a reward; give reward=NAME with it"),
+        ("reward=speed reward.tarket=2", "reward.tarket: unknown key; did you mean reward.target"),
+        ("reward=speed reward.target=fast", "reward.target=fast: must be"),
+        ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
+        ("planner=gradient planner.tail=-1", "planner.tail=-1: must be a whole number, 0 or more"),
+        ("planner=fast", "controller=fast: unknown; choose one of"),
+    ],
+)
+def test_a_mistake_is_one_line(trained: Path, words: str, line: str, capfd) -> None:
+    given = f"run={trained}", *words.split()
+    assert call(lambda: command.guarded(evaluate.main), *given) == 2
+    assert line in only_line(capfd)
+
+
+def test_a_policy_without_models_refuses_a_planner(capfd) -> None:
+    given = ("policy=cartpole", "reward=speed", "planner.horizon=3")
+    assert call(lambda: command.guarded(evaluate.main), *given) == 2
+    assert "planner.horizon=3: there is no learned model to plan with" in only_line(capfd)
