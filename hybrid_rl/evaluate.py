@@ -32,7 +32,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import CHANGES, GOAL, POLICY, Argument, read, whole
+from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, read, whole
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import chosen
@@ -47,6 +47,7 @@ ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     POLICY,
     *GOAL,
+    CONFIG_DIR,
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )

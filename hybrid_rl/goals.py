@@ -10,6 +10,7 @@ without a learned model keeps its policy, which knows nothing of the reward.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from hydra import compose, initialize_config_dir
@@ -21,6 +22,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
 from hybrid_rl.composition import CONF, explain
 from hybrid_rl.errors import UsageError
+from hybrid_rl.overrides import search_path
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import chosen as named
 
@@ -38,7 +40,8 @@ def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Traine
     ours = tuple(each.name for each in GOAL)
     goal = {key: given[key] for key in ours if given[key]}
     goal |= {key: value for key, value in changes.items() if key.split(".")[0] in ours}
-    trained = retargeted(named(given), [f"{key}={value}" for key, value in goal.items()])
+    words = [f"{key}={value}" for key, value in goal.items()]
+    trained = retargeted(named(given), words, given["config_dir"])
     rest = {key: value for key, value in changes.items() if key not in goal}
     if rest:
         assert trained.config is not None
@@ -46,10 +49,13 @@ def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Traine
     return trained, {**goal, **rest}
 
 
-def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
+def retargeted(
+    trained: Trained, overrides: Sequence[str], config_dir: str | Path | None = None
+) -> Trained:
     """`trained` with the goal and the planner that the overrides name.
 
     overrides: reward=NAME, reward.KEY=VALUE, planner=NAME, planner.KEY=VALUE, as of commands.
+    config_dir: a folder with groups of the user, as for `--config-dir`.
 
     Raises:
         UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
@@ -61,7 +67,7 @@ def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
         for text in (each for each in overrides if each.startswith("reward.")):
             raise UsageError(f"{text}: is a key of a reward; give reward=NAME with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
-    goal = _fitting(config, _composed(overrides))
+    goal = _fitting(config, _composed(overrides, config_dir))
     if "planner" not in goal:
         for lost in (text for text in overrides if text.startswith("planner")):
             raise UsageError(f"{lost}: there is no learned model to plan with")
@@ -91,12 +97,14 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     return goal
 
 
-def _composed(overrides: Sequence[str]) -> DictConfig:
+def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
     words = [
         f"controller@{text}" if text.split("=")[0] in ("planner", "planner_alone") else text
         for text in overrides
     ]
+    if config_dir:
+        words.append(search_path(config_dir))
     try:
         with initialize_config_dir(str(CONF), version_base="1.3"):
             goal = compose("retarget", words)

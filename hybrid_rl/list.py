@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, read
+from hybrid_rl.cli.arguments import CONFIG_DIR, read
 from hybrid_rl.composition import CONF, THESIS
 from hybrid_rl.config import tasks_with
 from hybrid_rl.errors import UsageError
@@ -34,7 +34,7 @@ FIRST = (  # of the methods; parts of others and baselines follow
     *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "nn_mppi", "hybrid_bc"),
     *("kle3", "koopman_active"),
 )
-ARGUMENTS = (Argument("config_dir", "", "folder with configuration groups of yours"),)
+ARGUMENTS = (CONFIG_DIR,)
 
 
 def listing(conf: Path = CONF) -> dict[str, dict[str, str]]:

@@ -35,6 +35,7 @@ import numpy as np
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import (
     CHANGES,
+    CONFIG_DIR,
     GOAL,
     POLICY,
     Argument,
@@ -50,6 +51,7 @@ ARGUMENTS = (
     POLICY,
     Argument("task", "", "instead: a task with a scripted expert"),
     *GOAL,
+    CONFIG_DIR,
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
     Argument("mode", "", "of run=DIR: full, policy, planner or training; empty: full"),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),

@@ -7,14 +7,13 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from omegaconf import OmegaConf
 from tiny import TINY, call, call_train, only_line
 
-from hybrid_rl import config, evaluate, render, types
+from hybrid_rl import config, evaluate, render
 from hybrid_rl.cli import command
 from hybrid_rl.envs import check
 from hybrid_rl.envs.mujoco import offscreen
@@ -167,18 +166,22 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
         assert picture.stat().st_size > 0
 
 
-def test_a_reward_is_one_file_that_a_planner_sums(conf, tmp_path):
-    """Along the path of a learned model."""
-    code, objective = blocks("A reward of your own", HOWTO)
+def test_a_reward_is_one_file_that_the_environment_pays(conf, tmp_path, capsys):
+    """In training, and on another run when it is evaluated."""
+    code, fields = blocks("A reward of your own", HOWTO)
     (tmp_path / "upright.py").write_text(code)
-    (conf / "objective").mkdir()
-    (conf / "objective" / "upright.yaml").write_text(objective)
-    command = section("A reward of your own", HOWTO).split("my_conf task=")[1].split("\n")[0]
-    composed = config.load([f"task={command.split()[0]}", *command.split()[1:]], config_dir=conf)
-    agent = config.build(composed).agent
-    objective = agent.controller.objective
-    path = types.Path(jnp.arange(12.0).reshape(4, 3), jnp.zeros((3, 1)))
-    assert objective.reward_to_go(types.Params(), path)[0] == 3 + 6 + 9
+    (conf / "reward").mkdir()
+    (conf / "reward" / "upright.yaml").write_text(fields)
+    words = section("A reward of your own", HOWTO).split("my_conf ")[1].split("\n")[0].split()
+    train(conf, tmp_path / "run", *words, "episode.steps=5")
+    trained = evaluate.load(tmp_path / "run")
+    assert trained.episode.reward.effort == 0.2
+    got = evaluate.evaluate(trained, "full", 2)["return"]
+    assert (np.abs(got) <= 5 * 1.2).all()
+    train(conf, tmp_path / "other", "task=pendulum", "algo=nn_mppi", "episode.steps=5")
+    words = f"run={tmp_path / 'other'}", "reward=upright", f"config_dir={conf}", "episodes=2"
+    assert call(lambda: command.guarded(evaluate.main), *words) == 0
+    assert "reward=upright" in capsys.readouterr().out
 
 
 @pytest.mark.filterwarnings("ignore:.*Box observation space (min|max)imum value is:UserWarning")

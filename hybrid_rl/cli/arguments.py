@@ -111,6 +111,7 @@ CHANGES = {
     **{name: f"another value of a key of its {name}" for name in ("env", "episode")},
     **{each.name: f"a key of the {each.name} that acts" for each in GOAL},
 }
+CONFIG_DIR = Argument("config_dir", "", "folder with configuration groups of yours")
 
 
 def read(
