@@ -6,9 +6,18 @@
 
 It has the interface of `Loop` and draws the same random numbers. Both programs donate the state:
 the replay memory is not copied. Metrics stay on the device until the end of a call.
+
+With `overlap` of the environment a thread learns while the environment steps. Actions are then
+chosen before the learning from the decision before them begins; `decide` gets that one's outcome,
+and donates nothing.
+
+    u' = decide(state, outcome)
+    state = learn(state, outcome)    in a thread, meanwhile on the host
+    outcome' = copies.step(u')
 """
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
@@ -25,6 +34,7 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.rollout import act
@@ -42,6 +52,11 @@ class HostLoop(Loop):
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     @property
+    def overlap(self) -> bool:
+        """Whether a thread learns while the environment steps."""
+        return getattr(self.agent.episode.env, "overlap", False)
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """What a resumed run says about its environments."""
         return (RESUMED,)
@@ -49,13 +64,15 @@ class HostLoop(Loop):
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that learns; that of the other one is kept."""
         began, zero = perf_counter(), jnp.zeros((), jnp.int32)
-        decide = jax.vmap(self._decide, (0, 0, 0, 0, None))
-        parts = (SEEDS, SEEDS, SEEDS, SEEDS, REPLICATED), SEEDS
-        given = state.learners, state.control, state.env, state.key, zero
-        self.deciding = self.shard(decide, *parts, donate_argnums=1).trace(*given)
+        got, axes = _standing(state.env), (0, 0, 0, 0, None)
+        given: tuple = (*_read(state), zero)
+        if self.overlap:
+            axes, given = (*axes, 0, None), (*given, got, jnp.zeros((), bool))
+        decide = jax.vmap(self._decide, axes)
+        parts = tuple(REPLICATED if axis is None else SEEDS for axis in axes), SEEDS
+        donated = () if self.overlap else 1  # the learning that follows gets all of the state
+        self.deciding = self.shard(decide, *parts, donate_argnums=donated).trace(*given)
         u, _, planned = jax.eval_shape(decide, *given)
-        env = state.env
-        got = Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
         parts = (SEEDS, METRICS, SEEDS, SEEDS, SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         self.rows = jax.eval_shape(self._rows, state, planned, u, got, zero)
         learn = self.shard(self._learn, *parts, donate_argnums=(0, 1))
@@ -85,12 +102,24 @@ class HostLoop(Loop):
         return self.shard(jax.vmap(one), SEEDS, SEEDS, donate_argnums=0)(state, obs)
 
     def _decide(
-        self, learners: Any, control: Any, env: EnvState, key: Array, step: Array
+        self,
+        learners: Any,
+        control: Any,
+        env: Any,
+        key: Any,
+        step: Any,
+        got: Any = None,
+        *made: Any,
     ) -> tuple[Array, Any, dict[str, Array]]:
         """Actions [E, m] of one learner, the states of its controllers, and metrics.
 
-        The memory is no argument, as each array of a call takes time.
+        got: with overlap, the outcome [E, ...] of a decision at `env`, if one was `made` [].
         """
+        if got is not None:
+            now, after = states(env, got)
+            begun = where(now.done, self.agent.first_control(), control)
+            following = begun, after, Keys.of(key, self.agent.num_envs).next
+            control, env, key = where(made[0], following, (control, env, key))
         memory: Any = None
         state = AgentState(env, control, memory, learners, key)
         u, after, planned = self.agent.decide(state, step)
@@ -126,6 +155,7 @@ class HostProgram:
         self.loop, self.decide, self.learn = loop, decide, learn
         self.memory_analysis = learn.memory_analysis
         self.copies: Copies | None = None  # made at the first call
+        self.ahead: Any = None  # with overlap, what was decided for the next call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
         """As the program of `Loop`.
@@ -139,16 +169,63 @@ class HostProgram:
             self.copies = loop.copies()
             state = loop.restarted(state, self.copies.reset().reshape(*each, -1))
         rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
-        for i in range(int(rounds)):
-            step = np.int32(first + i * envs)
-            u, control, planned = self.decide(
-                state.learners, state.control, state.env, state.key, step
-            )
-            state = state.replace(control=control)
-            got = self.copies.step(np.asarray(u).reshape(-1, u.shape[-1]))
-            got = Outcome(*(value.reshape(*each, *value.shape[1:]) for value in got))
-            state, rows = self.learn(state, rows, planned, u, got, np.int32(i), step)
+        steps = [np.int32(first + i * envs) for i in range(int(rounds))]
+        state, rows = (self._overlapping if loop.overlap else self._in_turn)(state, rows, steps)
         return state, jax.device_get(rows)
+
+    def _in_turn(self, state: AgentState, rows: Any, steps: list[np.int32]) -> tuple[Any, Any]:
+        """Learning from each decision ends before the next one."""
+        for i, step in enumerate(steps):
+            u, control, planned = self.decide(*_read(state), step)
+            state = state.replace(control=control)
+            state, rows = self.learn(state, rows, planned, u, self._outcome(u), np.int32(i), step)
+        return state, rows
+
+    def _overlapping(self, state: AgentState, rows: Any, steps: list[np.int32]) -> tuple[Any, Any]:
+        """Learning from a decision runs while the environment makes the next one.
+
+        That one, also the first of the next call, was chosen before, so that a run does not depend
+        on where its calls end.
+        """
+
+        def learn() -> tuple[Any, Any]:
+            return state, rows
+
+        with ThreadPoolExecutor(1) as thread:
+            for i, step in enumerate(steps):
+                u, control, planned = self.ahead or self._ahead(state, step)
+                learning = thread.submit(learn)
+                got = self._outcome(u)
+                state, rows = learning.result()
+                state = state.replace(control=control)
+                self.ahead = self._ahead(state, step + np.int32(self.loop.agent.num_envs), got)
+                learn = partial(self.learn, state, rows, planned, u, got, np.int32(i), step)
+        return learn()
+
+    def _ahead(self, state: AgentState, step: np.int32, got: Outcome | None = None) -> tuple:
+        """Decision `step`, after one at `state` that had the outcome `got`, if any.
+
+        It waits for the actions, as learning is then given what was read.
+        """
+        after = (got or _standing(state.env), np.bool_(got is not None))
+        u, *rest = self.decide(*_read(state), step, *after)
+        return np.asarray(u), *rest
+
+    def _outcome(self, u: Any) -> Outcome:
+        """What the actions u [S, E, m] lead to, [S, E, ...]."""
+        assert self.copies is not None
+        got = self.copies.step(np.asarray(u).reshape(-1, u.shape[-1]))
+        return Outcome(*(value.reshape(*u.shape[:2], *value.shape[1:]) for value in got))
+
+
+def _standing(env: EnvState) -> Outcome:
+    """An outcome of the shapes of one at `env`, for a decision that has none before it."""
+    return Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
+
+
+def _read(state: AgentState) -> tuple:
+    """What deciding reads of the state; not the memory, as each array of a call takes time."""
+    return state.learners, state.control, state.env, state.key
 
 
 class HostEvaluator:
