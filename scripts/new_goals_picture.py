@@ -60,13 +60,13 @@ def draw(robots: dict[str, Any]) -> Figure:
 
 def panel(axes: Any, rows: dict[str, Any], goal: str) -> None:
     """One goal: interquartile mean and band of each row."""
-    for x, (row, (_, colour)) in enumerate(SHOWN.items()):
+    for x, (row, (_, ink)) in enumerate(SHOWN.items()):
         each = np.asarray(rows[row][goal])[:, None]
         low, high = (float(end[0]) for end in band(each))
         middle = float(iqm(each)[0])
-        axes.plot(np.full(len(each), x) + 0.22, each[:, 0], ".", ms=3, color=colour, alpha=0.35)
-        axes.plot([x, x], [low, high], color=colour, lw=3, solid_capstyle="round")
-        axes.plot(x, middle, "o", color=colour, ms=6)
+        axes.plot(np.full(len(each), x) + 0.22, each[:, 0], ".", ms=3, color=ink, alpha=0.35)
+        axes.plot([x, x], [low, high], color=ink, lw=3, solid_capstyle="round")
+        axes.plot(x, middle, "o", color=ink, ms=6)
     still = float(iqm(np.asarray(rows["still"][goal])[:, None])[0])
     axes.axhline(still, color="0.5", ls=":", lw=1)
     axes.set_xticks(range(len(SHOWN)), [name for name, _ in SHOWN.values()])

@@ -58,7 +58,7 @@ def act(controller: GradientController, obs: tuple[float, float] = (0.0, 0.0)) -
 SMALL: dict[str, Any] = {"horizon": 5, "tail": 0, "samples": 8, "refined": 2}
 
 
-def test_without_a_policy_it_climbs_to_the_best_action() -> None:
+def test_without_a_policy_it_reaches_the_best_action() -> None:
     """J of speeds less 0.5 u^2 has its greatest value at u = 0.1 n, n decisions before the end."""
     planner = GradientController(
         Cart(), Speed(0.5), **SMALL, iterations=60, step=0.01, noise=0.2, disagreement_price=0
