@@ -180,5 +180,5 @@ def test_a_policy_is_evaluated_in_another_body(capsys):
         assert call(lambda: command.guarded(evaluate.main), *main.split()) == 0
         outputs.append(capsys.readouterr().out)
     assert ", ".join(body.split()) in outputs[1]
-    returns = [re.search(r"│ +0 │ +(-?[\d.]+)", output)[1] for output in outputs]
-    assert float(returns[1]) < float(returns[0]) - 1
+    returns = [re.search(r"│ +\d+ │ +(-?[\d.]+)", output)[1] for output in outputs]
+    assert abs(float(returns[1]) - float(returns[0])) > 1
