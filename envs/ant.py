@@ -30,7 +30,8 @@ from jax import Array
 
 from hybrid_rl.envs.locomotion import pybullet_reward
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
@@ -45,16 +46,12 @@ DT = 0.05  # [s] of a decision
 
 
 @part
-class Ant:
+class Ant(Body):
     """Ant; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
     reward: Literal["pybullet", "gymnasium"] = "pybullet"
     integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler, as Brax, costs a quarter
     contacts: Literal["points", "capsules"] = "points"
-
-    def __post_init__(self) -> None:
-        check(self.physics)
 
     @property
     def spec(self) -> Spec:
@@ -63,7 +60,7 @@ class Ant:
 
     @property
     def _body(self) -> Physics:
-        return Physics(ASSETS[self.contacts, self.integrator], self.physics)
+        return self._physics(ASSETS[self.contacts, self.integrator])
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

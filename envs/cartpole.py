@@ -23,7 +23,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
@@ -32,14 +33,10 @@ DT = 0.0165  # [s] of a decision
 
 
 @part
-class Cartpole:
+class Cartpole(Body):
     """Cartpole swing-up; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
     reward: Literal["cos", "dm_control"] = "cos"
-
-    def __post_init__(self) -> None:
-        check(self.physics)
 
     @property
     def spec(self) -> Spec:
@@ -48,7 +45,7 @@ class Cartpole:
 
     @property
     def _body(self) -> Physics:
-        return Physics(ASSET, self.physics)
+        return self._physics(ASSET)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

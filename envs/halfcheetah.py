@@ -18,7 +18,8 @@ from jax import Array
 
 from hybrid_rl.envs.locomotion import pybullet_reward
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
@@ -29,14 +30,10 @@ LEGS = ("back_thigh", "back_shin", "front_thigh", "front_shin")
 
 
 @part
-class HalfCheetah:
+class HalfCheetah(Body):
     """Half-cheetah; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
     reward: Literal["gymnasium", "pybullet"] = "gymnasium"
-
-    def __post_init__(self) -> None:
-        check(self.physics)
 
     @property
     def spec(self) -> Spec:
@@ -45,7 +42,7 @@ class HalfCheetah:
 
     @property
     def _body(self) -> Physics:
-        return Physics(ASSETS[self.reward], self.physics)
+        return self._physics(ASSETS[self.reward])
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -25,7 +25,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
@@ -38,15 +39,11 @@ OBSERVATION_READS = {"short": (), "full": ("cinert", "cvel", "qfrc_actuator")}
 
 
 @part
-class Humanoid:
+class Humanoid(Body):
     """Humanoid; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
     observation: Literal["short", "full"] = "short"
     integrator: Literal["rk4", "euler"] = "rk4"  # as Gymnasium; euler costs a quarter
-
-    def __post_init__(self) -> None:
-        check(self.physics)
 
     @property
     def spec(self) -> Spec:
@@ -56,7 +53,7 @@ class Humanoid:
     @property
     def _body(self) -> Physics:
         reads = REWARD_READS + OBSERVATION_READS[self.observation]
-        return Physics(ASSETS[self.integrator], self.physics, reads=reads)
+        return self._physics(ASSETS[self.integrator], reads)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

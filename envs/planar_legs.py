@@ -11,7 +11,7 @@ torque; start: qpos and qvel ~ U(-0.005, 0.005) around the upright pose; a decis
 Source: Erez, Tassa, Todorov 2011; parameters of Gymnasium; pybullet_envs.
 """
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import ClassVar, Literal
 
 import jax
@@ -20,7 +20,8 @@ from jax import Array
 
 from hybrid_rl.envs.locomotion import pybullet_reward
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -29,16 +30,12 @@ DT = 0.008  # [s] of a decision
 
 
 @part
-class PlanarLegs(ABC):
+class PlanarLegs(Body):
     """A robot by its `asset` and `alive`; `physics` is native, mjx, warp or auto."""
 
-    physics: str = "auto"
     reward: Literal["gymnasium", "pybullet"] = "gymnasium"
     velocity_limit: Positive | None = 10.0  # of observed velocities [m/s, rad/s]
     asset: ClassVar[str]
-
-    def __post_init__(self) -> None:
-        check(self.physics)
 
     @abstractmethod
     def alive(self, qpos: Array, qvel: Array) -> Array:
@@ -47,12 +44,12 @@ class PlanarLegs(ABC):
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
-        model = self._body.model
+        model = mjcf.load(self.asset)
         return Spec(obs=model.nq - 1 + model.nv, act=model.nu, dt=DT)
 
     @property
     def _body(self) -> Physics:
-        return Physics(self.asset, self.physics)
+        return self._physics(self.asset)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

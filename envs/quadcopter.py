@@ -5,7 +5,8 @@
 
     g = R'(0, 0, -9.81): gravity in the body frame; g* = (0, 0, -9.81) when level
     w, v: angular and linear velocity in the body frame
-    u* = m g / (4 k): motor control that hovers
+    u*_i = m g / (4 k_i): motor controls that hover, each with a quarter of the weight; m and k_i
+    are those of the changed body, so u* may exceed 6 there: with a motor below 0.41, say
 
 o = (g, w, v) [9], for track (g, w, v, R'(p* - p)) [12]; a: four motor controls, u = 6 a, or
 u = 3 (a + 1) with bidirectional=false; start: level, w and v ~ U(-2, 2); for track also
@@ -21,11 +22,13 @@ from typing import Literal
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import inverse, rotate
-from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
+from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
 
@@ -37,10 +40,9 @@ SUCCESS_ERROR = 0.01  # squared error below which the task is solved
 
 
 @part
-class Quadcopter:
+class Quadcopter(Body):
     """Quadcopter; `physics` is native, mjx, warp or auto; mass and inertia come from `asset`."""
 
-    physics: str = "auto"
     task: Literal["hover", "track"] = "hover"
     damping: bool = False  # air drag
     bidirectional: bool = True  # negative thrust, too
@@ -49,9 +51,6 @@ class Quadcopter:
     target_speed: float = 0.0  # [m/s] largest in each direction; track only
     asset: str = ASSET  # another file needs the same actuators
 
-    def __post_init__(self) -> None:
-        check(self.physics)
-
     @property
     def spec(self) -> Spec:
         """Observation size, action size and decision interval."""
@@ -59,7 +58,7 @@ class Quadcopter:
 
     @property
     def _body(self) -> Physics:
-        return Physics(self.asset, self.physics)
+        return self._physics(self.asset)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
@@ -86,18 +85,18 @@ class Quadcopter:
         return self._state(data, effort, {**state.info, "target": target})
 
     @property
-    def hovering(self) -> float:
-        """Motor control u* at which the thrust balances the weight."""
+    def hovering(self) -> np.ndarray:
+        """Motor controls u* [4] that balance the weight without a moment."""
         model = self._body.model
-        thrust = model.actuator_gear[:4, 2].mean()
-        return float(model.body_mass.sum() * -model.opt.gravity[2] / (4 * thrust))
+        thrust = model.actuator_gear[:4, 2] * model.actuator_gainprm[:4, 0]
+        return model.body_mass.sum() * -model.opt.gravity[2] / (4 * thrust)
 
     def equilibrium(self) -> tuple[Array, Array]:
         """Hovering, for track at the target."""
         down = jnp.asarray(self._body.model.opt.gravity)
         obs = jnp.concatenate((down, jnp.zeros(self.spec.obs - 3)))
         u = self.hovering / MAX_CONTROL
-        return obs, jnp.full(4, u if self.bidirectional else 2 * u - 1)
+        return obs, jnp.asarray(u if self.bidirectional else 2 * u - 1)
 
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Angular velocity [rad/s] and velocity [m/s] in the body's frame at obs [o].

@@ -117,6 +117,8 @@ def _check(self: Any) -> None:
             if get_origin(plain(kind)) is tuple:
                 value = _tuples(kind, value)
                 object.__setattr__(self, field.name, value)
+            elif isinstance(value, tuple) and len(kinds) > 1:
+                continue  # has the rule of its entries
             null = ", or null" if len(kinds) < len(choices(field.type)) else ""
             check(self, field.name, kind, null)
 
@@ -133,7 +135,11 @@ def _wrong(kind: Any, value: Any) -> str:
     of = get_args(kind)
     if get_origin(kind) is Annotated:
         must: Must = of[1]
-        return "" if must.hold(value) else must.words if must.has else f"must {must.words}"
+        try:
+            holds = must.hold(value)
+        except TypeError:  # a word in a list of numbers, say
+            holds = False
+        return "" if holds else must.words if must.has else f"must {must.words}"
     if get_origin(kind) is Literal:
         return "" if value in of else f"choose one of {', '.join(map(str, of))}"
     if get_origin(kind) is not tuple or isinstance(value, float | int):

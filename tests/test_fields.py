@@ -22,6 +22,7 @@ class Probe:
     low: tuple[float, float] = (0.0, 0.0)
     weights: tuple[NotNegative, ...] = ()
     rows: tuple[tuple[float, ...], ...] = ()
+    factors: tuple[Positive, ...] | Positive = 1.0
 
     def __post_init__(self) -> None:
         """Check what depends on two fields."""
@@ -41,6 +42,9 @@ class Probe:
         ({"kind": "faster"}, "kind=faster: choose one of slow, fast"),
         ({"low": [1.0]}, "low=[1.0]: must have 2 entries"),
         ({"weights": [1.0, -1.0]}, "weights=[1.0, -1.0]: must be 0 or more"),
+        ({"weights": [1.0, "a"]}, "weights=[1.0, 'a']: must be 0 or more"),
+        ({"factors": 0.0}, "factors=0.0: must be above 0"),
+        ({"factors": [1.0, 0.0]}, "factors=[1.0, 0.0]: must be above 0"),
         ({"kind": "fast", "rate": 0.5}, "rate=0.5: must be 1 or more"),
     ],
 )
@@ -51,9 +55,10 @@ def test_a_field_out_of_its_range_is_one_line_that_names_the_part(given, line):
 
 
 def test_lists_and_arrays_become_tuples_and_a_part_is_a_frozen_dataclass():
-    made = Probe(low=np.zeros(2), weights=[1.0], rows=[[1.0, 2.0], [3.0]])
-    assert made == Probe(weights=(1.0,), rows=((1.0, 2.0), (3.0,)))
-    assert hash(made) == hash(Probe(weights=(1.0,), rows=((1.0, 2.0), (3.0,))))
+    made = Probe(low=np.zeros(2), weights=[1.0], rows=[[1.0, 2.0], [3.0]], factors=[2])
+    same = Probe(weights=(1.0,), rows=((1.0, 2.0), (3.0,)), factors=(2,))
+    assert made == same
+    assert hash(made) == hash(same)
     with pytest.raises(FrozenInstanceError):
         made.rate = 2.0
 

@@ -2,6 +2,7 @@
 
     sawyer_torque.xml                                              a file
     sawyer_torque.xml?joint.j0.damping=10.0?geom.rod.mass=0.55     a file with other values
+    hopper.xml?mass=1.5?motor.2=0.3                                a file with another body
     <mujoco> ... </mujoco>                                         MJCF text is its own name
 
 Source: the MJCF reference of MuJoCo, "XML Reference".
@@ -57,29 +58,42 @@ def changed(asset: str, values: Mapping[str, float]) -> str:
     """The name of `asset` with other values, for `load`.
 
     values: ELEMENT.NAME.FIELD of mujoco.MjSpec -> value; of a vector its first entry, or that of
-        ELEMENT.NAME.FIELD.INDEX.
+        ELEMENT.NAME.FIELD.INDEX. Of the whole model, once compiled: the factors mass, friction
+        and motor.INDEX, and payload [kg]; `body` has their equations.
     """
     return "?".join([asset, *(f"{key}={float(value)!r}" for key, value in values.items())])
 
 
 def spec(asset: str) -> mujoco.MjSpec:
-    """A new description of `asset`, which may be modified.
+    """A new description of `asset`, which may be modified; without changes of the whole model.
 
     Raises:
         ValueError: that names the file, for one that is no model.
     """
     if asset.lstrip().startswith("<"):
         return mujoco.MjSpec.from_string(asset)
-    file, *values = asset.split("?")
+    file, values = _split(asset)
     try:
         result = mujoco.MjSpec.from_file(str(path(file)))
     except ValueError as error:
         line = str(error)
         raise ValueError(line if file in line else f"{file}: {line}") from error
-    for change in values:
-        key, _, value = change.partition("=")
-        _set(result, key, float(value))
+    for key, value in values.items():
+        if not _whole(key):
+            _set(result, key, value)
     return result
+
+
+def _split(asset: str) -> tuple[str, dict[str, float]]:
+    """The file that `asset` names, and its other values."""
+    file, *values = asset.split("?")
+    pairs = (each.partition("=") for each in values)
+    return file, {key: float(value) for key, _, value in pairs}
+
+
+def _whole(key: str) -> bool:
+    """Whether a key of `changed` is of the whole model, not of an element."""
+    return key.count(".") < 2
 
 
 @cache
@@ -95,6 +109,9 @@ def load(asset: str) -> mujoco.MjModel:
             f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '
             "silently reset a simulation that diverged"
         )
+    values = {} if asset.lstrip().startswith("<") else _split(asset)[1]
+    if whole := {key: value for key, value in values.items() if _whole(key)}:
+        _change(model, whole)
     return model
 
 
@@ -119,6 +136,24 @@ def _set(spec: mujoco.MjSpec, key: str, value: float) -> None:
         getattr(element, field)[int(index[0]) if index else 0] = value
     else:
         setattr(element, field, value)
+
+
+def _change(model: mujoco.MjModel, values: Mapping[str, float]) -> None:
+    """Change the whole of a compiled model: mass, friction, motor.INDEX, payload, in this order."""
+    mass = values.get("mass", 1.0)
+    model.body_mass[:] *= mass
+    model.body_inertia[:] *= mass
+    model.body_mass[1] += values.get("payload", 0.0)  # of the root
+    friction = values.get("friction", 1.0)
+    model.geom_friction[:, 0] *= friction
+    model.pair_friction[:, :2] *= friction
+    for key, factor in values.items():
+        name, _, index = key.partition(".")
+        if name == "motor":
+            model.actuator_gainprm[int(index)] *= factor
+            model.actuator_biasprm[int(index)] *= factor
+    mujoco.mj_setConst(model, mujoco.MjData(model))  # what follows from masses and gains
+    model.stat.meaninertia = model.dof_M0.mean()  # except for this, a scale of the solver
 
 
 @cache

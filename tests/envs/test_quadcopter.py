@@ -89,6 +89,18 @@ def test_hover_thrust_hovers():
     assert not path.terminated.any()
 
 
+def test_a_changed_quadcopter_hovers_by_its_own_controls():
+    """A weak motor at more control, so that there is no moment; the reward is then 0, too."""
+    factors = np.array([0.8, 1.0, 1.2, 0.6])
+    change = {"mass": 1.2, "payload": 0.1, "motors": factors}
+    env = Quadcopter("native", start_speed=0.0, **change)
+    np.testing.assert_allclose(env.hovering, 2.4525 * (0.72 + 0.1) / 0.6 / factors)
+    obs, action = env.equilibrium()
+    path = _fly(env, jitted(env, "reset")(jax.random.key(0)), np.tile(action, (200, 1)))
+    np.testing.assert_allclose(path.obs[-1], obs, atol=1e-4)
+    np.testing.assert_allclose(path.reward, 0.0, atol=1e-6)
+
+
 def test_unidirectional_motors():
     env = Quadcopter("native", bidirectional=False)
     state = jitted(env, "reset")(jax.random.key(0))

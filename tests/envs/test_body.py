@@ -1,0 +1,184 @@
+"""Changed bodies: against models that MuJoCo compiles so, and against laws of motion."""
+
+import re
+
+import jax
+import jax.numpy as jnp
+import mujoco
+import numpy as np
+import pytest
+from tiny import call
+from worlds import (
+    DECISIONS,
+    FIELDS,
+    REFERENCE,
+    TASKS,
+    TOUCHING,
+    actions,
+    jitted,
+    make,
+    rollout,
+)
+
+from hybrid_rl import config, evaluate
+from hybrid_rl.cli import command
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.body import Body
+from hybrid_rl.envs.mujoco.physics import Physics
+
+ROBOTS = tuple(task for task, kind in TASKS.items() if issubclass(kind, Body))
+DERIVED = ("body_subtreemass", "body_invweight0", "dof_invweight0", "dof_M0", "actuator_acc0")
+SLIDER = """
+<mujoco>
+  <option timestep="0.001"><flag autoreset="disable"/></option>
+  <worldbody>
+    <geom name="floor" type="plane" size="0 0 1"/>
+    <body pos="0 0 0.05">
+      <joint type="slide" axis="1 0 0"/> <joint type="slide" axis="0 0 1"/>
+      <geom name="box" type="box" size="0.2 0.2 0.05" friction="0.4"/>
+    </body>
+  </worldbody>
+  <contact>PAIR</contact>
+</mujoco>
+"""
+PAIR = '<pair geom1="floor" geom2="box" friction="0.4 0.4 0.005 0.0001 0.0001"/>'
+
+
+def changed(task, implementation="native", **change):
+    """The environment of a task with another body."""
+    return TASKS[task](implementation, **FIELDS.get(task, {}), **change)
+
+
+def compiled(task, factor, payload):
+    """The model of a task that MuJoCo compiles from geoms and inertias of other masses."""
+    spec = mjcf.spec(REFERENCE[task].asset)
+    for geom in spec.geoms:
+        geom.mass, geom.density = geom.mass * factor, geom.density * factor
+    for body in spec.bodies:
+        if body.explicitinertial:
+            body.mass, body.inertia = body.mass * factor + payload, body.inertia * factor
+    root = spec.bodies[1]
+    if payload and not root.explicitinertial:
+        centre = spec.compile().body_ipos[1]
+        at = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "size": [1e-3, 0, 0], "pos": centre}
+        root.add_geom(**at, mass=payload, contype=0, conaffinity=0)
+    return spec.compile()
+
+
+@pytest.mark.parametrize("task", ROBOTS)
+def test_masses_and_all_that_follows_are_those_of_a_compiled_model(task):
+    now, then = changed(task, mass=1.5, payload=0.5)._body.model, compiled(task, 1.5, 0.5)
+    for name in ("body_mass", "body_inertia", *DERIVED):
+        expected = getattr(then, name)
+        np.testing.assert_allclose(getattr(now, name), expected, 1e-5, 1e-6, err_msg=name)
+    assert now.stat.meaninertia == pytest.approx(then.stat.meaninertia)
+
+
+@pytest.mark.parametrize("task", ROBOTS)
+def test_by_default_the_model_is_the_same_object(task):
+    assert changed(task)._body == make(task, "native")._body
+    plain = mjcf.load(REFERENCE[task].asset)
+    assert changed(task, mass=1, motors=[1.0] * make(task, "native").spec.act)._body.model is plain
+
+
+@pytest.mark.parametrize("task", ROBOTS)
+def test_a_weak_motor_is_a_smaller_action(task):
+    """In the same state; other motors, and the drag of the quadcopter, stay."""
+    factors = np.ones(make(task, "native").spec.act, np.float32)
+    factors[-1] = 0.5
+    action = np.linspace(0.3, 0.9, len(factors), dtype=np.float32)
+    weak, half = changed(task, motors=factors), changed(task, motors=0.5)
+    state = make(task, "native").reset(jax.random.key(0))
+    for env, smaller in ((weak, action * factors), (half, action * 0.5)):
+        own = state.replace(data=env.reset(jax.random.key(0)).data)
+        now = jitted(env, "step")(own, action).data.qvel
+        np.testing.assert_array_equal(
+            now, jitted(make(task, "native"), "step")(state, smaller).data.qvel
+        )
+
+
+def test_a_heavier_cart_accelerates_less_by_the_factor():
+    """The pole hangs, so that gravity does nothing."""
+    speed = {}
+    for factor in (1.0, 1.5):
+        body = changed("cartpole", mass=factor)._body
+        after = body.step(body.reset(jnp.array([0.0, jnp.pi]), jnp.zeros(2)), jnp.ones(1), 1)
+        speed[factor] = after.qvel
+    np.testing.assert_allclose(speed[1.0], 1.5 * speed[1.5], rtol=1e-5)
+    assert speed[1.0][0] > 0.1
+
+
+def test_a_payload_of_the_cart_is_mass_of_the_cart():
+    model = changed("cartpole", mass=2.0, payload=3.0)._body.model
+    np.testing.assert_allclose(model.body_mass, [0, 2 * 10.472 + 3, 2 * 5.019])
+
+
+def test_a_heavy_hopper_falls_as_fast():
+    for change in ({}, {"mass": 3.0}, {"mass": 0.5}):
+        body = changed("hopper", **change)._body
+        start = body.reset(jnp.array([0.0, 9.0, 0.0, 0.0, 0.0, 0.0]), jnp.zeros(6))
+        after = body.step(start, jnp.zeros(3), 50).qvel
+        np.testing.assert_allclose(after, [0, -9.81 * 0.1, 0, 0, 0, 0], atol=1e-5)
+
+
+@pytest.mark.parametrize("pair", ["", PAIR], ids=["geoms", "pair"])
+@pytest.mark.parametrize("implementation", ["native", "mjx"])
+def test_at_half_the_friction_a_box_brakes_half_as_hard(pair, implementation, tmp_path):
+    """v(t) = v_0 - mu g t."""
+    file = tmp_path / "slider.xml"
+    file.write_text(
+        SLIDER.replace("PAIR", pair).replace('size="0 0 1"', 'size="0 0 1" friction="0.4"')
+    )
+    for factor in (1.0, 0.5):
+        body = Physics(mjcf.changed(str(file), {"friction": factor}), implementation)
+        start = body.reset(jnp.zeros(2), jnp.array([3.0, 0.0]))
+        after = jax.jit(lambda s, b=body: b.step(s, jnp.zeros(0), 300))(start)
+        lost = 3.0 - after.qvel[0]
+        assert lost == pytest.approx(factor * 0.4 * 9.81 * 0.3, rel=0.03)
+
+
+@pytest.mark.turns(2)
+@pytest.mark.parametrize("task", [pytest.param(task, id=f"{task}-mjx") for task in ROBOTS])
+def test_mjx_moves_as_mujoco_c(task):
+    """From each state that MuJoCo C reaches; most robots only with `--slow`: they compile long."""
+    motors = np.linspace(0.5, 1.0, make(task, "native").spec.act)
+    change = {"mass": 1.3, "friction": 0.5, "motors": motors, "payload": 0.5}
+    native, mjx = (changed(task, each, **change) for each in ("native", "mjx"))
+    path, each = rollout(native), actions(native)[TOUCHING]
+    assert np.abs(path.obs - rollout(make(task, "native")).obs)[TOUCHING].max() > 1e-2
+    for t in range(DECISIONS - 1):
+        now, then = (jax.tree.map(lambda x, i=i: x[TOUCHING][i], path) for i in (t, t + 1))
+        after = jitted(mjx, "step")(now, each[t + 1])
+        np.testing.assert_allclose(after.obs, then.obs, atol=1e-3)  # measured: at most 2e-4
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "env.mass=0: must be above 0",
+        "env.friction=-1: must be above 0",
+        "env.payload=-0.5: must be 0 or more",
+        "env.motors=0: must be above 0",
+        "env.motors=[1, 1, 0, 1, 1, 1]: must be above 0",
+        "env.motors=[1, 1, 'a', 1, 1, 1]: must be above 0",
+        "env.motors=[1, 1]: must be 1 or 6 numbers, each above 0",
+        "env.mass=heavy: must be a number",
+    ],
+)
+def test_a_wrong_body_is_refused_in_one_line(line):
+    typed = line.partition(": ")[0].replace(", ", ",").replace("'", "")
+    with pytest.raises(config.UsageError, match=rf"^{re.escape(line)}$"):
+        config.build(config.load(["task=halfcheetah", typed]))
+
+
+def test_a_policy_is_evaluated_in_another_body(capsys):
+    """From the command line; what it prints names the changes."""
+    body = "env.mass=1.5 env.motors=[1,1,0.5,1,1,1] env.friction=0.5 env.payload=3.5"
+    outputs = []
+    for given in ("", body):
+        main = f"policy=halfcheetah episodes=1 episode.steps=50 {given}"
+        assert call(lambda: command.guarded(evaluate.main), *main.split()) == 0
+        outputs.append(capsys.readouterr().out)
+    assert ", ".join(body.split()) in outputs[1]
+    returns = [re.search(r"│ +\d+ │ +(-?[\d.]+)", output)[1] for output in outputs]
+    assert abs(float(returns[1]) - float(returns[0])) > 1
