@@ -25,6 +25,7 @@ from hybrid_rl.cli.submitted import Result, require_slurm, watched
 from hybrid_rl.composition import check_task
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
+from hybrid_rl.run import inherited
 from hybrid_rl.run.folder import made
 from hybrid_rl.run.jax_settings import prepare
 
@@ -139,9 +140,9 @@ class Sweeper(BasicSweeper):
             if not here and config.physics in ACCELERATED:
                 config = config.copy()
                 config.physics = "native"
-            whole = configuration.resolved(config)
             try:
                 with command.as_typed(overrides):
+                    whole = inherited.resolved(config, overrides)
                     if whole.resume is None:
                         check(whole)
                         prepare(whole)  # first: a check of the user's world initialises JAX
