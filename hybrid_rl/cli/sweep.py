@@ -28,6 +28,7 @@ from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_u
 from hybrid_rl.run import inherited
 from hybrid_rl.run.folder import made
 from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.start import built
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 
@@ -146,7 +147,7 @@ class Sweeper(BasicSweeper):
                     if whole.resume is None:
                         check(whole)
                         prepare(whole)  # first: a check of the user's world initialises JAX
-                        configuration.build(whole)
+                        built(whole)
             except UsageError as error:
                 label = f"job {number}: {self.task.labels[number]}".removesuffix(": ")
                 raise UsageError(f"{error} ({label})") from error

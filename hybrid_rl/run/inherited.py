@@ -5,6 +5,7 @@ the overrides are composed with the task and the method of DIR (`chosen`), and w
 there or by reference elsewhere, is changed in the values of DIR (`resolved`).
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -47,7 +48,8 @@ def chosen(texts: Sequence[str]) -> list[str]:
         )
     (which,) = parse(named[-1:])
     folders = list(which.sweep_iterator()) if which.is_sweep_override() else [which.value()]
-    words = [_choices(folder.read(Path(str(each).strip("'\"")), "run")) for each in folders]
+    runs = [folder.read(Path(str(each).strip("'\"")), "run") for each in folders]
+    words = [_choices(each) for each in runs]
     if any(each != words[0] for each in words):
         raise UsageError(f"{named[-1]}: runs of one task and method only")
     for key in (*CHOSEN, *WIDE):
@@ -57,8 +59,15 @@ def chosen(texts: Sequence[str]) -> list[str]:
             line = line or f"with {named[-1]} the settings come from there; give single keys"
             raise UsageError(f"{key}={given[key]}: {line}{has}")
     more = [f"{key}={value}" for key, value in words[0].items() if key not in given]
-    at = texts.index(named[-1])
-    return [*texts[:at], *more, *texts[at:]]
+    at, known = texts.index(named[-1]), plain(runs[0])
+    kept = [text if select(known, _key(text)) is LACKING else f"++{text}" for text in texts]
+    return [*kept[:at], *more, *kept[at:]]
+
+
+def _key(text: str) -> str:
+    """KEY.KEY of KEY.KEY=VALUE: that of a value in a part, which may be another part in conf/."""
+    key = text.partition("=")[0]
+    return key if re.fullmatch(r"\w+(\.\w+)+", key) else ""
 
 
 def _choices(config: DictConfig) -> dict[str, str]:
@@ -95,6 +104,9 @@ def resolved(config: DictConfig, texts: Sequence[str]) -> DictConfig:
         raise UsageError(f"{deleted[0].input_line}: with run=DIR keys cannot be deleted")
     now: Any = OmegaConf.to_container(config, resolve=True)
     stored: Any = OmegaConf.to_container(folder.read(Path(str(config.run)), "run"))
+    for each in texts:
+        if each.startswith("+") and select(stored, each.lstrip("+").partition("=")[0]) is LACKING:
+            raise UsageError(f"{each}: unknown key; the run in run={config.run} has none")
     for key in ("version", "begun"):
         stored.pop(key, None)
     values = _linked(stored, raw) | OWN

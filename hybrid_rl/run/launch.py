@@ -23,7 +23,7 @@ from hybrid_rl.run.progress import Progress, Silent
 from hybrid_rl.run.records import changes, flat, summary_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
-from hybrid_rl.run.start import Start, begun
+from hybrid_rl.run.start import Start, built
 from hybrid_rl.training.loops import loop_of
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
@@ -68,9 +68,7 @@ def train(
         return _resume(config, given, handled, output)
     check(config)
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    if config.get("run") is not None:
-        return begin(*begun(config), handled, output)
-    return begin(configuration.build(config), None, handled, output)
+    return begin(*built(config), handled, output)
 
 
 def begin(

@@ -41,6 +41,11 @@ class Start:
         return state.replace(learners=self.learners, memory=memory)
 
 
+def built(config: DictConfig) -> tuple[Run, Start | None]:
+    """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
+    return (configuration.build(config), None) if config.get("run") is None else begun(config)
+
+
 def begun(config: DictConfig) -> tuple[Run, Start]:
     """The run of `config`, and what it begins with: that of the run in the folder `config.run`.
 
@@ -108,7 +113,7 @@ def _learners(
     except MisfitError as error:
         lines = changes(_values(then), _values(config))
         own = [line for line in lines if not line.startswith(("env.", "episode.", "reward."))]
-        what, detail = ", ".join(own or lines), str(error).partition("this run: ")[2]
+        what, detail = ", ".join((own or lines)[:2]), str(error).partition("this run: ")[2]
         raise UsageError(f"{what}: parameters of run={source} do not fit ({detail})") from error
     return step, state.learners, notes
 
@@ -139,9 +144,8 @@ def _memory(
     capacity = checkpoint.meta(source / "checkpoints")["capacity"]
     sized = replace(agent, replay=replace(agent.replay, capacity=capacity))
     like = _like(sized, then).replace(env=None, control=None, learners=None, key=None)
-    return checkpoint.restore(source / "checkpoints", like, step, part=True)[
-        1
-    ].memory, "" if same else RELABELLED
+    _, state, *_ = checkpoint.restore(source / "checkpoints", like, step, part=True)
+    return state.memory, "" if same else RELABELLED
 
 
 def _like(agent: Agent, then: DictConfig) -> AgentState:
