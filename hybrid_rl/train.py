@@ -119,7 +119,6 @@ def train(
 
         train(["task=pendulum", "algo=sac", "num_seeds=2"], on_row=print)
         train(["resume=runs/pendulum/sac/TIME", "total_steps=20000"])
-        train(["run=runs/hopper/sac/TIME", "reward=speed", "freeze=[policy]"])
         train(Agent(...), total_steps=10_000, num_seeds=5, run_dir="runs/mine")
 
     A signal, such as SIGTERM, ends it with a checkpoint, and then has its effect on the program.
@@ -144,10 +143,8 @@ def train(
     if isinstance(method, Agent):
         run = assembled.run_of(method, **settings)
         prepare(run.config)
-        if run.config.resume is None:
-            result = Result(launch.begin(run, None, interrupt.answered, output), run)
-        else:
-            result = Result(launch.proceed(run, interrupt.answered, output), run)
+        go = launch.begin if run.config.resume is None else launch.proceed
+        result = Result(go(run, interrupt.answered, output), run)
     else:
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())

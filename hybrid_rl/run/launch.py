@@ -68,11 +68,12 @@ def train(
         return _resume(config, given, handled, output)
     check(config)
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    return begin(*built(config), handled, output)
+    run, start = built(config)
+    return begin(run, handled, output, start)
 
 
 def begin(
-    run: Run, start: Start | None, handled: Handler, output: Output = CONSOLE
+    run: Run, handled: Handler, output: Output = CONSOLE, start: Start | None = None
 ) -> dict[str, Any]:
     """The same for a run that is built, in a new folder; start: what another run gave it."""
     size = _fits(run)
