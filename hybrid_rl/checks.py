@@ -69,6 +69,9 @@ def check(config: DictConfig) -> None:
         raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
     if len(set(modes)) < len(modes):
         raise UsageError(f"eval_modes={modes}: has one of them twice")
+    freeze = config.get("freeze", ListConfig([]))
+    if not isinstance(freeze, ListConfig) or any(type(name) is not str for name in freeze):
+        raise UsageError(f"freeze={freeze}: must be a list of learners, as in freeze=[policy]")
     for key in ("checkpoint_replay", "distributed"):
         if type(config.get(key, False)) is not bool:
             raise UsageError(f"{key}={config[key]}: must be true or false")

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,16 @@ def file(group: str, name: str) -> Path:
         if (path := conf / group / f"{name}.yaml").is_file():
             return path
     raise FileNotFoundError(f"{group}={name}")
+
+
+def tasks_with(method: str, conf: Path = CONF) -> list[str]:
+    """Tasks whose environment has this method: `dynamics` if it is analytic, `equilibrium`."""
+    names = []
+    for path in sorted((conf / "task").glob("*.yaml")):
+        task: Any = OmegaConf.load(path)
+        with suppress(ValueError, KeyError, AttributeError):  # an unfinished task of the user
+            names += [path.stem] if hasattr(part_class(task.env._target_), method) else []
+    return names
 
 
 def explain(error: Exception) -> str:

@@ -3,7 +3,7 @@
 import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, whole
-from hybrid_rl.composition import CONF, check_task, explain
+from hybrid_rl.composition import CONF, check_task, explain, tasks_with
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.contract import check as check_world
@@ -33,7 +33,7 @@ from hybrid_rl.training.episode import Episode
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, "reward", "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
-    *("matmul_precision", "distributed", "logger"),
+    *("matmul_precision", "distributed", "logger", "run", "freeze"),
 )
 
 
@@ -61,8 +61,16 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
     Raises:
         UsageError: if an override fits nothing in conf/, or names a key that does not exist or that
-            the method does not use; if the user's own task file is incomplete.
+            the method does not use; if the user's own task file is incomplete; for run=DIR.
     """
+    config = composed(overrides, config_dir)
+    if config.run is not None:
+        raise UsageError(f"run={config.run}: only the command and hybrid_rl.train take it")
+    return resolved(config)
+
+
+def composed(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
+    """The same with its interpolations."""
     if isinstance(overrides, str):
         raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')
     renamed.check(overrides)
@@ -77,16 +85,16 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 
 def _composed(overrides: Sequence[str], more: list[str]) -> DictConfig:
-    """The resolved configuration; more: overrides of Hydra's own keys."""
+    """The configuration with its interpolations; more: overrides of Hydra's own keys."""
     refuse_new_keys(overrides, more)
     config = compose("train", [*more, *overrides], return_hydra_config=True)
     hydra = config.hydra
     with open_dict(config):
         del config["hydra"]
     if note := check_task(config, hydra, READ):
-        warnings.warn(note, stacklevel=3)
+        warnings.warn(note, stacklevel=4)
     refuse_unused([config], overrides, READ)
-    return resolved(config)
+    return config
 
 
 def resolved(config: DictConfig) -> DictConfig:
@@ -119,13 +127,14 @@ def _of(values: dict[str, Any], read: Mapping[str, Any], where: str = "") -> dic
 
 
 def build(config: DictConfig) -> Run:
-    """The parts that `config` names.
+    """The parts that `config` names. `begun`: what another run gave, as its config.yaml says.
 
     Raises:
         UsageError: if a value is out of range.
     """
     check(config)
-    rounds = -(-config.total_steps // config.num_envs)
+    rounds, kept = -(-config.total_steps // config.num_envs), config.get("begun", {})
+    remembered = kept.get("remembered", 0)  # decisions of each environment
     whole(config.replay, "capacity", "replay.")
     with _usage(config):
         parts = _on_this_machine(config)
@@ -134,10 +143,12 @@ def build(config: DictConfig) -> Run:
             episode,
             controllers["full"],
             {k: _instantiate(v, f"learners.{k}") for k, v in parts.learners.items() if v},
-            _instantiate(parts.replay, "replay").within(rounds, config.num_envs),
+            _instantiate(parts.replay, "replay").within(rounds + remembered, config.num_envs),
             config.num_envs,
             config.random_steps,
             config.pretrain,
+            -remembered * config.num_envs,
+            tuple(config.get("freeze", ())),
         )
         agent.check(rounds * config.num_envs)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
@@ -306,13 +317,3 @@ def _shortest(config: DictConfig, key: str) -> str:
         return key
     same = [name for name, node in config.items() if node == part]
     return f"{same[0] if same else where}.{field}"
-
-
-def tasks_with(method: str, conf: Path = CONF) -> list[str]:
-    """Tasks whose environment has this method: `dynamics` if it is analytic, `equilibrium`."""
-    names = []
-    for path in sorted((conf / "task").glob("*.yaml")):
-        task: Any = OmegaConf.load(path)
-        with suppress(ValueError, KeyError, AttributeError):  # an unfinished task of the user
-            names += [path.stem] if hasattr(part_class(task.env._target_), method) else []
-    return names

@@ -18,8 +18,7 @@ from pathlib import Path
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, read
-from hybrid_rl.composition import CONF, THESIS
-from hybrid_rl.config import tasks_with
+from hybrid_rl.composition import CONF, THESIS, tasks_with
 from hybrid_rl.errors import UsageError
 
 HAS = {  # method of an environment -> its mark

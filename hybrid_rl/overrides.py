@@ -222,6 +222,8 @@ def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
     if not any(text.startswith("+") for text in overrides):
         return
     known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
+    if known.run is not None:  # it may have keys of parts that are chosen there
+        return
     for each in new(overrides, known):
         raise UsageError(unknown(known, each))
 

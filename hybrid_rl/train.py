@@ -3,6 +3,7 @@
     python -m hybrid_rl.train task=pendulum algo=sac total_steps=5000
     python -m hybrid_rl.train -m algo=sac,nn_mppi,hybrid_stochastic num_seeds=5
     python -m hybrid_rl.train resume=DIR total_steps=10000
+    python -m hybrid_rl.train run=DIR reward=speed reward.target=2 total_steps=5000
 
 A run writes to runs/TASK/ALGO/TIME, or to run_dir=DIR. With three evaluations or more it ends with
 their curve, on the console and in DIR/curve.png. The jobs of a sweep are checked before the first
@@ -32,12 +33,11 @@ from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig
 
 import hybrid_rl
-from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import assembled, curve, divergence, launch, loggers
+from hybrid_rl.run import assembled, curve, divergence, inherited, launch, loggers
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
@@ -150,7 +150,7 @@ def train(
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
         if not isinstance(method, DictConfig):
-            method, given = configuration.load(method), overrides.given(method)
+            method, given = inherited.load(method), overrides.given(method)
         result = Result(launch.train(method, given, interrupt.answered, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
@@ -161,9 +161,9 @@ def train(
 
 def _job(config: DictConfig) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds."""
-    given = overrides.given(overrides.of_job(HydraConfig.get()))
-    config = configuration.resolved(config)
-    summary = launch.train(config, given, interrupt.answered)
+    typed = overrides.of_job(HydraConfig.get())
+    config = inherited.resolved(config, typed)
+    summary = launch.train(config, overrides.given(typed), interrupt.answered)
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
     say(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})")

@@ -56,7 +56,13 @@ def training(page: str) -> list[tuple[str, ...]]:
     """Overrides of the jobs of the page's training commands, without those in a reader's folder."""
     lines = [words for name, words in commands(page) if name == "train"]
     lines = [words for words in lines if "--config-dir" not in words]
-    return sorted({job for words in lines for job in jobs(words)})
+    return sorted({first_run(job) for words in lines for job in jobs(words)})
+
+
+def first_run(job: tuple[str, ...]) -> tuple[str, ...]:
+    """The job with the task and the method of a folder runs/TASK/ALGO/TIME in place of run=."""
+    words = (re.sub(r"^run=runs/(.+)/(.+)/.+$", r"task=\1 algo=\2", word) for word in job)
+    return tuple(word for each in words for word in each.split(" "))
 
 
 def text(page: str) -> str:

@@ -22,6 +22,7 @@ from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_task, explain, options
 from hybrid_rl.errors import UsageError, in_user_code, shown
+from hybrid_rl.run import inherited
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
@@ -73,6 +74,7 @@ def hydra_main(job: Callable[[DictConfig], Any]) -> None:
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
         _check_form(sys.argv[1:])
+        sys.argv[1:] = inherited.chosen(sys.argv[1:])
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except Exception as error:
         report(error)

@@ -25,8 +25,10 @@ from hybrid_rl.cli.submitted import Result, require_slurm, watched
 from hybrid_rl.composition import check_task
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
+from hybrid_rl.run import inherited
 from hybrid_rl.run.folder import made
 from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.start import built
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 
@@ -139,13 +141,13 @@ class Sweeper(BasicSweeper):
             if not here and config.physics in ACCELERATED:
                 config = config.copy()
                 config.physics = "native"
-            whole = configuration.resolved(config)
             try:
                 with command.as_typed(overrides):
+                    whole = inherited.resolved(config, overrides)
                     if whole.resume is None:
                         check(whole)
                         prepare(whole)  # first: a check of the user's world initialises JAX
-                        configuration.build(whole)
+                        built(whole)
             except UsageError as error:
                 label = f"job {number}: {self.task.labels[number]}".removesuffix(": ")
                 raise UsageError(f"{error} ({label})") from error

@@ -13,7 +13,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.fields import Count, FieldError, part
-from hybrid_rl.protocols import Demonstrations
+from hybrid_rl.protocols import Demonstrations, Goal
 from hybrid_rl.types import Batch, Spec, Transition
 
 
@@ -101,6 +101,25 @@ class Replay:
         ended = memory.rows[slot, :, flag]
         cut = jnp.where(memory.count > 0, 1 - ended, 0.0)
         return memory.replace(rows=memory.rows.at[slot, :, flag + 1].set(cut))
+
+    def resized(self, memory: Memory) -> Memory:
+        """As many of the newest decisions in a `memory` of another size as fit; not for `jit`."""
+        (length, *each), count = memory.rows.shape, int(memory.count)
+        size = max(self.capacity // each[0], 2)
+        kept = min(count, length, size)
+        newest = memory.rows[(count - kept + jnp.arange(kept)) % length]
+        rows = jnp.zeros((size, *each)).at[:kept].set(newest)
+        return Memory(rows, jnp.full((), kept, jnp.int32))
+
+    def relabelled(self, memory: Memory, spec: Spec, goal: Goal) -> Memory:
+        """The memory with the rewards that `goal` pays for its decisions."""
+        kept = unpack(memory.rows, spec)
+        pay = jax.vmap(jax.vmap(goal.reward_of))
+        reward = pay(kept.obs, jnp.clip(kept.action, -1.0, 1.0), kept.next_obs)
+        filled = (jnp.arange(len(reward)) < memory.count)[:, None]
+        at = spec.obs + spec.act
+        rows = memory.rows.at[..., at].set(jnp.where(filled, reward, kept.reward))
+        return memory.replace(rows=rows)
 
     def recent(self, memory: Memory, spec: Spec, ago: int) -> Transition | None:
         """The decisions [E] made `ago` rounds before the newest; None if they are not kept."""

@@ -20,9 +20,10 @@ from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import Progress, Silent
-from hybrid_rl.run.records import flat, summary_of
+from hybrid_rl.run.records import changes, flat, summary_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
+from hybrid_rl.run.start import Start, built
 from hybrid_rl.training.loops import loop_of
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
@@ -67,15 +68,18 @@ def train(
         return _resume(config, given, handled, output)
     check(config)
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    return begin(configuration.build(config), handled, output)
+    run, start = built(config)
+    return begin(run, handled, output, start)
 
 
-def begin(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
-    """The same for a run that is built, in a new folder."""
+def begin(
+    run: Run, handled: Handler, output: Output = CONSOLE, start: Start | None = None
+) -> dict[str, Any]:
+    """The same for a run that is built, in a new folder; start: what another run gave it."""
     size = _fits(run)
     loggers.check(run.config.get("logger"))
     with folder.fresh(run.config) as run_dir:
-        return _run(run, run_dir, size, handled, output)
+        return _run(run, run_dir, size, handled, output, start)
 
 
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
@@ -112,8 +116,15 @@ def _fits(run: Run) -> str:
     return memory.replay(run)
 
 
-def _run(run: Run, run_dir: Path, size: str, handled: Handler, output: Output) -> dict[str, Any]:
-    """Run a session in `run_dir`; size: a line about the replay memory."""
+def _run(
+    run: Run,
+    run_dir: Path,
+    size: str,
+    handled: Handler,
+    output: Output,
+    start: Start | None = None,
+) -> dict[str, Any]:
+    """Run a session in `run_dir`; size: a line about the replay memory; start: as of `begin`."""
     config = run.config
     label = f"{config.task} {config.algo}"
     names = loggers.check(config.get("logger"))
@@ -132,7 +143,7 @@ def _run(run: Run, run_dir: Path, size: str, handled: Handler, output: Output) -
         plan = _schedule(config), log, progress, duration
         session = Session(loop, run.controllers, *plan, _written(config))
         if config.resume is None:
-            session.begin()
+            session.begin(start)
         else:
             with folder.blamed(run_dir):
                 session.resume()
@@ -193,16 +204,15 @@ def _written(config: DictConfig) -> dict[str, Any]:
 def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
     now = _written(config)
-    then = checkpoint.meta(run_dir / "checkpoints").get("settings") or now  # of an older version
-    changed: dict[str, str] = {}  # a part occurs several times: its shortest key names the change
-    for key in sorted({*now, *then}, key=lambda key: (key.count("."), key)):
-        before, after = then.get(key, "absent"), now.get(key, "absent")
-        if before != after and key not in (*OF_A_SESSION, "compile_cache"):
-            line = f"was {before} and is {after}"
-            changed.setdefault(f"{key.rpartition('.')[2]} {line}", f"{key} {line}")
-    if changed:
+    then = checkpoint.meta(run_dir / "checkpoints").get("settings") or {
+        **now
+    }  # of an older version
+    for key in OF_A_SESSION:
+        now.pop(key, None)
+        then.pop(key, None)
+    if changed := changes(then, now):
         raise UsageError(
-            f"{run_dir / 'config.yaml'}: {', '.join(changed.values())}; put it back: with resume "
+            f"{run_dir / 'config.yaml'}: {', '.join(changed)}; put it back: with resume "
             "only total_steps can be changed"
         )
 
@@ -241,6 +251,7 @@ def _schedule(config: DictConfig) -> Schedule:
 
 def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
     """What summary.json holds."""
+    values: Any = OmegaConf.to_container(config)
     return {
         "task": config.task,
         "algo": config.algo,
@@ -259,5 +270,6 @@ def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
         "versions": provenance.versions(),
         "git_commit": provenance.git_commit(),
         "run_dir": str(session.log.run_dir),
+        **{key: values[key] for key in ("run", "begun", "freeze") if values.get(key)},
         "signal": session.stop or None,
     }

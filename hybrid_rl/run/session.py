@@ -25,6 +25,7 @@ from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import DRAWN, Progress
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
+from hybrid_rl.run.start import Start
 from hybrid_rl.run.store import Record, Store
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
@@ -77,10 +78,14 @@ class Session:
         """Whether all decisions are made, and evaluated."""
         return self.step >= self.schedule.total_steps and not self.record.unevaluated
 
-    def begin(self) -> None:
-        """Start from the first state."""
+    def begin(self, start: Start | None = None) -> None:
+        """Start from the first state, or with what another run knows, which is evaluated first."""
         with self.progress.doing("starting"):
             self.state = self.loop.init()
+        if start is not None:
+            self.state = self.loop.on_devices(start.given(self.state))
+            self.record.unevaluated = bool(self.schedule.eval_modes)
+            self.progress.note(start.line)
 
     def resume(self) -> None:
         """Start from the newest sound checkpoint.

@@ -53,7 +53,8 @@ class Agent:
     num_envs: int = 1
     random_steps: int = 0
     pretrain: int = 0  # gradient steps of each learner before the first decision
-    first_update: int = 0  # decisions before any learning, where a resumed memory starts empty
+    first_update: int = 0  # decisions before any learning; < 0: so many are in the memory already
+    frozen: tuple[str, ...] = ()  # learners that make no updates
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -68,6 +69,9 @@ class Agent:
                 f"pretrain={self.pretrain}: the memory has no demonstrations to learn from; "
                 "give replay.demonstrations, or 0"
             )
+        if strange := [name for name in self.frozen if name not in self.learners]:
+            known = ", ".join(self.learners) or "none"
+            raise ValueError(f"freeze={strange}: the method's learners are {known}")
         owners: dict[str, str] = {}
         for name, learner in self.learners.items():
             update_schedule(name, learner, self.num_envs)
@@ -136,7 +140,7 @@ class Agent:
             for (drawing, updating), (name, learner) in zip(
                 keys, self.learners.items(), strict=True
             ):
-                if learner.data == "uniform":
+                if learner.data == "uniform" and name not in self.frozen:
                     batch = self._batch(state.memory, learner, params, drawing)
                     learned[name] = learner.update(learned[name], params, batch, updating)[0]
             return state.replace(learners=learned), None
@@ -236,6 +240,9 @@ class Agent:
         learned, metrics, starts = {}, {}, self.starts()
         each = jax.random.split(keys.learning, len(starts)) if starts else []
         for k, (name, learner) in zip(each, self.learners.items(), strict=True):
+            if name in self.frozen:
+                learned[name] = state.learners[name]
+                continue
             count, every = update_schedule(name, learner, self.num_envs)
 
             def one(of: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:

@@ -1,0 +1,179 @@
+"""The configuration of a run that begins with another one: that of run=DIR, with the overrides.
+
+config.yaml holds values without references, and not all names of the parts that were chosen. So
+the overrides are composed with the task and the method of DIR (`chosen`), and what they change,
+there or by reference elsewhere, is changed in the values of DIR (`resolved`).
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from omegaconf import DictConfig, OmegaConf
+
+from hybrid_rl import config as configuration
+from hybrid_rl import overrides
+from hybrid_rl.composition import file, options
+from hybrid_rl.errors import UsageError
+from hybrid_rl.overrides import LACKING, REFERENCE, parse, plain, select, source
+from hybrid_rl.run import folder
+
+CHOSEN = ("task", "algo", "learning")  # they make the parameters
+WIDE = ("settings", "experiment")  # they would set what DIR has set
+OWN = {"random_steps": 0, "pretrain": 0, "run_dir": None, "freeze": [], "distributed": False}
+
+
+def load(texts: Sequence[str]) -> DictConfig:
+    """The resolved configuration of these overrides, also of run=DIR; errors as `config.load`."""
+    if isinstance(texts, str) or not any(text.startswith("run=") for text in texts):
+        return configuration.load(texts)
+    return resolved(configuration.composed(chosen(texts)), texts)
+
+
+def chosen(texts: Sequence[str]) -> list[str]:
+    """The words of a command, with the task and the method of DIR before run=DIR.
+
+    Raises:
+        UsageError: if there is no such run, for another task or method, or with resume=DIR.
+    """
+    named = [text for text in texts if text.startswith("run=") and text != "run=null"]
+    if not named:
+        return [*texts]
+    given = overrides.given(texts)
+    if given.get("resume", "null") != "null":
+        raise UsageError(
+            "run, resume: give one of them; run=DIR begins a new run with what DIR has learned, "
+            "resume=DIR continues DIR itself"
+        )
+    (which,) = parse(named[-1:])
+    folders = list(which.sweep_iterator()) if which.is_sweep_override() else [which.value()]
+    runs = [folder.read(Path(str(each).strip("'\"")), "run") for each in folders]
+    words = [_choices(each) for each in runs]
+    if any(each != words[0] for each in words):
+        raise UsageError(f"{named[-1]}: runs of one task and method only")
+    for key in (*CHOSEN, *WIDE):
+        if key in given and given[key] != words[0].get(key):
+            has = f"; it has {key}={words[0][key]}" if key in words[0] else ""
+            line = f"what is learned in {named[-1]} does not fit" if key in CHOSEN else ""
+            line = line or f"with {named[-1]} the settings come from there; give single keys"
+            raise UsageError(f"{key}={given[key]}: {line}{has}")
+    more = [f"{key}={value}" for key, value in words[0].items() if key not in given]
+    at, known = texts.index(named[-1]), plain(runs[0])
+    kept = [text if select(known, _key(text)) is LACKING else f"++{text}" for text in texts]
+    return [*kept[:at], *more, *kept[at:]]
+
+
+def _key(text: str) -> str:
+    """KEY.KEY of KEY.KEY=VALUE: that of a value in a part, which may be another part in conf/."""
+    key = text.partition("=")[0]
+    return key if re.fullmatch(r"\w+(\.\w+)+", key) else ""
+
+
+def _choices(config: DictConfig) -> dict[str, str]:
+    """The groups that make the parts of a run."""
+    words = {"task": config.task, "algo": config.algo}
+    if config.task not in options("task"):  # such as an environment of Gymnasium, by its id
+        files: dict[str, Any] = {
+            name: OmegaConf.load(file("task", name)) for name in options("task")
+        }
+        same = [n for n, c in files.items() if select(plain(c), "env._target_") == _kind(config)]
+        words["task"] = same[0] if same else config.task
+    method = file("algo", config.algo).read_text() if config.algo in options("algo") else ""
+    if "policy_learning" in config and "override /learning:" in method:
+        words["learning"] = config.policy_learning
+    return words
+
+
+def _kind(config: DictConfig) -> str:
+    return str(config.env.get("_target_"))
+
+
+def resolved(config: DictConfig, texts: Sequence[str]) -> DictConfig:
+    """The resolved configuration of a run, with the values of DIR if it has run=DIR.
+
+    config: composed from the overrides `texts`, with its interpolations.
+
+    Raises:
+        UsageError: if there is no such run, or an override deletes a key.
+    """
+    if config.get("run") is None:
+        return configuration.resolved(config)
+    raw, typed = plain(config), parse(texts)
+    if deleted := [each for each in typed if each.is_delete()]:
+        raise UsageError(f"{deleted[0].input_line}: with run=DIR keys cannot be deleted")
+    now: Any = OmegaConf.to_container(config, resolve=True)
+    stored: Any = OmegaConf.to_container(folder.read(Path(str(config.run)), "run"))
+    for each in texts:
+        if each.startswith("+") and select(stored, each.lstrip("+").partition("=")[0]) is LACKING:
+            raise UsageError(f"{each}: unknown key; the run in run={config.run} has none")
+    for key in ("version", "begun"):
+        stored.pop(key, None)
+    values = _linked(stored, raw) | OWN
+    for key in configuration.READ:
+        if key in now:
+            values.setdefault(key, now[key])
+    keys = {source(raw, overrides.key(each)) for each in typed} - {*CHOSEN}
+    _take(values, now, raw, keys)
+    made: Any = OmegaConf.create(values)
+    OmegaConf.resolve(made)
+    OmegaConf.set_struct(made, True)
+    return made
+
+
+def _linked(stored: Mapping[str, Any], raw: dict[str, Any]) -> dict[str, Any]:
+    """The values, in which a part that has a key of its own is a reference to that key.
+
+    raw: the composed configuration, whose references are preferred.
+    """
+    named = {key: node for key, node in stored.items() if _is_part(node)}
+    links = {key: REFERENCE.fullmatch(str(raw.get(key))) for key in named}
+    aliases = {k: link[1] for k, link in links.items() if link and named[k] == named.get(link[1])}
+    own = {key: node for key, node in named.items() if key not in aliases}
+
+    def link(node: Any, path: str) -> Any:
+        if _is_part(node) and path not in own:
+            wanted = source(raw, path)
+            same = [key for key, part in own.items() if part == node]
+            if same:
+                return f"${{{wanted if wanted in same else same[0]}}}"
+        if isinstance(node, list):
+            return [link(each, f"{path}.{i}") for i, each in enumerate(node)]
+        if isinstance(node, dict):
+            return {key: link(each, f"{path}.{key}") for key, each in node.items()}
+        return node
+
+    return {key: link(node, key) for key, node in stored.items()}
+
+
+def _is_part(node: Any) -> bool:
+    return isinstance(node, dict) and "_target_" in node
+
+
+def _take(
+    values: dict[str, Any], now: Mapping[str, Any], raw: dict[str, Any], keys: set[str]
+) -> None:
+    """Put into `values` what stands at or below one of the keys, or refers to it.
+
+    now: the composed configuration, resolved; raw: with its interpolations.
+    """
+
+    def visit(mine: dict[str, Any], theirs: Mapping[str, Any], at: str) -> None:
+        for name, value in theirs.items():
+            origin = source(raw, f"{at}{name}")
+            if any(origin == key or origin.startswith(f"{key}.") for key in keys):
+                mine[name] = _node(select(raw, origin), value, values)
+            elif isinstance(value, dict) and isinstance(mine.get(name), dict):
+                visit(mine[name], value, f"{at}{name}.")
+
+    visit(values, now, "")
+
+
+def _node(node: Any, value: Any, values: dict[str, Any]) -> Any:
+    """A part as composed, `value`, in which references to what `values` has stay."""
+    if isinstance(node, dict) and isinstance(value, dict):
+        return {key: _node(each, value[key], values) for key, each in node.items()}
+    if isinstance(node, list) and isinstance(value, list):
+        return [_node(each, v, values) for each, v in zip(node, value, strict=True)]
+    link = REFERENCE.fullmatch(str(node))
+    return node if link and select(values, link[1]) is not LACKING else value

@@ -1,0 +1,195 @@
+"""What a new run begins with, from the newest checkpoint of another one: run=DIR.
+
+The learners begin with all that they know there: parameters, states of optimisers, statistics. The
+memory of decisions is kept only as far as it is true in the new run.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from omegaconf import DictConfig, OmegaConf, open_dict
+
+from hybrid_rl import config as configuration
+from hybrid_rl.config import Run
+from hybrid_rl.errors import MisfitError, UsageError
+from hybrid_rl.protocols import Goal
+from hybrid_rl.run import checkpoint, folder
+from hybrid_rl.run.records import changes, flat
+from hybrid_rl.training.agent import Agent, AgentState
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loop import Loop
+
+WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
+PASSING = ("episode.steps", "env.physics")  # but not on these
+RELABELLED = ", with the rewards that they earn now"
+
+
+@dataclass(frozen=True)
+class Start:
+    """What the learners of a run begin with."""
+
+    learners: Any  # [S, ...]
+    memory: Any  # [S, ...]; None: that of any new run
+    line: str  # for the console
+
+    def given(self, state: AgentState) -> AgentState:
+        """The first state [S, ...] of the run with it."""
+        memory = state.memory if self.memory is None else self.memory
+        return state.replace(learners=self.learners, memory=memory)
+
+
+def built(config: DictConfig) -> tuple[Run, Start | None]:
+    """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
+    return (configuration.build(config), None) if config.get("run") is None else begun(config)
+
+
+def begun(config: DictConfig) -> tuple[Run, Start]:
+    """The run of `config`, and what it begins with: that of the run in the folder `config.run`.
+
+    The configuration gets `begun`, from which the run can be built without that folder.
+
+    Raises:
+        UsageError: if there is no such run, it has no checkpoint, or it does not fit.
+        CheckpointError: if none of its checkpoints is sound.
+    """
+    source = Path(str(config.run))
+    then = folder.read(source, "run")
+    if not checkpoint.steps(source / "checkpoints"):
+        raise UsageError(f"run={source}: holds no checkpoint yet; train it further first")
+    if config.get("distributed"):
+        raise UsageError("distributed=true: a run that begins with run=DIR has one process")
+    numbers = _numbers(config, then, source)
+    run = configuration.build(config)
+    step, learners, notes = _learners(run, config, then, source)
+    memory, why = _memory(run.agent, config, then, step, source)
+    demonstrated, remembered = run.agent.replay.num_demonstrated(run.agent.num_envs), 0
+    words = f"memory: {'the demonstrations alone' if demonstrated else 'empty'}, since {why}"
+    if memory is not None:
+        filled = min(int(memory.count.min()), memory.rows.shape[1])
+        remembered = max(filled - demonstrated, 0)
+        words = f"memory: its last {filled * run.agent.num_envs:,} decisions{why}"
+    with open_dict(config):
+        config.begun = {"step": step, "remembered": remembered, "memory": words}
+    if memory is not None:
+        run = configuration.build(config)  # with room for what it remembers
+        memory = _rewritten(run.agent, memory, why == RELABELLED)
+    learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (learners, memory))
+    known = [name for learner in run.agent.learners.values() for name in learner.owns]
+    line = f"begins with {_listed(known)} of {source} at step {step:,}; {words}"
+    frozen = f"; frozen: {_listed(run.agent.frozen)}" if run.agent.frozen else ""
+    return run, Start(learners, memory, "\n".join([*notes, line + frozen]))
+
+
+def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
+    """[S] for each learner the number of that in `source` whose knowledge it gets.
+
+    Raises:
+        UsageError: if they are not as many, unless it is one; if one of them diverged.
+    """
+    for end in checkpoint.meta(source / "checkpoints").get("record", {}).get("ends", ()):
+        raise UsageError(f"run={source}: its learner of seed {end['seed']} diverged")
+    if then.num_seeds not in (1, config.num_seeds):
+        raise UsageError(
+            f"num_seeds={config.num_seeds}: the run in run={source} has {then.num_seeds} learners; "
+            "as many can begin with what they know"
+        )
+    return jnp.arange(config.num_seeds) % then.num_seeds
+
+
+def _learners(
+    run: Run, config: DictConfig, then: DictConfig, source: Path
+) -> tuple[int, Any, list[str]]:
+    """(step, learners [S', ...], notes) of the newest sound checkpoint in `source`.
+
+    Raises:
+        UsageError: if they have other shapes than those of `run`.
+    """
+    like = _like(run.agent, then).replace(env=None, control=None, memory=None, key=None)
+    try:
+        step, state, _, notes = checkpoint.restore(source / "checkpoints", like, part=True)
+    except MisfitError as error:
+        lines = changes(_values(then), _values(config))
+        own = [line for line in lines if not line.startswith(("env.", "episode.", "reward."))]
+        what, detail = ", ".join((own or lines)[:2]), str(error).partition("this run: ")[2]
+        raise UsageError(f"{what}: parameters of run={source} do not fit ({detail})") from error
+    return step, state.learners, notes
+
+
+def _values(config: DictConfig) -> dict[str, Any]:
+    """What shapes the parameters of a run, by full keys."""
+    values: Any = OmegaConf.to_container(config)
+    named = {key: value for key, value in values.items() if key not in ("begun", "expert")}
+    return {
+        key: value
+        for key, value in flat(named).items()
+        if "." in key or key in ("num_envs", "task", "algo", "total_steps")
+    }
+
+
+def _memory(
+    agent: Agent, config: DictConfig, then: DictConfig, step: int, source: Path
+) -> tuple[Any, str]:
+    """The memory [S', ...] in checkpoint `step` if it is true in the new run, and a word on it."""
+    before, now = (_world(each) for each in (then, config))
+    if differ := [key for key in {**before, **now} if before.get(key) != now.get(key)]:
+        return None, f"{_listed(differ[:3])} differ{'' if differ[1:] else 's'}"
+    if not then.checkpoint_replay:
+        return None, "checkpoints of that run hold none"
+    same = _plain(then.get("reward")) == _plain(config.get("reward"))
+    if not same and _goal(agent.episode) is None:
+        return None, "reward differs"
+    capacity = checkpoint.meta(source / "checkpoints")["capacity"]
+    sized = replace(agent, replay=replace(agent.replay, capacity=capacity))
+    like = _like(sized, then).replace(env=None, control=None, learners=None, key=None)
+    _, state, *_ = checkpoint.restore(source / "checkpoints", like, step, part=True)
+    return state.memory, "" if same else RELABELLED
+
+
+def _like(agent: Agent, then: DictConfig) -> AgentState:
+    """Shapes of the state [S', ...] of an agent, with as many learners as that run had."""
+    seeds = tuple(range(then.seed, then.seed + then.num_seeds))
+    return jax.eval_shape(Loop(agent, seeds, 1).init)
+
+
+def _world(config: DictConfig) -> dict[str, Any]:
+    """What the decisions in a memory depend on, by full keys."""
+    values: Any = OmegaConf.to_container(config)
+    world = flat({key: values[key] for key in WORLD if key in values})
+    return {key: value for key, value in world.items() if key not in PASSING}
+
+
+def _plain(part: Any) -> Any:
+    """The values of a part by full keys, without its copy of the world."""
+    values: Any = OmegaConf.to_container(part) if isinstance(part, DictConfig) else {}
+    return {key: value for key, value in flat(values).items() if not key.startswith("world.")}
+
+
+def _goal(episode: Episode) -> Goal | None:
+    """What the episodes pay, if it follows from what a memory holds; else None."""
+    exact = episode.action_repeat == 1 and not episode.delay and not episode.action_noise
+    if not exact or episode.sensor_noise != 0.0:
+        return None
+    env: Any = episode.env
+    return episode.reward or (env if hasattr(env, "reward_of") else None)
+
+
+def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:
+    """The memory [S', ...] in the size of the new run, which goes on with another episode."""
+
+    def one(memory: Any) -> Any:
+        memory = agent.replay.interrupted(agent.replay.resized(memory), agent.spec)
+        goal = _goal(agent.episode) if relabelled else None
+        return memory if goal is None else agent.replay.relabelled(memory, agent.spec, goal)
+
+    learners = range(len(memory.count))
+    each = [one(jax.tree.map(lambda leaf, s=s: leaf[s], memory)) for s in learners]
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves), *each)
+
+
+def _listed(names: Any) -> str:
+    """The names in a sentence."""
+    *most, last = [*names] or ["nothing"]
+    return f"{', '.join(most)} and {last}" if most else str(last)

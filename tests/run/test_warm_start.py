@@ -1,0 +1,195 @@
+"""train run=DIR: a new run begins with what another one knows, as far as it is true there."""
+
+import json
+import shutil
+
+import jax
+import numpy as np
+import pytest
+from omegaconf import OmegaConf
+from tiny import call_train, contents, only_line, run
+
+from hybrid_rl import config, trained
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import inherited, start
+from hybrid_rl.run.store import Store
+from hybrid_rl.training.loop import Loop
+
+pytestmark = pytest.mark.turns(3)
+
+HYBRID = ["task=quadcopter", "algo=hybrid_stochastic", "learning=replay", "physics=native"]
+HYBRID += ["episode.steps=40", "checkpoint_every=150", "eval_every=150"]
+MOTION = ["reward=aim", "reward.quantity=motion", "reward.target=[0,0,1,0,0,0]"]
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """A run of one learner; its memory holds the last 200 of 300 decisions."""
+    folder = tmp_path_factory.mktemp("source") / "run"
+    run(folder, *HYBRID, "total_steps=300", "seed=4")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def warm(source, tmp_path_factory):
+    """A run that began with it, and changed its model alone."""
+    folder = tmp_path_factory.mktemp("warm") / "run"
+    line = [f"run={source}", f"run_dir={folder}", "total_steps=150", "freeze=[policy]"]
+    assert call_train(*line, *MOTION) == 0
+    return folder
+
+
+def begun(source, *overrides):
+    """Configuration, loop and first state of a run that begins with `source`."""
+    made = inherited.load([f"run={source}", *overrides])
+    built, first = start.built(made)
+    loop = Loop(built.agent, built.seeds, 1)
+    return made, loop, first.given(loop.init()), first.line
+
+
+def saved(folder):
+    """The state in the newest checkpoint of a run."""
+    made = config.build(OmegaConf.load(folder / "config.yaml"))
+    store = Store(folder / "checkpoints", Loop(made.agent, made.seeds, 1), True, {})
+    return store.restore()[0]
+
+
+def same(one, two):
+    """Whether all leaves are equal bit for bit."""
+    return jax.tree.all(jax.tree.map(np.array_equal, one, two))
+
+
+def test_it_begins_with_all_that_the_learners_know(source):
+    made, loop, state, line = begun(source, "policy_learner.tau=0.01", "total_steps=50")
+    old = saved(source)
+    assert same(jax.device_get(state.learners), jax.device_get(old.learners))
+    params = jax.tree.map(lambda leaf: leaf[0], jax.vmap(loop.agent.params)(state))
+    obs = state.env.obs[0, 0]
+    actor, theirs = trained.load(source).learner(mode="policy")
+    first, key = actor.init(loop.agent.spec), jax.random.key(3)
+    mine, wanted = (actor.act(each, first, obs, key)[0] for each in (params, theirs))
+    assert np.array_equal(mine, wanted)
+    assert (made.random_steps, made.seed, made.total_steps, made.log_every) == (0, 4, 50, 50)
+    assert made.learners.policy.tau == made.policy_learner.tau == 0.01
+    assert made.policy.hidden == [16]
+    assert "begins with model, reward, policy and critic of" in line
+    assert "at step 300; memory: its last 200 decisions" in line
+
+
+def test_the_memory_stays_where_it_is_true(source):
+    _, loop, state, _ = begun(source, "episode.steps=30", "total_steps=50", "replay.capacity=1000")
+    rows, old = np.asarray(state.memory.rows[0]), np.asarray(saved(source).memory.rows[0])
+    assert rows.shape[0] == 250
+    assert int(state.memory.count[0]) == 200
+    in_time = np.roll(old, -(300 % 200), axis=0)
+    in_time[-1, :, -10] = 1  # another episode follows: truncated
+    assert np.array_equal(rows[:200], in_time)
+    assert set(loop.agent.starts().values()) == {0}
+    _, _, state, _ = begun(source, "replay.capacity=60")
+    assert int(state.memory.count[0]) == 60
+    assert np.array_equal(state.memory.rows[0], in_time[-60:])
+
+
+def test_another_reward_is_that_of_the_memory_too(source):
+    made, loop, state, line = begun(source, *MOTION)
+    assert line.endswith("200 decisions, with the rewards that they earn now")
+    assert made.reward.world == made.env
+    spec, rows = loop.agent.spec, np.asarray(state.memory.rows[0, :200, 0])
+    motion, u = rows[:, -6:], rows[:, spec.obs : spec.obs + spec.act]
+    away = np.linalg.norm(motion - np.array([0, 0, 1, 0, 0, 0]), axis=1)
+    wanted = -away - 0.05 * (u**2).sum(1)
+    np.testing.assert_allclose(rows[:, spec.obs + spec.act], wanted, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (["env.damping=true"], "memory: empty, since env.damping differs"),
+        (["episode.delay=1", "num_envs=2"], "since episode.delay and num_envs differ"),
+        ([*MOTION, "env.damping=true"], "memory: empty, since env.damping differs"),
+    ],
+)
+def test_the_memory_is_empty_where_it_would_be_false(source, given, words):
+    made, loop, state, line = begun(source, *given)
+    assert words in line
+    assert words in f"memory: {made.begun.memory}"
+    assert not state.memory.count.any()
+    assert max(loop.agent.starts().values()) == 16 + loop.agent.num_envs
+    assert made.learners.policy == made.policy_learner
+    if "env.damping=true" in given:
+        assert made.env.damping
+        assert made.reward is None or made.reward.world.damping
+
+
+def test_one_learner_begins_several(source):
+    _, loop, state, _ = begun(source, "num_seeds=3", "seed=7")
+    assert loop.seeds == (7, 8, 9)
+    for leaf in jax.tree.leaves(jax.device_get((state.learners, state.memory))):
+        assert len(leaf) == 3
+        assert np.array_equal(leaf[0], leaf[2])
+    assert not np.array_equal(state.env.obs[0], state.env.obs[1])
+
+
+def test_what_is_frozen_stays(source, warm):
+    before, after = saved(source).learners, saved(warm).learners
+    assert same(before["policy"], after["policy"])
+    assert not same(before["model"], after["model"])
+    rows = [json.loads(line) for line in (warm / "metrics.jsonl").read_text().splitlines()]
+    assert [row["step"] for row in rows if "eval/return" in row] == [0, 150]
+    assert [row["step"] for row in rows if "model/loss" in row] == [50, 100, 150]
+    assert not [row for row in rows if "sac/q" in row]
+    kept, summary = (
+        OmegaConf.load(warm / "config.yaml"),
+        json.loads((warm / "summary.json").read_text()),
+    )
+    assert (kept.run, kept.freeze, kept.begun.step) == (str(source), ["policy"], 300)
+    assert summary["run"] == str(source)
+    assert summary["begun"]["remembered"] == 200
+
+
+def test_it_goes_on_bit_for_bit_without_the_first_run(interrupt, source, warm, tmp_path):
+    first, folder = tmp_path / "first", tmp_path / "run"
+    shutil.copytree(source, first)
+    line = [f"run={first}", f"run_dir={folder}", "total_steps=100", "freeze=[policy]"]
+    assert call_train(*line, *MOTION, "checkpoint_every=50") == 0
+    shutil.rmtree(first)
+    shutil.rmtree(folder / "checkpoints" / "100")
+    assert call_train(f"resume={folder}", "total_steps=150") == 0
+    assert interrupt.difference(folder, warm) == ""
+
+
+REFUSED = [  # overrides, words of the line
+    ("policy.hidden=[8]", "policy.hidden was [16] and is [8]: parameters of run="),
+    ("model.hidden=[8]", "model.hidden was [16] and is [8]: parameters of run="),
+    ("env.task=track", "env.task was hover and is track: parameters of run="),
+    ("task=pendulum", "task=pendulum: what is learned in run="),
+    ("algo=sac", "algo=sac: what is learned in run="),
+    ("learning=mbpo", "learning=mbpo: what is learned in run="),
+    ("settings=light", "settings=light: with run="),
+    ("resume={source}", "run, resume: give one of them"),
+    ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
+    ("freeze=policy", "freeze=policy: must be a list"),
+    ("policy.hiden=[8]", "policy.hiden: unknown key; did you mean policy.hidden?"),
+    ("~policy.hidden", "~policy.hidden: with run=DIR keys cannot be deleted"),
+]
+
+
+@pytest.mark.parametrize(("given", "words"), REFUSED, ids=[given for given, _ in REFUSED])
+def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, given, words):
+    monkeypatch.chdir(tmp_path)
+    before = contents(source)
+    assert call_train(f"run={source}", given.format(source=source)) == 2
+    assert words in only_line(capfd)
+    assert contents(source) == before
+
+
+def test_no_run_and_no_checkpoint_are_one_line(source, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    assert call_train("run=nowhere") == 2
+    assert "run=nowhere: no run folder there" in only_line(capfd)
+    (tmp_path / "begun").mkdir()
+    shutil.copy(source / "config.yaml", tmp_path / "begun")
+    assert call_train("run=begun") == 2
+    assert "run=begun: holds no checkpoint yet" in only_line(capfd)
+    with pytest.raises(UsageError, match="run=nowhere: only the command"):
+        config.load(["run=nowhere"])
