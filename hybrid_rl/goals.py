@@ -1,11 +1,15 @@
-"""A trained run on another reward, or with another planner; nothing is trained.
+"""A trained run on another reward, with a constraint or another planner; nothing is trained.
 
     evaluate run=DIR reward=speed reward.target=5
+    evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
     evaluate run=DIR planner=sampling planner.samples=256
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
 maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
 without a learned model keeps its policy, which knows nothing of the reward.
+
+`constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
+`gradient` keeps it, for the new reward or for that of the training.
 """
 
 from collections.abc import Sequence
@@ -22,13 +26,14 @@ from hybrid_rl.composition import CONF, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.trained import Trained, built
 
-KEYS = ("reward", "planner", "planner_alone")  # of conf/retarget.yaml, which a user may change
+PLANNERS = ("planner", "planner_alone")
+KEYS = (*configuration.PAID, *PLANNERS)  # of conf/retarget.yaml, which a user may change
 
 
 def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
     """`trained` with the goal and the planner that the overrides name.
 
-    overrides: reward=NAME, reward.KEY=VALUE, planner=NAME, planner.KEY=VALUE, as of commands.
+    overrides: reward=NAME, reward.KEY=VALUE, as of commands; also of constraint and planner.
 
     Raises:
         UsageError: for a name, a key or a value that does not exist or does not fit the task.
@@ -50,37 +55,42 @@ def retargeted(trained: Trained, overrides: Sequence[str]) -> Trained:
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     """The parts of `goal` that a run with this configuration can use."""
     goal = goal.copy()
-    if goal.reward is None:  # another planner for the reward of the training
+    if goal.reward is None:  # the planner maximises the reward of the training
         goal.planner.objective = "${objective}"
         goal.planner_alone.objective = "${model_objective}"
+    for name in configuration.PAID:
+        goal[name] = goal[name] or config.get(name)
     lacking = {"model", "reward_model"} - set(config)
     if lacking:
-        names = ("reward",)
+        names = configuration.PAID
     elif "policy" not in config:
         goal.controllers = {"full": "${planner_alone}"}
-        names = ("reward", "goal_reward", "goal_objective", "planner_alone", "controllers")
+        names = ("goal_reward", "goal_objective", "planner_alone", "controllers")
+        names = (*configuration.PAID, *names)
     else:
         names = tuple(map(str, goal))
     return OmegaConf.masked_copy(goal, list(names))
 
 
 def _paid(trained: Trained, goal: DictConfig, overrides: Sequence[str]) -> Trained:
-    """A policy from a file, in an environment that pays another reward."""
+    """A policy from a file, in an environment that pays another reward or has a constraint."""
     if lost := [text for text in overrides if text.startswith("planner")]:
         raise UsageError(f"{lost[0]}: a policy's file holds no model to plan with; give run=DIR")
-    config: Any = OmegaConf.merge(trained.config, OmegaConf.masked_copy(goal, ["reward"]))
+    config: Any = OmegaConf.merge(
+        trained.config, OmegaConf.masked_copy(goal, [*configuration.PAID])
+    )
     OmegaConf.resolve(config)
     return replace(trained, episode=configuration.episodes(config), config=config)
 
 
 def _composed(overrides: Sequence[str]) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
-    words = [
-        f"controller@{text}" if text.split("=")[0] in ("planner", "planner_alone") else text
-        for text in overrides
-    ]
+    words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
     try:
         with initialize_config_dir(str(CONF), version_base="1.3"):
-            return compose("retarget", words)
+            found: Any = OmegaConf.merge(
+                dict.fromkeys(configuration.PAID), compose("retarget", words)
+            )
+            return found
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(explain(error)) from error
