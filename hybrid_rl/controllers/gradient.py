@@ -138,7 +138,7 @@ class GradientController:
         number, count = jnp.arange(K), len(each)
         loud = number // count >= self.quiet * K / count
         if self.policy is None:  # around the last plan
-            return Candidate(jnp.zeros(K), state.plan.v + self.noise * e)
+            return Candidate(jnp.zeros(K), state.plan.v[None] + self.noise * e)
         return Candidate(each[number % count], self.noise * e * loud[:, None, None])
 
     def _scored(self, params: Params, value: Return, x: Array, one: Candidate) -> Scored:
