@@ -64,7 +64,7 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     if lacking:
         names = configuration.PAID
     elif "policy" not in config:
-        goal.controllers = {"full": "${planner_alone}"}
+        goal.controllers = dict.fromkeys(("full", "planner"), "${planner_alone}")
         names = ("goal_reward", "goal_objective", "planner_alone", "controllers")
         names = (*configuration.PAID, *names)
     else:
@@ -76,9 +76,8 @@ def _paid(trained: Trained, goal: DictConfig, overrides: Sequence[str]) -> Train
     """A policy from a file, in an environment that pays another reward or has a constraint."""
     if lost := [text for text in overrides if text.startswith("planner")]:
         raise UsageError(f"{lost[0]}: a policy's file holds no model to plan with; give run=DIR")
-    config: Any = OmegaConf.merge(
-        trained.config, OmegaConf.masked_copy(goal, [*configuration.PAID])
-    )
+    paid = OmegaConf.masked_copy(goal, [*configuration.PAID])
+    config: Any = OmegaConf.merge(trained.config, paid)
     OmegaConf.resolve(config)
     return replace(trained, episode=configuration.episodes(config), config=config)
 
@@ -88,9 +87,7 @@ def _composed(overrides: Sequence[str]) -> DictConfig:
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
     try:
         with initialize_config_dir(str(CONF), version_base="1.3"):
-            found: Any = OmegaConf.merge(
-                dict.fromkeys(configuration.PAID), compose("retarget", words)
-            )
-            return found
+            found: Any = compose("retarget", words)
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(explain(error)) from error
+    return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})

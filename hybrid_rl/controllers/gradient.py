@@ -83,7 +83,7 @@ class GradientController:
     iterations: Natural = 5
     step: Positive = 0.05  # [u] root mean square of an iteration's change
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
-    constraint: Constraint | None = None
+    constraint: Constraint | None = None  # beside its price in a reward that was learned with it
 
     def init(self, spec: Spec) -> GradientState:
         """No corrections, and the objective's initial memory."""
