@@ -15,7 +15,8 @@ With a constraint of excess c, indicator width w, price and chance,
     p_t = mean_i sigmoid(c(x_t, u_t, f_i(x_t, u_t)) / w)        over the ensemble's members
     S = ... - price sum_t p_t
 
-and candidates with max_t p_t > chance rank below all others, by how far they are beyond the limit.
+and candidates with max_t p_t > chance, t < T, rank below all others, by how far they are beyond the
+limit. The tail does not count there: another plan acts before it comes.
 
 Sources: corrections of a policy as in thesis Algorithm 2; gradient steps from roll-outs of a policy
 as in Dream-MPC (2026); a tail of the policy as in roll-out algorithms (Bertsekas); the order of
@@ -56,8 +57,8 @@ class Scored(NamedTuple):
     score: Array  # [] S
     value: Array  # [] J
     disagreement: Array  # [] sum over time
-    risk: Array  # [] the largest probability of a violation
-    beyond: Array  # [] distance beyond the limit, sum over time [widths]; above 0, as it is smooth
+    risk: Array  # [] the largest probability of a violation before the tail
+    beyond: Array  # [] distance beyond the limit, until then [widths]; above 0, as it is smooth
     u: Array  # [m] its first action
 
 
@@ -159,9 +160,10 @@ class GradientController:
         score = J - self.disagreement_price * apart.sum()
         if self.constraint is not None:
             score = score - self.constraint.price * risk.sum()
-        finite = jnp.isfinite(score)
-        score, far = jnp.where(finite, score, -jnp.inf), jnp.where(finite, beyond.sum(), jnp.inf)
-        return Scored(score, J, apart.sum(), risk.max(), far, us[0])
+        finite, T = jnp.isfinite(score), self.horizon
+        far = jnp.where(finite, beyond[:T].sum(), jnp.inf)
+        score = jnp.where(finite, score, -jnp.inf)
+        return Scored(score, J, apart.sum(), risk[:T].max(), far, us[0])
 
     def _predicted(self, params: Params, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """The next state [n], the disagreement [n] or [], and every member's state [members, n]."""
