@@ -84,7 +84,7 @@ def check(config: DictConfig) -> None:
 
 def _check_parts(config: DictConfig) -> None:
     """Raise UsageError for a controller, a learner or a memory that is no part; null: none."""
-    named = {"replay": config.replay, "reward": config.get("reward")}
+    named = {name: config.get(name) for name in ("replay", "reward", "constraint")}
     for section in ("controllers", "learners"):
         named |= {f"{section}.{name}": node for name, node in config[section].items()}
     for key, node in named.items():

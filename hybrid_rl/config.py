@@ -30,8 +30,9 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 
+PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 READ = (  # the keys that a run reads, and with them all keys that they refer to
-    *(*COUNTS, *SECTIONS, "reward", "expert", "task", "algo", "seed", "random_steps", "pretrain"),
+    *(*COUNTS, *SECTIONS, *PAID, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("matmul_precision", "distributed", "logger", "run", "freeze"),
 )
@@ -194,7 +195,7 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
     for key, value in changes.items():
         section, _, name = key.partition(".")
         part = Episode if section == "episode" else part_class(changed.env._target_)
-        hidden = ("env", "reward") if section == "episode" else ()
+        hidden = ("env", *PAID) if section == "episode" else ()
         known = [field.name for field in fields(part) if field.name not in hidden]
         if name not in known:
             whose = f"the {section} of task {config.task}"
@@ -216,7 +217,7 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
             )
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
-    given["reward"] = _instantiate(parts.get("reward") or None, "reward")
+    given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
         given |= _on_host(env, given)
     return Episode(env, **given), notes
@@ -228,10 +229,10 @@ def _on_host(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
     Raises:
         UsageError: if it has none, or for a disturbance, which only a wrapper can add there.
     """
-    for key in ("delay", "sensor_noise", "action_noise", "reward"):
+    for key in ("delay", "sensor_noise", "action_noise", *PAID):
         if given.get(key):
             line = "is for the environments in JAX; put a Gymnasium wrapper around this one"
-            where = "reward" if key == "reward" else f"episode.{key}={given[key]}"
+            where = key if key in PAID else f"episode.{key}={given[key]}"
             raise UsageError(f"{where}: {line}")
     if given.get("steps") is not None:
         return {}
@@ -265,7 +266,7 @@ def physics(config: DictConfig) -> str | None:
 
 def _on_this_machine(config: DictConfig) -> DictConfig:
     """The sections, in which every copy of the world has its physics resolved."""
-    sections = [key for key in (*SECTIONS, "reward") if key in config]
+    sections = [key for key in (*SECTIONS, *PAID) if key in config]
     parts: Any = OmegaConf.masked_copy(config, sections)
     name = physics(config)
 

@@ -4,12 +4,16 @@
     python -m hybrid_rl.evaluate policy=halfcheetah
     python -m hybrid_rl.evaluate policy=halfcheetah episode.delay=1 episode.sensor_noise=0.01
     python -m hybrid_rl.evaluate run=DIR reward=speed reward.target=5
+    python -m hybrid_rl.evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
 
 With env.KEY=VALUE or episode.KEY=VALUE the world differs from that of the training, and the
 controller does not; the file is then DIR/evaluation_<mode>_<changes>.json.
 
 With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
 model that the run has learned; nothing is trained. planner=NAME is another planner.
+
+With constraint=NAME, of conf/constraint, the world counts the decisions that violate it, and the
+planner keeps it; the return stays as it is.
 
 Without exploration, with the learners as they were at the newest checkpoint. From Python,
 `hybrid_rl.trained.load` reads a run back, and `evaluate` gives its returns.
@@ -56,7 +60,8 @@ ARGUMENTS = (
 def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[str, np.ndarray]:
     """Undiscounted `return` [S, episodes] of the same episodes as in training.
 
-    If the task measures it, also `success` [S, episodes], 0 or 1.
+    If the task measures it, also `success` [S, episodes], 0 or 1; with a constraint also
+    `violations` [S, episodes], in decisions.
 
     Raises:
         UsageError: for a mode that the method does not have.
@@ -77,10 +82,13 @@ def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[s
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
     """What evaluation_<mode>.json holds."""
     returns = got["return"]
-    success = {}
+    more = {}
     if "success" in got:
         each = got["success"]
-        success = {"success": each.mean(1).tolist(), "succeeded": each.astype(bool).tolist()}
+        more = {"success": each.mean(1).tolist(), "succeeded": each.astype(bool).tolist()}
+    if "violations" in got:
+        each = got["violations"]
+        more |= {"violations": each.mean(1).tolist(), "violated": each.astype(int).tolist()}
     return {
         "mode": mode,
         "step": trained.step,
@@ -88,7 +96,7 @@ def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str,
         "episodes": returns.shape[1],
         "mean": returns.mean(1).tolist(),
         "std": returns.std(1).tolist(),
-        **success,
+        **more,
         "returns": returns.tolist(),
     }
 
@@ -119,19 +127,20 @@ def main() -> None:
 def _table(values: dict[str, Any]) -> Table:
     """A row for each seed, and one for the episodes of all of them."""
     table = Table()
-    shares = values.get("success", [])
-    columns = ("seed", "mean return", "std", "lowest", "highest", *["successes"][: len(shares)])
-    for name in columns:
+    extra = {"successes": ("success", "{:.0%}"), "violations": ("violations", "{:,.1f}")}
+    extra = {name: found for name, found in extra.items() if found[0] in values}
+    for name in ("seed", "mean return", "std", "lowest", "highest", *extra):
         table.add_column(name, justify="right")
     lines = [
-        (str(seed), each, shares[i : i + 1])
+        (str(seed), each, [i])
         for i, (seed, each) in enumerate(zip(values["seeds"], values["returns"], strict=True))
     ]
     if len(lines) > 1:
-        lines.append(("all", np.ravel(values["returns"]), [np.mean(shares)] if shares else []))
-    for name, each, share in lines:
+        lines.append(("all", np.ravel(values["returns"]), list(range(len(lines)))))
+    for name, each, which in lines:
         numbers = (np.mean(each), np.std(each), np.min(each), np.max(each))
-        row = [f"{value:,.1f}" for value in numbers] + [f"{part:.0%}" for part in share]
+        row = [f"{value:,.1f}" for value in numbers]
+        row += [form.format(np.mean(np.take(values[key], which))) for key, form in extra.values()]
         table.add_row(name, *row, end_section=len(lines) > 1 and name == lines[-2][0])
     return table
 

@@ -1,11 +1,15 @@
-"""A trained run on another reward, or with another planner; nothing is trained.
+"""A trained run on another reward, with a constraint or another planner; nothing is trained.
 
     evaluate run=DIR reward=speed reward.target=5
+    evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
     evaluate run=DIR planner=sampling planner.samples=256
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
 maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
 without a learned model keeps its policy, which knows nothing of the reward.
+
+`constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
+`gradient` keeps it, for the new reward or for that of the training.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +19,7 @@ from typing import Any
 
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
@@ -26,7 +30,8 @@ from hybrid_rl.overrides import search_path
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import chosen as named
 
-KEYS = ("reward", "planner", "planner_alone")  # of conf/retarget.yaml, which a user may change
+PLANNERS = ("planner", "planner_alone")
+KEYS = (*configuration.PAID, *PLANNERS)  # of conf/retarget.yaml, which a user may change
 
 
 def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Trained, dict[str, str]]:
@@ -54,7 +59,7 @@ def retargeted(
 ) -> Trained:
     """`trained` with the goal and the planner that the overrides name.
 
-    overrides: reward=NAME, reward.KEY=VALUE, planner=NAME, planner.KEY=VALUE, as of commands.
+    overrides: reward=NAME, reward.KEY=VALUE, as of commands; also of constraint and planner.
     config_dir: a folder with groups of the user, as for `--config-dir`.
 
     Raises:
@@ -86,30 +91,27 @@ def retargeted(
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     """The parts of `goal` that a run with this configuration can use."""
     goal = goal.copy()
-    if goal.reward is None and "objective" in config:  # another planner, for the reward of training
+    if goal.reward is None and "objective" in config:  # the planner maximises that of the training
         goal.planner.objective = "${objective}"
         goal.planner_alone.objective = "${model_objective}"
+    for name in configuration.PAID:
+        goal[name] = goal[name] or config.get(name)
     if {"model", "reward_model"} - set(config):
-        return OmegaConf.masked_copy(goal, ["reward"])
+        return OmegaConf.masked_copy(goal, [*configuration.PAID])
     if "policy" not in config:
         goal.planner = goal.planner_alone
-        goal.controllers = {"full": "${planner}"}
+        goal.controllers = dict.fromkeys(("full", "planner"), "${planner}")
     return goal
 
 
 def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
-    words = [
-        f"controller@{text}" if text.split("=")[0] in ("planner", "planner_alone") else text
-        for text in overrides
-    ]
+    words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
     if config_dir:
         words.append(search_path(config_dir))
     try:
         with initialize_config_dir(str(CONF), version_base="1.3"):
-            goal = compose("retarget", words)
+            found: Any = compose("retarget", words)
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(explain(error)) from error
-    with open_dict(goal):
-        goal.setdefault("reward", None)
-    return goal
+    return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})

@@ -27,8 +27,9 @@ from hybrid_rl.fields import FieldError
 TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
 ROOMS = (  # folders of hybrid_rl that hold parts
-    *("beliefs", "controllers", "core", "critics", "data", "envs", "features", "learners"),
-    *("models", "objectives", "policies", "proposals", "rewards", "targets", "training"),
+    *("beliefs", "constraints", "controllers", "core", "critics", "data", "envs", "features"),
+    *("learners", "models", "objectives", "policies", "proposals", "rewards", "targets"),
+    "training",
 )
 NONE = "is no part of hybrid_rl"
 OTHER = f"{NONE}; put its folder on PYTHONPATH if it is yours"

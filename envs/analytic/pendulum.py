@@ -50,6 +50,10 @@ class Pendulum:
         """The reward [] of action u [1] at x [3], which led to `after` [3]."""
         return _reward(jnp.arctan2(x[1], x[0]), x[2], TORQUE * u[0])
 
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """Height of the tip, -1 to 1, and angular velocity [rad/s] at obs [3]."""
+        return {"height": obs[0], "speed": obs[2]}
+
     def dynamics(self, x: Array, u: Array) -> Array:
         """The next observation [3] after action u [1] at x [3]."""
         return _obs(_next(jnp.arctan2(x[1], x[0]), x[2], TORQUE * u[0]))

@@ -34,6 +34,7 @@ LABELS = {
     "eval/policy_return": "Evaluation return, policy alone",
     "eval/planner_return": "Evaluation return, planner alone",
     "eval/success": "Share of successes",
+    "eval/violations": "Violations per episode",
     "eval/policy_success": "Share of successes, policy alone",
     "eval/planner_success": "Share of successes, planner alone",
     "planner/mode_insertion_gradient": "Mode insertion gradient",

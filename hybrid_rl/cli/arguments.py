@@ -105,7 +105,8 @@ POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or
 
 GOAL = (  # of commands that show a trained run in another world or on another goal
     Argument("reward", "", "another reward, of conf/reward; empty: that of the training"),
-    Argument("planner", "", "another planner, of conf/controller; empty: gradient for a reward"),
+    Argument("constraint", "", "a constraint, of conf/constraint; empty: that of the training"),
+    Argument("planner", "", "another, of conf/controller; empty: gradient for those two"),
 )
 CHANGES = {
     **{name: f"another value of a key of its {name}" for name in ("env", "episode")},

@@ -10,9 +10,18 @@ stops working for the seconds after it. d_t is the mean over the entries of the 
 ensemble's disagreement, in running standard deviations of the change; without this price gradients
 lead to where the model is wrong. Without a policy, s = 0: shooting, from noise.
 
+With a constraint of excess c, indicator width w, price and chance,
+
+    p_t = mean_i sigmoid(c(x_t, u_t, f_i(x_t, u_t)) / w)        over the ensemble's members
+    S = ... - price sum_t p_t
+
+and candidates with max_t p_t > chance, t < T, rank below all others, by how far they are beyond the
+limit. The tail does not count there: another plan acts before it comes.
+
 Sources: corrections of a policy as in thesis Algorithm 2; gradient steps from roll-outs of a policy
-as in Dream-MPC (2026); a tail of the policy as in roll-out algorithms (Bertsekas). Several
-strengths, the step by its root mean square and the price are our choice.
+as in Dream-MPC (2026); a tail of the policy as in roll-out algorithms (Bertsekas); the order of
+candidates is that of constrained cross-entropy methods (Wen and Topcu 2018). Several strengths, the
+step by its root mean square and the prices are our choice.
 """
 
 from typing import Any, NamedTuple
@@ -23,7 +32,7 @@ from jax import Array
 
 from hybrid_rl.core import adjoint, agreement, lifting, sampling
 from hybrid_rl.fields import Count, Discount, Fraction, Natural, NotNegative, Positive, part
-from hybrid_rl.protocols import Model, Objective, Policy
+from hybrid_rl.protocols import Constraint, Model, Objective, Policy
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
@@ -46,7 +55,10 @@ class Scored(NamedTuple):
     """A candidate in the model."""
 
     score: Array  # [] S
+    value: Array  # [] J
     disagreement: Array  # [] sum over time
+    risk: Array  # [] the largest probability of a violation before the tail
+    beyond: Array  # [] distance beyond the limit, until then [widths]; above 0, as it is smooth
     u: Array  # [m] its first action
 
 
@@ -72,6 +84,7 @@ class GradientController:
     iterations: Natural = 5
     step: Positive = 0.05  # [u] root mean square of an iteration's change
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
+    constraint: Constraint | None = None  # beside its price in a reward that was learned with it
 
     def init(self, spec: Spec) -> GradientState:
         """No corrections, and the objective's initial memory."""
@@ -89,18 +102,21 @@ class GradientController:
         score = jax.vmap(lambda one: self._scored(params, value, x, one))
         drawn = self._drawn(state, drawing)
         first = score(drawn)
-        best = jax.lax.top_k(first.score, min(self.refined, self.samples))[1]
+        best = jax.lax.top_k(self._rank(first), min(self.refined, self.samples))[1]
         starts = jax.tree.map(lambda a, b: jnp.concatenate([a[None], b[best]]), state.plan, drawn)
         refined = self._refined(params, value, x, starts)
         each = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), refined, starts)
         found = score(each)
-        plan, chosen = jax.tree.map(lambda leaf: leaf[jnp.argmax(found.score)], (each, found))
+        winner = jnp.argmax(self._rank(found))
+        plan, chosen = jax.tree.map(lambda leaf: leaf[winner], (each, found))
         gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
+        risk = {} if self.constraint is None else {"planner/risk": chosen.risk}
         metrics = {
-            "planner/planned_return": chosen.score + self.disagreement_price * chosen.disagreement,
+            "planner/planned_return": chosen.value,
             "planner/disagreement": chosen.disagreement / (self.horizon + self.tail),
             "planner/gain": jnp.where(jnp.isfinite(gain), gain, jnp.nan),  # of the gradients
             "planner/strength": plan.s,
+            **risk,
             **self._agreement(params, value, x, chosen.u),
         }
         after = GradientState(Candidate(plan.s, sampling.shift(plan.v)), chosen.u, memory)
@@ -129,25 +145,53 @@ class GradientController:
 
     def _scored(self, params: Params, value: Return, x: Array, one: Candidate) -> Scored:
         """The candidate from x [n]."""
-        model: Any = self.model
-        both = getattr(model, "step_and_disagreement", None)
         v = jnp.concatenate([one.v, jnp.zeros((self.tail, one.v.shape[1]))])
 
-        def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, Array, Array]]:
+        def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, ...]]:
             u = v
             if self.policy is not None:
                 u = one.s * self.policy.mean(params.policy, x) + v
             u = jnp.clip(u, -1, 1)
-            if both is None:
-                after, apart = model.step(params.model, x, u), jnp.zeros(())
-            else:
-                after, apart = both(params.model, x, u)
-            return after, (after, u, jnp.mean(apart))
+            after, apart, each = self._predicted(params, x, u)
+            return after, (after, u, jnp.mean(apart), *self._risk(x, u, each))
 
-        _, (xs, us, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))
-        path = Path(jnp.concatenate([x[None], xs]), us)
-        score = value(path) - self.disagreement_price * apart.sum()
-        return Scored(jnp.where(jnp.isfinite(score), score, -jnp.inf), apart.sum(), us[0])
+        _, ahead = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))
+        xs, us, apart, risk, beyond = ahead
+        J = value(Path(jnp.concatenate([x[None], xs]), us))
+        score = J - self.disagreement_price * apart.sum()
+        if self.constraint is not None:
+            score = score - self.constraint.price * risk.sum()
+        finite, T = jnp.isfinite(score), self.horizon
+        far = jnp.where(finite, beyond[:T].sum(), jnp.inf)
+        score = jnp.where(finite, score, -jnp.inf)
+        return Scored(score, J, apart.sum(), risk[:T].max(), far, us[0])
+
+    def _predicted(self, params: Params, x: Array, u: Array) -> tuple[Array, Array, Array]:
+        """The next state [n], the disagreement [n] or [], and every member's state [members, n]."""
+        model: Any = self.model
+        if hasattr(model, "predictions"):
+            return model.predictions(params.model, x, u)
+        after = model.step(params.model, x, u)
+        return after, jnp.zeros(()), after[None]
+
+    def _risk(self, x: Array, u: Array, each: Array) -> tuple[Array, Array]:
+        """The probability [] that u [m] at x [n] violates the constraint, and how far [] [widths].
+
+        each: [members, n] the predicted next states.
+        """
+        limit = self.constraint
+        if limit is None:
+            return jnp.zeros(()), jnp.zeros(())
+        far = jax.vmap(lambda after: limit.excess(x, u, after) / limit.width)(each)
+        return jax.nn.sigmoid(far).mean(), jax.nn.softplus(far).mean()
+
+    def _rank(self, found: Scored) -> Array:
+        """Numbers [K] in the order of the candidates: the largest is that of the best."""
+        if self.constraint is None or self.constraint.chance is None:
+            return found.score
+        safe = found.risk <= self.constraint.chance
+        order = jnp.lexsort((found.score, jnp.where(safe, 0.0, -found.beyond), safe))
+        return jnp.argsort(order)
 
     def _refined(self, params: Params, value: Return, x: Array, starts: Candidate) -> Candidate:
         """Candidates [C, ...] after the gradient steps."""

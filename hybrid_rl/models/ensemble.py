@@ -69,11 +69,11 @@ class Ensemble:
         """Mean over the members [n]."""
         return self.each(params, x, u).mean(0)
 
-    def step_and_disagreement(self, params: dict[str, Any], x: Array, u: Array) -> tuple:
-        """`step` [n] and `disagreement` [n], for the price of one; its gradient is finite."""
+    def predictions(self, params: dict[str, Any], x: Array, u: Array) -> tuple[Array, Array, Array]:
+        """`step` [n], `disagreement` [n], with a finite gradient, and `each` [members, n]."""
         each = self.each(params, x, u)
         variance = each.var(0) / params["change"].scale ** 2
-        return each.mean(0), jnp.sqrt(variance + 1e-12)
+        return each.mean(0), jnp.sqrt(variance + 1e-12), each
 
     def disagreement(self, params: dict[str, Any], x: Array, u: Array) -> Array:
         """Standard deviation [n] of the members' predictions, in running std of the change.

@@ -94,11 +94,12 @@ class Turned:
         a, y, v = jax.vmap(self._into)(x, u)
         return jax.vmap(self.world.turned)(self.model.draw(params, y, v, noise, key), a)
 
-    def step_and_disagreement(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
-        """Mean of the next planning state [n], and the `disagreement` [n]."""
+    def predictions(self, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
+        """Mean of the next planning state [n], `disagreement` [n], every member's [members, n]."""
         (a, *at), ensemble = self._into(x, u), cast(Any, self.model)
-        mean, disagreement = ensemble.step_and_disagreement(params, *at)
-        return self.world.turned(mean, a), disagreement
+        mean, disagreement, each = ensemble.predictions(params, *at)
+        turned = self.world.turned
+        return turned(mean, a), disagreement, jax.vmap(turned, (0, None))(each, a)
 
     def disagreement(self, params: Any, x: Array, u: Array) -> Array:
         """Standard deviation [n] of the members in the frame, in running std of the change."""

@@ -39,6 +39,29 @@ class Goal(Protocol):
         """The reward [] of action u [m] at the observation x [o], which led to `after` [o]."""
 
 
+class Constraint(Protocol):
+    """A limit on decisions, a known function of observations and action."""
+
+    @property
+    def price(self) -> float:
+        """Of a violated decision, for learners and planners."""
+
+    @property
+    def chance(self) -> float | None:
+        """A planner's largest probability of a violation in one decision; None: any."""
+
+    @property
+    def width(self) -> float:
+        """Of the smooth indicator sigmoid(excess / width), in the unit of `excess`."""
+
+    def excess(self, x: Array, u: Array, after: Array) -> Array:
+        """How far [] action u [m] at x [n], which led to `after` [n], is beyond the limit.
+
+        Above 0: violated; in the unit of what is limited. The first entries of x and of `after` are
+        the observation.
+        """
+
+
 class RewardedEnv(Env, Goal, Protocol):
     """An environment whose reward is a known function of observations and action."""
 

@@ -25,6 +25,7 @@ SHOWN = {  # scalar -> its format
     "train/return": "return {:,.1f}",
     "eval/return": "eval {:,.1f}",
     "eval/success": "success {:.0%}",
+    "eval/violations": "violations {:,.1f}",
     "perf/env_steps_per_s": "{} decisions/s",
 }
 

@@ -14,13 +14,14 @@ from jax import Array
 
 from hybrid_rl.core.branching import when_any, where
 from hybrid_rl.envs import sensor_noise
-from hybrid_rl.protocols import Env, Goal
+from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")
 SENSED = "episode_noise"  # in `info`: the key of the next noise
 DISTURBED = "action_noise"  # in `info`: the key of the next disturbance
+VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,10 @@ class Episode:
     `info["decision"]` and `info["return"]` count from the last reset. An action is repeated for
     `action_repeat` steps of the environment, whose rewards are added until it terminates. With a
     delay the first actions are 0.
+
+    A decision violates the constraint by the environment's next observation, before noise. Then
+    `metrics["violation"]` is 1, else 0, `info["violations"]` counts it, and the reward is reduced
+    by the constraint's price; the return is not.
 
     Raises:
         ValueError: for counts that are no whole numbers or too small, or noise of another size.
@@ -42,6 +47,7 @@ class Episode:
     sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
     action_noise: float = 0.0  # [u] std of what is added to an action when it arrives
     reward: Goal | None = None  # what it pays; None: the environment's own reward
+    constraint: Constraint | None = None  # what decisions must not violate
 
     def __post_init__(self) -> None:
         """Check the fields."""
@@ -78,6 +84,9 @@ class Episode:
             clock["late"] = jnp.zeros((self.delay, self.spec.act))
         if self.action_noise:
             clock[DISTURBED] = jax.random.key_data(jax.random.fold_in(key, 6))
+        if self.constraint is not None:
+            clock["violations"] = jnp.zeros(())
+            state = state.replace(metrics={**state.metrics, VIOLATED: jnp.zeros(())})
         state = state.replace(info={**state.info, **clock})
         return sensor_noise.begin(state, self._std, jax.random.fold_in(key, 5), SENSED)
 
@@ -108,7 +117,7 @@ class Episode:
         if self.action_repeat > 1:
             now = jax.lax.fori_loop(1, self.action_repeat, repeat, now)
         decision = state.info["decision"] + 1
-        return now.replace(
+        now = now.replace(
             truncated=(decision >= self.steps) & ~now.terminated,
             info={
                 **state.info,  # also what is not of this environment
@@ -116,6 +125,20 @@ class Episode:
                 "decision": decision,
                 "return": state.info["return"] + now.reward,
             },
+        )
+        return now if self.constraint is None else self._judged(self.constraint, state, action, now)
+
+    def _judged(
+        self, constraint: Constraint, state: EnvState, action: Array, now: EnvState
+    ) -> EnvState:
+        """`now`, the state after action [m] at `state`, with its violation counted and priced."""
+        with EXACT():
+            beyond = constraint.excess(state.obs, jnp.clip(action, -1.0, 1.0), now.obs)
+        violated = (beyond > 0).astype(now.reward.dtype)
+        return now.replace(
+            reward=now.reward - constraint.price * violated,
+            metrics={**now.metrics, VIOLATED: violated},
+            info={**now.info, "violations": state.info["violations"] + violated},
         )
 
     def _substep(self, state: EnvState, action: Array) -> EnvState:

@@ -60,12 +60,14 @@ def _decided(episode: Episode, controller: Controller, params: Params, carry: tu
 
 
 def scores(env: EnvState) -> dict[str, Array]:
-    """Undiscounted `return` of each finished episode and, for tasks that have it, `success`.
+    """Undiscounted `return` of each finished episode and, if there are such, two more.
 
-    Success is 1 if the last state is a success, else 0.
+    `success` is 1 if the last state is a success, else 0. `violations` is the number of decisions
+    that violated the constraint.
     """
     success = {"success": env.metrics["success"]} if "success" in env.metrics else {}
-    return {"return": env.info["return"], **success}
+    counted = {name: env.info[name] for name in ("return", "violations") if name in env.info}
+    return {**counted, **success}
 
 
 def evaluate_episodes(

@@ -1,0 +1,141 @@
+"""What an episode counts, what a learner is paid, and what a run and its evaluation report."""
+
+import json
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+import small
+from tiny import call, call_train, only_line, run
+
+from hybrid_rl import config, evaluate
+from hybrid_rl.cli import command
+from hybrid_rl.constraints.effort import Effort
+from hybrid_rl.constraints.limit import Limit
+from hybrid_rl.controllers.constant import ConstantController
+from hybrid_rl.data.replay import Replay
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loops import loop_of
+from hybrid_rl.training.rollout import evaluate_episodes, rollout
+from hybrid_rl.types import Params
+
+WORLD = Pendulum()
+SLOW = Limit(WORLD, "speed", 2.0, norm=True, price=7.0)
+
+
+@pytest.mark.parametrize("repeat", [1, 2])
+def test_violations_are_those_of_the_observations(repeat: int) -> None:
+    """A swinging pendulum: decisions with |w'| > 2; the return is that without the constraint."""
+    plain = Episode(WORLD, 30, repeat)
+    limited, key = Episode(WORLD, 30, repeat, constraint=SLOW), jax.random.key(1)
+    resting = ConstantController()
+    states = jax.jit(lambda: rollout(limited, resting, Params(), key, 30))()
+    free = jax.jit(lambda: rollout(plain, resting, Params(), key, 30))()
+    broken = np.abs(states.obs[1:, 2]) > 2
+    assert 0 < broken.sum() < 30
+    np.testing.assert_array_equal(states.metrics["violation"], [0, *broken])
+    np.testing.assert_array_equal(states.info["violations"], np.cumsum([0, *broken]))
+    np.testing.assert_array_equal(states.info["return"], free.info["return"])
+    np.testing.assert_allclose(states.reward[1:], free.reward[1:] - 7 * broken, rtol=1e-6)
+    got = evaluate_episodes(limited, resting, Params(), key[None])
+    assert {name: float(each[0]) for name, each in got.items()} == {
+        "return": pytest.approx(float(free.info["return"][-1])),
+        "violations": broken.sum(),
+    }
+    assert set(evaluate_episodes(plain, resting, Params(), key[None])) == {"return"}
+
+
+def test_noise_of_sensors_violates_nothing() -> None:
+    """The environment counts by what is, not by what a controller sees."""
+    steady = Limit(WORLD, "speed", 8.5, norm=True)
+    noisy = Episode(WORLD, 20, sensor_noise=5.0, constraint=steady)
+    states = jax.jit(
+        lambda: rollout(noisy, ConstantController(), Params(), jax.random.key(0), 20)
+    )()
+    assert np.abs(states.obs[:, 2]).max() > 8.5
+    assert float(states.info["violations"][-1]) == 0
+
+
+def test_effort_counts_the_action_that_arrives() -> None:
+    """Clipped, and late."""
+    late = Episode(WORLD, 20, delay=1, constraint=Effort(0.9))
+    state, step, seen = late.reset(jax.random.key(0)), jax.jit(late.step), []
+    for u in (5.0, 0.5, -1.0, 0.0):
+        state = step(state, jnp.array([u]))
+        seen.append(float(state.info["violations"]))
+    assert seen == [0, 1, 1, 2]
+
+
+def test_learners_are_paid_less_and_the_return_stays() -> None:
+    """In the memory of a run, by the pendulum's own reward of each decision."""
+    given = ["task=pendulum", "constraint=speed", "constraint.most=2", "constraint.price=7"]
+    built = config.build(small.load("sac", *given, "algo=sac"))
+    loop = loop_of(built.agent, built.seeds, stride=20)
+    state = loop.init()
+    state, metrics = loop.compile(state)(state, jnp.int32(0), jnp.int32(20))
+    rows = state.memory.rows[0, :20, 0]  # of the first learner
+    o, m, width = 3, 1, Replay.width(built.agent.spec)
+    obs, action, reward, after = rows[:, :o], rows[:, o : o + m], rows[:, o + m], rows[:, -o:]
+    assert rows.shape[1] == width
+    paid = np.asarray(jax.vmap(WORLD.reward_of)(obs, action, after))
+    broken = np.abs(after[:, 2]) > 2
+    assert broken.any()
+    np.testing.assert_allclose(reward, paid - 7 * broken, rtol=1e-4)
+    np.testing.assert_allclose(state.env.info["return"][0, 0], paid.sum(), rtol=1e-4)
+    np.testing.assert_array_equal(metrics["world/violation"][:20, 0], broken)
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    """A small run without a constraint."""
+    folder = tmp_path_factory.mktemp("trained") / "run"
+    run(folder, "algo=hybrid_stochastic", "episode.steps=20", "total_steps=300")
+    return folder
+
+
+def test_evaluate_reports_the_violations_of_a_run(trained, capsys) -> None:
+    """In its table and its file; by the policy they are those of its own observations."""
+    given = f"run={trained} mode=policy episodes=2 constraint=speed constraint.most=2"
+    assert call(lambda: command.guarded(evaluate.main), *given.split()) == 0
+    assert "violations" in capsys.readouterr().out
+    file = trained / "evaluation_policy_constraint=speed_constraint.most=2.json"
+    values = json.loads(file.read_text())
+    plain = evaluate.evaluate(evaluate.load(trained), "policy", 2)
+    np.testing.assert_allclose(values["returns"], plain["return"], rtol=1e-6)
+    assert values["violations"] == [np.mean(values["violated"])]
+    assert values["violations"][0] > 0
+
+
+@pytest.mark.parametrize("more", ["", " reward=aim reward.quantity=height", " planner=sampling"])
+def test_a_run_plans_with_a_constraint_with_and_without_a_reward(trained, more) -> None:
+    """The gradient planner gets it, and maximises the run's own objective or the new one."""
+    from hybrid_rl.goals import retargeted
+
+    words = f"constraint=speed constraint.chance=0.2{more}".split()
+    got = retargeted(evaluate.load(trained), words)
+    assert got.episode.constraint.chance == 0.2
+    planner = got.controllers["full"]
+    own = evaluate.load(trained).controllers["full"].objective
+    assert (planner.objective == own) == ("reward=" not in more)
+    if "sampling" not in more:
+        assert planner.constraint == got.episode.constraint
+    assert got.controllers["planner"].constraint == got.episode.constraint
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ("constraint=pace", "constraint=pace: unknown; choose one of height, limit, pitch, "),
+        ("constraint=pitch", "constraint.quantity=pitch: choose one of height, speed"),
+        ("constraint=speed constraint.most=[1,2]", "most=[1,2]: the norm of speed needs 1 number"),
+        ("constraint=limit", "constraint.most=null: limits nothing; give most, least or both"),
+        ("constraint=torque constraint.most=2", "constraint.most=2: must lie in (0, 1]"),
+        ("task=van_der_pol constraint=speed", "needs an environment with `quantities`; choose one"),
+        ("task=gymnasium env.id=Pendulum-v1 constraint=torque", "constraint: is for the environme"),
+    ],
+)
+def test_a_constraint_that_does_not_fit_is_refused_in_one_line(given, line, capfd) -> None:
+    assert call_train("settings=light", *{"task=pendulum": 0, **dict.fromkeys(given.split())}) == 2
+    assert line in only_line(capfd)

@@ -1,0 +1,132 @@
+"""The gradient planner with a constraint, on dynamics that are known."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from hybrid_rl.constraints.effort import Effort
+from hybrid_rl.constraints.limit import Limit
+from hybrid_rl.controllers.gradient import GradientController, Scored
+from hybrid_rl.models.ensemble import Ensemble
+from hybrid_rl.models.exact import Exact
+from hybrid_rl.models.gaussian import Gaussian
+from hybrid_rl.objectives.predicted_return import PredictedReturn
+from hybrid_rl.rewards.known import KnownReward
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import rollout
+from hybrid_rl.types import EnvState, Params, Spec
+
+
+@dataclass(frozen=True)
+class Sledge:
+    """v' = v + 0.2 u; r = v': the faster the better. o = v [1]."""
+
+    spec: Spec = Spec(obs=1, act=1, dt=0.1)
+
+    def reset(self, key: Array) -> EnvState:
+        """At rest."""
+        no = jnp.zeros((), bool)
+        return EnvState((), jnp.zeros(1), jnp.zeros(()), no, no)
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """One decision."""
+        after = self.dynamics(state.obs, action)
+        return state.replace(obs=after, reward=after[0])
+
+    def dynamics(self, x: Array, u: Array) -> Array:
+        """The next v [1]."""
+        return x + 0.2 * u
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The speed []."""
+        return after[0]
+
+    def quantities(self, obs: Array) -> dict[str, Array]:
+        """The speed []."""
+        return {"speed": obs[0]}
+
+
+WORLD = Sledge()
+LIMIT = Limit(WORLD, "speed", 1.0, width=0.02, price=100.0)
+PLANNER = GradientController(
+    Exact(WORLD), PredictedReturn(KnownReward(WORLD)), horizon=6, tail=0, noise=0.5, quiet=0.0
+)
+
+
+def driven(constraint: Any, given: Any = LIMIT) -> EnvState:
+    """The states [21] of an episode of 20 decisions, planned with a constraint."""
+    episode = Episode(WORLD, 20, constraint=given)
+    acts = replace(PLANNER, constraint=constraint)
+    return jax.jit(lambda: rollout(episode, acts, Params(), jax.random.key(0), 20))()
+
+
+def test_the_plan_keeps_the_limit_that_it_breaks_without() -> None:
+    """By a price that is higher than the gain, and by a chance at a price that is lower."""
+    free = driven(None)
+    assert float(free.obs[-1, 0]) > 3.5
+    assert float(free.info["violations"][-1]) >= 14
+    cheap = replace(LIMIT, price=0.01)
+    for kept in (LIMIT, replace(cheap, chance=0.2)):
+        states = driven(kept)
+        assert float(states.info["violations"][-1]) == 0
+        assert float(states.obs[-1, 0]) > 0.75  # near the limit
+    assert float(driven(cheap).info["violations"][-1]) >= 14  # a price that is worth paying
+
+
+def test_from_beyond_the_limit_the_plan_returns() -> None:
+    """No candidate is safe then: the nearest one acts, against the reward."""
+    planner = replace(PLANNER, constraint=replace(LIMIT, price=0.01, chance=0.2))
+    act, state = jax.jit(planner.act), planner.init(WORLD.spec)
+    x = jnp.array([3.0])
+    for key in jax.random.split(jax.random.key(1), 12):
+        u, state, metrics = act(Params(), state, x, key)
+        x = WORLD.dynamics(x, u)
+    assert float(x[0]) < 1
+    assert float(metrics["planner/risk"]) <= 0.2
+
+
+def test_an_effort_is_a_limit_of_the_actions() -> None:
+    effort = Effort(0.5, price=100.0)
+    states = driven(effort, effort)
+    assert float(states.info["violations"][-1]) == 0
+    assert float(states.obs[-1, 0]) > 0.2 * 0.3 * 20
+
+
+def test_the_order_of_candidates() -> None:
+    """By score among the safe, by distance among the others, which are all below them."""
+    risk = jnp.array([0.0, 0.3, 0.9, 0.05, 0.8])
+    score = jnp.array([1.0, 50.0, 90.0, 2.0, -jnp.inf])
+    beyond = jnp.array([0.1, 4.0, 3.0, 9.0, jnp.inf])
+    found = Scored(score, score, 0 * score, risk, beyond, score[:, None])
+    by_chance = replace(PLANNER, constraint=replace(LIMIT, chance=0.1))
+    assert np.argsort(by_chance._rank(found)).tolist() == [4, 1, 2, 0, 3]
+    for none in (PLANNER, replace(PLANNER, constraint=LIMIT)):
+        np.testing.assert_array_equal(none._rank(found), score)
+
+
+def test_the_probability_is_the_mean_over_the_members() -> None:
+    """sigmoid((v' - 1) / w) of each member's own prediction, by hand."""
+    model = Ensemble(Gaussian(hidden=(8,)), members=3)
+    params = Params(model=model.init(jax.random.key(2), WORLD.spec))
+    x, u = jnp.array([0.9]), jnp.array([0.3])
+    limit = Limit(WORLD, "speed", 1.0, width=0.3)
+    planner = replace(PLANNER, model=model, constraint=limit)
+    mean, apart, each = planner._predicted(params, x, u)
+    np.testing.assert_allclose(mean, model.step(params.model, x, u), rtol=1e-6)
+    np.testing.assert_allclose(apart, model.disagreement(params.model, x, u), atol=1e-4)
+    by_hand = [
+        model.model.step(
+            {**params.model, "weights": jax.tree.map(lambda w, i=i: w[i], params.model["weights"])},
+            x,
+            u,
+        )
+        for i in range(3)
+    ]
+    assert np.std(by_hand) > 0.01
+    want = np.mean([1 / (1 + np.exp(-(float(v[0]) - 1) / 0.3)) for v in by_hand])
+    assert float(planner._risk(x, u, each)[0]) == pytest.approx(want, rel=1e-4)
