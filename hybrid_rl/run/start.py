@@ -61,6 +61,8 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
         raise UsageError(f"run={source}: holds no checkpoint yet; train it further first")
     if config.get("distributed"):
         raise UsageError("distributed=true: a run that begins with run=DIR has one process")
+    if config.pretrain:
+        raise UsageError(f"pretrain={config.pretrain}: what run={source} has learned is kept")
     numbers = _numbers(config, then, source)
     run = configuration.build(config)
     step, learners, notes = _learners(run, config, then, source)

@@ -169,6 +169,7 @@ REFUSED = [  # overrides, words of the line
     ("resume={source}", "run, resume: give one of them"),
     ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
     ("freeze=policy", "freeze=policy: must be a list"),
+    ("pretrain=3", "pretrain=3: what run="),
     ("policy.hiden=[8]", "policy.hiden: unknown key; did you mean policy.hidden?"),
     ("~policy.hidden", "~policy.hidden: with run=DIR keys cannot be deleted"),
 ]
