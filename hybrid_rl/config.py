@@ -4,7 +4,7 @@ import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.overrides import plain, reached, refuse_new_keys, refuse_unused, search_path
-from hybrid_rl.parts import built, part_class
+from hybrid_rl.parts import built
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -182,27 +182,6 @@ def episodes(config: DictConfig) -> Episode:
     with _usage(config):
         check_kinds(OmegaConf.create({"env": config.env}))
         return _episode(_on_this_machine(config))[0]
-
-
-def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
-    """The episodes of `config` with other values of env.KEY and episode.KEY.
-
-    Raises:
-        UsageError: for a key that they do not have, or a value out of range.
-    """
-    changed = config.copy()
-    OmegaConf.set_readonly(changed, False)
-    for key, value in changes.items():
-        section, _, name = key.partition(".")
-        part = Episode if section == "episode" else part_class(changed.env._target_)
-        hidden = ("env", *PAID) if section == "episode" else ()
-        known = [field.name for field in fields(part) if field.name not in hidden]
-        if name not in known:
-            whose = f"the {section} of task {config.task}"
-            raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
-        with open_dict(changed):
-            changed[section][name] = OmegaConf.from_dotlist([f"value={value}"]).value
-    return episodes(changed)
 
 
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:

@@ -13,13 +13,13 @@ without a learned model keeps its policy, which knows nothing of the reward.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
@@ -27,8 +27,10 @@ from hybrid_rl.cli.arguments import GOAL
 from hybrid_rl.composition import CONF, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import search_path
+from hybrid_rl.parts import part_class
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import chosen as named
+from hybrid_rl.training.episode import Episode
 
 PLANNERS = ("planner", "planner_alone")
 KEYS = (*configuration.PAID, *PLANNERS)  # of conf/retarget.yaml, which a user may change
@@ -50,7 +52,7 @@ def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Traine
     rest = {key: value for key, value in changes.items() if key not in goal}
     if rest:
         assert trained.config is not None
-        trained = replace(trained, episode=configuration.disturbed(trained.config, rest))
+        trained = replace(trained, episode=disturbed(trained.config, rest))
     return trained, {**goal, **rest}
 
 
@@ -115,3 +117,24 @@ def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictCo
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(explain(error)) from error
     return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
+
+
+def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
+    """The episodes of `config` with other values of env.KEY and episode.KEY.
+
+    Raises:
+        UsageError: for a key that they do not have, or a value out of range.
+    """
+    changed = config.copy()
+    OmegaConf.set_readonly(changed, False)
+    for key, value in changes.items():
+        section, _, name = key.partition(".")
+        part = Episode if section == "episode" else part_class(changed.env._target_)
+        hidden = ("env", *configuration.PAID) if section == "episode" else ()
+        known = [field.name for field in fields(part) if field.name not in hidden]
+        if name not in known:
+            whose = f"the {section} of task {config.task}"
+            raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
+        with open_dict(changed):
+            changed[section][name] = OmegaConf.from_dotlist([f"value={value}"]).value
+    return configuration.episodes(changed)

@@ -212,9 +212,12 @@ def _training(
         print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")
 
 
-def main() -> None:
-    """The command."""
-    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+def _named(given: dict[str, Any], changes: dict[str, str]) -> str:
+    """The run, policy or task that is drawn.
+
+    Raises:
+        UsageError: unless it is one, with arguments that it can have.
+    """
     named = [given[name] for name in ("run", "policy", "task") if given[name]]
     if len(named) != 1:
         raise UsageError(
@@ -227,13 +230,20 @@ def main() -> None:
         raise UsageError("reward, planner: a scripted expert has none; give run=DIR or policy=NAME")
     if given["task"] and given["mode"]:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
+    return named[0]
+
+
+def main() -> None:
+    """The command."""
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    named = _named(given, changes)
     from hybrid_rl.analysis.drawing import SUFFIXES, draw_beside
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.envs.mujoco.scenery import scene_of
     from hybrid_rl.goals import chosen
 
-    default = f"{given['run']}/video.mp4" if given["run"] else f"{Path(named[0]).stem}.mp4"
+    default = f"{named}/video.mp4" if given["run"] else f"{Path(named).stem}.mp4"
     out = Path(given["out"] or default)
     if given["out"] or out.parent.is_dir():  # a run that is not there is named below
         output("out", out, SUFFIXES)

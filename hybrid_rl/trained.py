@@ -11,14 +11,10 @@ the policy as in config.yaml of the run, and with the command, the seed and the 
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import jax
-import jax.numpy as jnp
-import numpy as np
-from jax import Array
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
@@ -35,10 +31,11 @@ from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.reading import from_json
+from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.types import Params, Spec
+from hybrid_rl.types import Params
 
 PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
 ACTING = ("episode", "policy", "model", "reward_model")  # of `about`, which a planner needs
@@ -92,58 +89,6 @@ class Trained:
             )
         params: Any = jax.tree.map(lambda leaf: leaf[self.seeds.index(seed)], self.params)
         return self.controllers[mode], params
-
-
-class TrainedPolicy:
-    """action = policy(obs): a trained controller without exploration, for one world or N.
-
-    obs is [o], or [N, o] of N worlds side by side; the action is [m] or [N, m], in [-1, 1]. A
-    planner keeps its plan from one call to the next, so call `reset` when an episode begins.
-    """
-
-    def __init__(self, spec: Spec, controller: Controller, params: Params, key: int = 0) -> None:
-        self.spec, self._key = spec, jax.random.key(key)
-        self._begin = partial(controller.init, spec)
-        self._state: Any = None  # [N, ...]; None: an episode begins
-        self._worlds = 0  # N
-
-        def act(state: Any, obs: Array, key: Array) -> tuple[Array, Any, Array]:
-            key, *keys = jax.random.split(key, 1 + len(obs))
-            each = jax.vmap(controller.act, (None, 0, 0, 0))
-            u, state, _ = each(params, state, obs, jnp.stack(keys))
-            return u, state, key
-
-        self._act = jax.jit(act)
-
-    def reset(self, where: np.ndarray | None = None) -> None:
-        """Begin an episode; where: [N] bool, only in these worlds."""
-        if where is None:
-            self._state = None
-        elif self._state is not None:
-            first = self._begin()
-            each = jax.vmap(lambda new, now: jax.tree.map(partial(jnp.where, new), first, now))
-            self._state = each(jnp.asarray(where), self._state)
-
-    def __call__(self, obs: np.ndarray) -> np.ndarray:
-        """The action [m] at obs [o], or actions [N, m] at [N, o].
-
-        Raises:
-            ValueError: for observations of another size, or another N than since the reset.
-        """
-        obs = np.asarray(obs, np.float32)
-        o = self.spec.obs
-        if obs.ndim not in (1, 2) or obs.shape[-1] != o:
-            raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
-        rows = np.atleast_2d(obs)
-        if self._state is None:
-            self._worlds = len(rows)
-            self._state = jax.tree.map(
-                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *leaf.shape)), self._begin()
-            )
-        if len(rows) != self._worlds:
-            raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
-        u, self._state, self._key = self._act(self._state, rows, self._key)
-        return np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
 
 
 def load(folder: Path | str, key: str = "run") -> Trained:

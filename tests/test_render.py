@@ -67,7 +67,7 @@ def trained(monkeypatch):
         step=7000,
     )
     run.learner = partial(Trained.learner, run)
-    monkeypatch.setattr("hybrid_rl.trained.chosen", lambda given: run)
+    monkeypatch.setattr("hybrid_rl.goals.named", lambda given: run)
     return run
 
 
@@ -175,7 +175,8 @@ def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsy
     [
         ([], "run, policy, task: give one of them"),
         (["run=x", "task=sawyer_push"], "run, policy, task: give one of them"),
-        (["run=x", "env.reward=thesis"], "env, episode, expert: a run has its own"),
+        (["run=x", "expert.gain=1"], "expert: is of a task; give it with task=T"),
+        (["task=panda_stack", "reward=speed"], "reward, planner: a scripted expert has none"),
         (["task=sawyer_push", "mode=full"], "mode: a scripted expert has none"),
         (["task=pendulum"], "task=pendulum: has no scripted expert"),
         (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4, .gif, .png"),

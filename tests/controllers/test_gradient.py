@@ -18,9 +18,10 @@ from hybrid_rl.types import Params
 class Doubted(Cart):
     """The mass, whose members disagree by |u| in every entry."""
 
-    def step_and_disagreement(self, params: Any, x: Array, u: Array) -> tuple[Array, Array]:
-        """The next state, and the disagreement."""
-        return self.step(params, x, u), jnp.full(2, jnp.abs(u).sum())
+    def predictions(self, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
+        """The next state, the disagreement, and the only member's prediction."""
+        after = self.step(params, x, u)
+        return after, jnp.full(2, jnp.abs(u).sum()), after[None]
 
 
 @dataclass(frozen=True)
