@@ -61,8 +61,11 @@ def training(page: str) -> list[tuple[str, ...]]:
 
 def first_run(job: tuple[str, ...]) -> tuple[str, ...]:
     """The job with the task and the method of a folder runs/TASK/ALGO/TIME in place of run=."""
-    words = (re.sub(r"^run=runs/(.+)/(.+)/.+$", r"task=\1 algo=\2", word) for word in job)
-    return tuple(word for each in words for word in each.split(" "))
+    found: list[str] = []
+    for word in job:
+        run = re.fullmatch(r"run=runs/(.+)/(.+)/.+", word)
+        found += [f"task={run[1]}", f"algo={run[2]}"] if run else [word]
+    return tuple(found)
 
 
 def text(page: str) -> str:
@@ -108,7 +111,8 @@ def check_arguments(page: str) -> None:
         for word in words:
             key = word.partition("=")[0]
             section, dot, _ = key.partition(".")
-            in_group = dot and section in getattr(module(name), "GROUPS", {})
+            groups = (getattr(module(name), key, {}) for key in ("GROUPS", "CHANGES"))
+            in_group = dot and any(section in each for each in groups)
             assert in_group or key in known, f"{name}: {word}"
 
 
