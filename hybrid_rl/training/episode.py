@@ -56,6 +56,9 @@ class Episode:
             if type(value) is not int or value < least:
                 line = f"must be a whole number, {least} or more"
                 raise ValueError(f"episode.{name}={value}: {line}")
+        if self.reward is not None and not hasattr(self.reward, "reward_of"):
+            kind = type(self.reward).__name__
+            raise ValueError(f"reward={kind}: has no reward_of; a model of it is reward_model")
         if self.action_noise < 0:
             raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
         if not any(self._std):
