@@ -103,7 +103,7 @@ def rows(trained: Trained) -> dict[str, Any]:
     )
     own = PolicyProposal(both.policy)
     scaled = PolicyProposal(both.policy, both.strengths, both.quiet)
-    found = {
+    return {
         "still": ConstantController(),
         "policy": policy,
         **{f"policy times {factor}": Times(policy, factor) for factor in FACTORS},
@@ -113,7 +113,6 @@ def rows(trained: Trained) -> dict[str, Any]:
         "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
         "both: gradient": both,
     }
-    return found
 
 
 def varied(both: Any, name: str) -> Any:

@@ -44,9 +44,10 @@ def test_another_planner_keeps_the_reward_and_its_critic(trained: Path) -> None:
     """planner=NAME alone is for the reward of the training."""
     was, now = load(trained), retargeted(load(trained), ["planner=gradient", *SMALL])
     assert now.episode == was.episode
-    planned = was.controllers["full"]
+    planned, planner = was.controllers["full"], now.controllers["full"]
     assert isinstance(planned, SamplingController)
-    assert now.controllers["full"].objective == planned.objective  # type: ignore[attr-defined]
+    assert isinstance(planner, GradientController)
+    assert planner.objective == planned.objective
 
 
 def test_a_file_with_models_plans_as_the_run_does(trained: Path, tmp_path, capsys) -> None:

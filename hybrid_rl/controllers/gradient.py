@@ -72,7 +72,7 @@ class GradientController:
 
     model: Model
     objective: Objective
-    policy: Policy | None = None  # None: no strengths, no tail
+    policy: Policy | None = None  # None: no strengths; a tail is then one of zeros
     strengths: tuple[NotNegative, ...] = (1.0, 0.8, 0.6, 0.4, 0.2)  # the candidates have in turn
     horizon: Count = 10  # T [decisions]
     tail: Natural = 20  # [decisions] of the policy after them

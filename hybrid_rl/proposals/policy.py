@@ -1,4 +1,4 @@
-"""v = s clip(pi(x)): closed-loop candidates, each drawn at its imagined state (thesis Algorithm 3).
+"""v ~ s pi(x): closed-loop candidates, each drawn at its imagined state (thesis Algorithm 3).
 
 With several `strengths` s the candidates are divided among them: a robot that runs slower than its
 policy is closer to a weaker policy than to noise. `quiet` candidates have no noise.

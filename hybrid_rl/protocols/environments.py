@@ -32,7 +32,8 @@ class BalancedEnv(Env, Protocol):
 class Goal(Protocol):
     """A reward that is a known function of observations and action.
 
-    One with jumps may have `smoothed`, with the same arguments, for planners that take gradients.
+    One with jumps may have `smoothed`, with the same arguments, which planners maximise instead:
+    some take gradients.
     """
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:

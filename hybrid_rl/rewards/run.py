@@ -1,7 +1,7 @@
 """r = b + d v - c |u|^2 - p [|pitch| > level]: run forward, in a way that is asked for.
 
-v is the speed [m/s] of the robot, d its direction. Planners that take gradients see a sigmoid in
-place of the indicator. b is that of core.alive.
+v is the speed [m/s] of the robot, d its direction. Planners see a sigmoid instead of the
+indicator, as some take gradients. b is that of core.alive.
 """
 
 from collections.abc import Callable

@@ -116,3 +116,29 @@ def test_candidates_without_a_density_have_no_density_in_the_weight() -> None:
     SamplingController(Cart(), objective, mixture)
     with pytest.raises(ValueError, match="log_density=true: needs candidates with a density"):
         SamplingController(Cart(), objective, mixture, log_density=True)
+
+
+def test_the_best_candidate_acts() -> None:
+    """Exactly one of the candidates, also in evaluations; the mean lies between them."""
+    reward = RewardNetwork(hidden=(8,))
+    params = Params(reward=reward.init(jax.random.key(0), SPEC))
+    objective = PredictedReturn(reward)
+
+    def act(execute: str) -> tuple[float, Any]:
+        controller: Any = SamplingController(
+            Cart(), objective, Grid(), horizon=T, samples=K, temperature=10.0, execute=execute
+        ).greedy()
+        u, after, _ = controller.act(params, controller.init(SPEC), X, jax.random.key(1))
+        return float(u[0]), after.plan
+
+    best, plan = act("best")
+    returns = []
+    for k in range(K):
+        x = [X]
+        for _ in range(T):
+            x.append(Cart().step((), x[-1], jnp.full(1, k / K)))
+        path = Path(jnp.stack(x), jnp.full((T, 1), k / K))
+        returns.append(float(objective.reward_to_go(params, path)[0]))
+    assert best == pytest.approx(np.argmax(returns) / K)
+    np.testing.assert_allclose(plan[:-1, 0], best, rtol=1e-6)
+    assert abs(act("mean")[0] - best) > 0.1

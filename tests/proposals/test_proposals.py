@@ -49,6 +49,19 @@ def test_a_mixture_has_candidates_of_both_proposals(share, count) -> None:
         np.testing.assert_array_equal(got[count:], second[count:])
 
 
+def test_strengths_divide_the_candidates() -> None:
+    """At the first decision, where all see the same state: quiet ones act by the scaled mean."""
+    proposal = PolicyProposal(POLICY, (1.0, 0.5), quiet=0.5)
+    first = imagined(proposal).path.u[:, 0]
+    loud = imagined(PolicyProposal(POLICY)).path.u[:, 0]
+    mean = POLICY.mean(POLICY.init(jax.random.key(0), SPEC), jnp.ones(SPEC.obs))
+    np.testing.assert_allclose(first[:2], jnp.stack([mean, mean]), rtol=1e-5)
+    np.testing.assert_allclose(first[2:4], loud[2:4], rtol=1e-5)
+    np.testing.assert_allclose(first[4:6], 0.5 * jnp.stack([mean, mean]), rtol=1e-5)
+    np.testing.assert_allclose(first[6:], 0.5 * loud[6:], rtol=1e-5)
+    assert np.unique(np.asarray(first)).size == 6
+
+
 @pytest.mark.parametrize("correlation", [0.0, 0.8])
 def test_noise_is_stationary_from_the_first_decision(correlation) -> None:
     """It has the same standard deviation and the same correlations at each decision."""

@@ -18,6 +18,7 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
 CHEETAH = HalfCheetah("native")
+NOTHING: Any = object()
 ACTION = jnp.linspace(-0.9, 0.9, 6)
 STATE = jax.jit(CHEETAH.reset)(jax.random.key(0))
 AFTER = jax.jit(CHEETAH.step)(STATE, ACTION)
@@ -91,7 +92,8 @@ def test_an_episode_pays_the_goal() -> None:
         (lambda: Aim(CHEETAH, "speed", (1.0, 2.0)), "target=.*: speed needs 1 number"),
         (lambda: Run(SawyerPush("native")), "world=SawyerPush: has no speed, only block, reach"),
         (lambda: Push(CHEETAH), "world=HalfCheetah: has no block, only height, pitch, speed"),
-        (lambda: Aim(object()), "needs an environment with `quantities`"),  # type: ignore[arg-type]
+        (lambda: Aim(NOTHING), "needs an environment with `quantities`"),
+        (lambda: Episode(CHEETAH, reward=NOTHING), "reward=object: has no reward_of"),
     ],
 )
 def test_what_the_environment_lacks_is_named(make: Any, words: str) -> None:
