@@ -84,6 +84,7 @@ class GradientController:
     iterations: Natural = 5
     step: Positive = 0.05  # [u] root mean square of an iteration's change
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
+    doubt: NotNegative | None = None  # std over the members by which a plan must beat the policy
     constraint: Constraint | None = None  # beside its price in a reward that was learned with it
 
     def init(self, spec: Spec) -> GradientState:
@@ -109,6 +110,14 @@ class GradientController:
         found = score(each)
         winner = jnp.argmax(self._rank(found))
         plan, chosen = jax.tree.map(lambda leaf: leaf[winner], (each, found))
+        if self.policy is not None and self.doubt is not None:
+            own = Candidate(jnp.ones(()), jnp.zeros_like(plan.v))
+            better = self._gain(params, value, x, plan, own) > 0
+            plan, chosen = jax.tree.map(
+                lambda a, b: jnp.where(better, a, b),
+                (plan, chosen),
+                (own, self._scored(params, value, x, own)),
+            )
         gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
         risk = {} if self.constraint is None else {"planner/risk": chosen.risk}
         metrics = {
@@ -143,8 +152,21 @@ class GradientController:
             return Candidate(jnp.zeros(K), state.plan.v[None] + self.noise * e)
         return Candidate(each[number % count], self.noise * e * loud[:, None, None])
 
-    def _scored(self, params: Params, value: Return, x: Array, one: Candidate) -> Scored:
-        """The candidate from x [n]."""
+    def _gain(self, params: Params, value: Return, x: Array, one: Candidate, own: Candidate) -> Array:
+        """A lower bound [] of J of `one` less J of `own`, from x [n], each member rolled out apart."""
+
+        def gain(member: Array) -> Array:
+            a, b = (self._scored(params, value, x, each, member).value for each in (one, own))
+            return a - b
+
+        members = len(self._predicted(params, x, one.v[0])[2])
+        gains = jax.vmap(gain)(jnp.arange(members))
+        return gains.mean() - self.doubt * gains.std()
+
+    def _scored(
+        self, params: Params, value: Return, x: Array, one: Candidate, member: Array | None = None
+    ) -> Scored:
+        """The candidate from x [n], by the mean of the ensemble or by one member."""
         v = jnp.concatenate([one.v, jnp.zeros((self.tail, one.v.shape[1]))])
 
         def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, ...]]:
@@ -153,6 +175,7 @@ class GradientController:
                 u = one.s * self.policy.mean(params.policy, x) + v
             u = jnp.clip(u, -1, 1)
             after, apart, each = self._predicted(params, x, u)
+            after = after if member is None else each[member]
             return after, (after, u, jnp.mean(apart), *self._risk(x, u, each))
 
         _, ahead = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))
