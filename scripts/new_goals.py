@@ -7,9 +7,9 @@ states and nothing is trained. `still` acts with zeros; `times f` is the policy'
 """
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -26,9 +26,9 @@ from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
-from hybrid_rl.run.provenance import device
 from hybrid_rl.trained import Trained, load
-from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
+from hybrid_rl.training.rollout import evaluate_episodes
+from scripts.seeds import Row, every, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
 ARGUMENTS = (
@@ -122,18 +122,23 @@ def varied(both: Any, name: str) -> Any:
     return replace(both, **{k: tuple(v) if isinstance(v, list) else v for k, v in values.items()})
 
 
-def measured(trained: Trained, goals: list[Any], controller: Any, episodes: int) -> np.ndarray:
-    """Returns [G, S, episodes] of `controller`, made for goals[0], on each of the goals."""
-    keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
+def measured(
+    trained: Trained, goals: dict[str, Any], controller: Any, episodes: int
+) -> dict[str, np.ndarray]:
+    """Mean returns [S] of `controller`, made for the first of the goals, on each of them."""
+    known = tuple(goals.values())
 
-    def one(index: Array, params: Any, keys: Array) -> Array:
-        goal = OneOf(tuple(goals), index)
-        episode = replace(trained.episode, reward=goal)
-        acts = swapped(controller, goals[0], goal)
-        return evaluate_episodes(episode, acts, params, keys)["return"]
+    def one(params: Any, keys: Array) -> Array:
+        def on(index: Array) -> Array:
+            goal = OneOf(known, index)
+            episode = replace(trained.episode, reward=goal)
+            acts = swapped(controller, known[0], goal)
+            return evaluate_episodes(episode, acts, params, keys)["return"]
 
-    each = jax.vmap(jax.vmap(one, (None, 0, 0)), (0, None, None))
-    return np.asarray(jax.jit(each)(jnp.arange(len(goals)), trained.params, keys))
+        return jax.vmap(on)(jnp.arange(len(known)))
+
+    got = every(trained, episodes, one).mean(-1)
+    return dict(zip(goals, got.T, strict=True))
 
 
 def main() -> None:
@@ -146,16 +151,16 @@ def main() -> None:
     goals = [each.episode.reward for each in aimed]
     if given["env"]:
         first, goals = in_another(first, goals, given["env"])
-    table = {"machine": device(), "run": run.task, "seeds": list(run.seeds), "step": run.step}
-    found: dict[str, Any] = {**table, "steps": given["steps"], "goals": named, "rows": {}}
     known = rows(first)
-    for name in given["rows"].split(";") if given["rows"] else known:
-        controller = known.get(name) or varied(first.controllers["full"], name)
-        got = measured(first, goals, controller, given["episodes"])
-        found["rows"][name] = dict(zip(named, got.mean(-1).round(2).tolist(), strict=True))
-        shown = ", ".join(f"{goal} {np.mean(r):.1f}" for goal, r in found["rows"][name].items())
-        print(f"{name}: {shown}", flush=True)
-        Path(given["out"]).write_text(json.dumps(found, indent=1) + "\n")
+    wanted = given["rows"].split(";") if given["rows"] else known
+
+    def each() -> Iterator[Row]:
+        for name in wanted:
+            controller = known.get(name) or varied(first.controllers["full"], name)
+            by_name = dict(zip(named, goals, strict=True))
+            yield name, measured(first, by_name, controller, given["episodes"])
+
+    write(given["out"], first, {"steps": given["steps"], "goals": named}, each())
 
 
 def overrides(name: str) -> list[str]:

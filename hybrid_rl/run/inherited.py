@@ -162,18 +162,20 @@ def _take(
         for name, value in theirs.items():
             origin = source(raw, f"{at}{name}")
             if any(origin == key or origin.startswith(f"{key}.") for key in keys):
-                mine[name] = _node(select(raw, origin), value, values)
+                mine[name] = _node(select(raw, origin), value, values, raw)
             elif isinstance(value, dict) and isinstance(mine.get(name), dict):
                 visit(mine[name], value, f"{at}{name}.")
 
     visit(values, now, "")
 
 
-def _node(node: Any, value: Any, values: dict[str, Any]) -> Any:
+def _node(node: Any, value: Any, values: dict[str, Any], raw: dict[str, Any]) -> Any:
     """A part as composed, `value`, in which references to what `values` has stay."""
+    if link := REFERENCE.fullmatch(str(node)):
+        known = select(values, link[1]) is not LACKING
+        return node if known else _node(select(raw, link[1]), value, values, raw)
     if isinstance(node, dict) and isinstance(value, dict):
-        return {key: _node(each, value[key], values) for key, each in node.items()}
+        return {key: _node(each, value[key], values, raw) for key, each in node.items()}
     if isinstance(node, list) and isinstance(value, list):
-        return [_node(each, v, values) for each, v in zip(node, value, strict=True)]
-    link = REFERENCE.fullmatch(str(node))
-    return node if link and select(values, link[1]) is not LACKING else value
+        return [_node(each, v, values, raw) for each, v in zip(node, value, strict=True)]
+    return value

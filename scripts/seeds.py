@@ -1,0 +1,34 @@
+"""Episodes of all learners of a run in one compiled program, and files of what they gave."""
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.run.provenance import device
+from hybrid_rl.trained import Trained
+from hybrid_rl.training.rollout import evaluation_keys
+
+Row = tuple[str, Mapping[str, Any]]  # who acts, and what it gave: name -> [S]
+
+
+def every(trained: Trained, episodes: int, one: Callable[[Any, Array], Any]) -> Any:
+    """What `one` gives for the parameters and the keys [episodes] of each learner: [S, ...]."""
+    keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
+    return jax.tree.map(np.asarray, jax.jit(jax.vmap(one))(trained.params, keys))
+
+
+def write(out: str, trained: Trained, about: Mapping[str, Any], rows: Iterable[Row]) -> None:
+    """Write each row to `out` and print its means, as soon as it is measured."""
+    table = {"machine": device(), "run": trained.task, "seeds": list(trained.seeds)}
+    found: dict[str, Any] = {**table, "step": trained.step, **about, "rows": {}}
+    for name, row in rows:
+        found["rows"][name] = {key: np.round(each, 2).tolist() for key, each in row.items()}
+        shown = ", ".join(f"{key} {np.mean(each):.1f}" for key, each in row.items())
+        print(f"{name}: {shown}", flush=True)
+        Path(out).write_text(json.dumps(found, indent=1) + "\n")
