@@ -32,10 +32,10 @@ from time import perf_counter
 from typing import Any
 
 from hybrid_rl import config
-from hybrid_rl.checks import PRECISIONS
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, output, read, several, whole
 from hybrid_rl.errors import UsageError
+from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run.jax_settings import CACHE, prepare
 
 TASKS = "halfcheetah,hopper,cartpole"
@@ -216,7 +216,7 @@ ARGUMENTS = (
     Argument("worlds", "", "numbers of them, of part physics"),
     Argument("learners", "", f"numbers of them, of parts {', '.join(LEARNERS)}"),
     Argument("plans", "", "KxT, such as 20x10,64x20, of part plan"),
-    Argument("matmul_precision", "highest", "of float32 products", one_of(*PRECISIONS)),
+    Argument("precision", "auto", "of networks", one_of(*PRECISIONS)),
     Argument("rounds", 5, "of which medians are taken", whole()),
     Argument("out", "benchmark.json", "the numbers; a picture in the same folder"),
 )
@@ -272,7 +272,7 @@ def main() -> None:
     out, rounds = output("out", settings["out"], (".json",), ".png"), settings["rounds"]
     _check(settings)
     threads = ["physics=mjx"] if "mjx" in settings["physics"] else []
-    prepare(config.load([*threads, f"matmul_precision={settings['matmul_precision']}"]))
+    prepare(config.load([*threads, f"precision={settings['precision']}"]))
     sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"]
     settings |= {key: value for key, value in sizes.items() if not settings[key]}
     machine = provenance.device()

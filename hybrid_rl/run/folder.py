@@ -25,6 +25,7 @@ from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, UsageError, WorldError
+from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.lock import locked
@@ -291,4 +292,6 @@ def parsed(folder: Path, key: str = "runs") -> DictConfig:
         raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
+    if "matmul_precision" in config:  # of an earlier development version
+        config.precision = PRECISION.get(config.pop("matmul_precision"), "tf32")
     return config
