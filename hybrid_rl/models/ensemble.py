@@ -101,8 +101,8 @@ class Ensemble:
         missing = -len(x) % count
 
         def one(weights: Any, rows: Array) -> Array:
-            given = jnp.split(rows, (n, rows.shape[1] - n), axis=1)
-            return self.model.draw({**params, "weights": weights}, *given, key)
+            x, u, noise = jnp.split(rows, (n, rows.shape[1] - n), axis=1)
+            return self.model.draw({**params, "weights": weights}, x, u, noise, key)
 
         n, rows = x.shape[1], jnp.concatenate([x, u, noise], axis=1)
         rows = jnp.pad(rows, ((0, missing), (0, 0))).reshape(count, -1, rows.shape[1])
