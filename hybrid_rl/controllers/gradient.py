@@ -10,6 +10,11 @@ stops working for the seconds after it. d_t is the mean over the entries of the 
 ensemble's disagreement, in running standard deviations of the change; without this price gradients
 lead to where the model is wrong. Without a policy, s = 0: shooting, from noise.
 
+Without a constraint, the policy itself acts where the members of the ensemble, each rolled out
+apart, do not agree that the best candidate gains on it, that is unless
+
+    mean_i [J_i(s, v) - J_i(1, 0)] > doubt std_i [...]        i: the members of the ensemble
+
 With a constraint of excess c, indicator width w, price and chance,
 
     p_t = mean_i sigmoid(c(x_t, u_t, f_i(x_t, u_t)) / w)        over the ensemble's members
@@ -84,7 +89,7 @@ class GradientController:
     iterations: Natural = 5
     step: Positive = 0.05  # [u] root mean square of an iteration's change
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
-    doubt: NotNegative | None = None  # std over the members by which a plan must beat the policy
+    doubt: NotNegative | None = 1.0  # std over the members by which a plan must beat the policy
     constraint: Constraint | None = None  # beside its price in a reward that was learned with it
 
     def init(self, spec: Spec) -> GradientState:
@@ -110,14 +115,7 @@ class GradientController:
         found = score(each)
         winner = jnp.argmax(self._rank(found))
         plan, chosen = jax.tree.map(lambda leaf: leaf[winner], (each, found))
-        if self.policy is not None and self.doubt is not None:
-            own = Candidate(jnp.ones(()), jnp.zeros_like(plan.v))
-            better = self._gain(params, value, x, plan, own) > 0
-            plan, chosen = jax.tree.map(
-                lambda a, b: jnp.where(better, a, b),
-                (plan, chosen),
-                (own, self._scored(params, value, x, own)),
-            )
+        plan, chosen = self._surely(params, value, x, plan, chosen)
         gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
         risk = {} if self.constraint is None else {"planner/risk": chosen.risk}
         metrics = {
@@ -152,16 +150,23 @@ class GradientController:
             return Candidate(jnp.zeros(K), state.plan.v[None] + self.noise * e)
         return Candidate(each[number % count], self.noise * e * loud[:, None, None])
 
-    def _gain(self, params: Params, value: Return, x: Array, one: Candidate, own: Candidate) -> Array:
-        """A lower bound [] of J of `one` less J of `own`, from x [n], each member rolled out apart."""
+    def _surely(
+        self, params: Params, value: Return, x: Array, plan: Candidate, chosen: Scored
+    ) -> tuple[Candidate, Scored]:
+        """The plan at x [n], or the policy's own where the members doubt that it gains."""
+        if self.policy is None or self.doubt is None or self.constraint is not None:
+            return plan, chosen
+        own = Candidate(jnp.ones(()), jnp.zeros_like(plan.v))
 
         def gain(member: Array) -> Array:
-            a, b = (self._scored(params, value, x, each, member).value for each in (one, own))
+            a, b = (self._scored(params, value, x, one, member).value for one in (plan, own))
             return a - b
 
-        members = len(self._predicted(params, x, one.v[0])[2])
+        members = len(self._predicted(params, x, chosen.u)[2])
         gains = jax.vmap(gain)(jnp.arange(members))
-        return gains.mean() - self.doubt * gains.std()
+        surely = gains.mean() > self.doubt * gains.std()
+        others = (own, self._scored(params, value, x, own))
+        return jax.tree.map(lambda a, b: jnp.where(surely, a, b), (plan, chosen), others)
 
     def _scored(
         self, params: Params, value: Return, x: Array, one: Candidate, member: Array | None = None
