@@ -86,7 +86,7 @@ class Times:
 
 @dataclass(frozen=True)
 class Watched:
-    """A controller whose state has the sum of one of its metrics."""
+    """A controller whose state has the sum of one of its metrics until the end of the episode."""
 
     controller: Any
     metric: str
@@ -98,7 +98,8 @@ class Watched:
     def act(self, params: Any, state: Any, obs: Array, key: Array) -> tuple:
         """The controller's."""
         u, inner, metrics = self.controller.act(params, state[0], obs, key)
-        return u, (inner, state[1] + metrics[self.metric]), metrics
+        now = jnp.where(params.world.done, 0.0, metrics[self.metric])
+        return u, (inner, state[1] + now), metrics
 
 
 def swapped(part: Any, old: Any, new: Any) -> Any:

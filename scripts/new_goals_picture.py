@@ -22,23 +22,33 @@ ARGUMENTS = (
 )
 SHOWN = {  # row -> its name and colour
     "policy": ("policy", "#D55E00"),
-    "planner": ("planner", "#56B4E9"),
-    "both": ("both", "#000000"),
+    "planner: gradient": ("planner", "#56B4E9"),
+    "both: gradient": ("both", "#000000"),
 }
-TITLES = {"halfcheetah": "half-cheetah", "walker2d": "walker", "ant": "ant"}
-UNITS = {
-    "speed": "{:g} m/s",
-    "sideways": "sideways at {:g} m/s",
-    "turning": "turn at {:g} rad/s",
+TITLES = {
+    "halfcheetah": "half-cheetah",
+    "ant": "ant",
+    "quadcopter": "quadcopter",
+    "walker2d": "walker",
+    "sawyer_push": "Sawyer",
+}
+NAMES = {  # what a goal asks for, if the end of its name is no speed
     "level": "run, torso level",
     "thrifty": "run, effort x 10",
+    "aim velocity [0,1]": "sideways at 1 m/s",
+    "aim turning 1": "turn at 1 rad/s",
+    "aim motion [0,0,0,0,0,1]": "rise at 1 m/s",
+    "aim motion [0,0,0,1,0,0]": "forwards at 1 m/s",
+    "aim motion [0,0,2,0,0,0]": "spin at 2 rad/s",
+    "push [0.1,0]": "block 10 cm ahead",
+    "push [0,0.1]": "block 10 cm to the left",
+    "push [-0.1,0]": "block 10 cm back",
 }
 
 
 def title(goal: str) -> str:
     """What a goal asks for."""
-    name, _, target = goal.partition(" ")
-    return UNITS[name].format(float(target)) if target else UNITS[name]
+    return NAMES.get(goal) or f"{goal.removeprefix('speed ')} m/s"
 
 
 def draw(robots: dict[str, Any]) -> Figure:
@@ -78,9 +88,7 @@ def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
     found = json.loads(Path(given["file"]).read_text())
-    robots = {name: {**found["first"][name], **rows} for name, rows in found["second"].items()}
-    for rows in robots.values():
-        rows.setdefault("both", rows["both, no tail"])
+    robots = {name: found[name]["rows"] for name in TITLES if name in found}
     draw(robots).savefig(given["out"], dpi=150)
 
 
