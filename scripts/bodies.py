@@ -17,12 +17,14 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli.arguments import Argument, flag, read, whole
 from hybrid_rl.evaluate import evaluate
+from hybrid_rl.goals import disturbed
 from hybrid_rl.run import folder
 from hybrid_rl.trained import Trained, load
 from scripts.seeds import Row, write
@@ -79,7 +81,11 @@ def evaluations(run: Path) -> dict[str, dict[str, list[float]]]:
 
 def rows(given: dict[str, Any], trained: Trained) -> Iterator[Row]:
     """Train what is not there, and give what each way gave."""
-    yield "before", {"policy": evaluate(trained, "policy", given["episodes"])["return"].mean(1)}
+    keys = (text.partition("=") for text in shlex.split(given["more"]))
+    world = {key: value for key, _, value in keys if key.startswith(("env.", "episode."))}
+    assert trained.config is not None
+    before = replace(trained, episode=disturbed(trained.config, world))
+    yield "before", {"policy": evaluate(before, "policy", given["episodes"])["return"].mean(1)}
     for way in given["ways"].split(";"):
         run = Path(given["folder"]) / way
         if not (run / "summary.json").exists():

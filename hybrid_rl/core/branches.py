@@ -7,6 +7,7 @@ the present policy leads to.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -51,6 +52,18 @@ def begin(size: int, memory: int, n: int, m: int, steps: int) -> Branches:
         jnp.zeros((memory // size, size, 2 * n + m + 2)),
         jnp.zeros((), jnp.int32),
     )
+
+
+def forgotten(tree: Any) -> Any:
+    """`tree` with branches that all start anew wherever it has some, without old transitions."""
+
+    def anew(node: Any) -> Any:
+        if not isinstance(node, Branches):
+            return node
+        ended = jnp.full_like(node.age, jnp.iinfo(node.age.dtype).max)
+        return node.replace(age=ended, count=jnp.zeros_like(node.count))
+
+    return jax.tree.map(anew, tree, is_leaf=lambda node: isinstance(node, Branches))
 
 
 def extended(

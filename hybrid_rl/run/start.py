@@ -1,7 +1,8 @@
 """What a new run begins with, from the newest checkpoint of another one: run=DIR.
 
 The learners begin with all that they know there: parameters, states of optimisers, statistics. The
-memory of decisions is kept only as far as it is true in the new run.
+memory of decisions is kept only as far as it is true in the new run, and imagined decisions only
+where nothing has changed.
 """
 
 from dataclasses import dataclass, replace
@@ -14,6 +15,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
+from hybrid_rl.core.branches import forgotten
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.protocols import Goal
 from hybrid_rl.run import checkpoint, folder
@@ -78,6 +80,8 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
     if memory is not None:
         run = configuration.build(config)  # with room for what it remembers
         memory = _rewritten(run.agent, memory, why == RELABELLED)
+    if why:  # they imagined other rewards, or another world
+        learners = forgotten(learners)
     learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (learners, memory))
     known = [name for learner in run.agent.learners.values() for name in learner.owns]
     line = f"begins with {_listed(known)} of {source} at step {step:,}; {words}"
