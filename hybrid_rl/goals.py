@@ -97,7 +97,8 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     own = goal.reward is None and "objective" in config
     if own:  # the planner maximises that of the training
         goal.planner.objective = "${objective}"
-        goal.planner_alone.objective = "${model_objective}"
+        alone = "model_objective" if "model_objective" in config else "objective"
+        goal.planner_alone.objective = f"${{{alone}}}"
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
     if own and _priced(config, goal.constraint):

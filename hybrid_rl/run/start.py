@@ -45,7 +45,10 @@ class Start:
 
 def built(config: DictConfig) -> tuple[Run, Start | None]:
     """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
-    return (configuration.build(config), None) if config.get("run") is None else begun(config)
+    if config.get("run") is None:
+        return configuration.build(config), None
+    with folder.blamed(Path(str(config.run)), lacking=True):
+        return begun(config)
 
 
 def begun(config: DictConfig) -> tuple[Run, Start]:
