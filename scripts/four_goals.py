@@ -26,7 +26,7 @@ GOALS = {
     "goal: 5 m/s": ["reward=speed", "reward.target=5"],
     "goal: fast, torso level": ["reward=level"],
 }
-FPS, COLOURS = 10, 64
+FPS, SHADES = 10, 64
 ARGUMENTS = (
     Argument("policy", "halfcheetah", "a policy with its models, NAME of policies/ or a file"),
     Argument("steps", 100, "decisions of an episode", whole()),
@@ -61,7 +61,7 @@ def main() -> None:
     tiled = [
         np.vstack([np.hstack(four[:2]), np.hstack(four[2:])]) for four in zip(*each, strict=True)
     ]
-    palette = Image.fromarray(np.vstack(tiled[:: len(tiled) // 4])).quantize(COLOURS)
+    palette = Image.fromarray(np.vstack(tiled[:: len(tiled) // 4])).quantize(SHADES)
     first, *rest = (
         Image.fromarray(one).quantize(palette=palette, dither=Image.Dither.NONE) for one in tiled
     )

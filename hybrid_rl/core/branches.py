@@ -7,7 +7,6 @@ the present policy leads to.
 """
 
 from collections.abc import Callable
-from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -31,6 +30,11 @@ class Branches:
     rows: Array  # [memory / B, B, width] the last transitions
     count: Array  # [] int32 updates so far
 
+    def restarted(self) -> "Branches":
+        """All start again at the next update, without the old transitions."""
+        ended = jnp.full_like(self.age, jnp.iinfo(self.age.dtype).max)
+        return self.replace(age=ended, count=jnp.zeros_like(self.count))
+
 
 def transitions(params: Params, policy: Policy, model: Trainable, reward: Reward) -> Transitions:
     """u ~ pi(x), x' ~ f(x, u) and r, end = reward(x, u, x'); `terminated` is a probability."""
@@ -52,18 +56,6 @@ def begin(size: int, memory: int, n: int, m: int, steps: int) -> Branches:
         jnp.zeros((memory // size, size, 2 * n + m + 2)),
         jnp.zeros((), jnp.int32),
     )
-
-
-def forgotten(tree: Any) -> Any:
-    """`tree` with branches that all start anew wherever it has some, without old transitions."""
-
-    def anew(node: Any) -> Any:
-        if not isinstance(node, Branches):
-            return node
-        ended = jnp.full_like(node.age, jnp.iinfo(node.age.dtype).max)
-        return node.replace(age=ended, count=jnp.zeros_like(node.count))
-
-    return jax.tree.map(anew, tree, is_leaf=lambda node: isinstance(node, Branches))
 
 
 def extended(

@@ -15,13 +15,13 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
-from hybrid_rl.core.branches import forgotten
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.protocols import Goal
 from hybrid_rl.run import checkpoint, folder
 from hybrid_rl.run.records import changes, flat
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.imagined import forgotten
 from hybrid_rl.training.loop import Loop
 
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
