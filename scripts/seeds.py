@@ -28,7 +28,9 @@ def write(out: str, trained: Trained, about: Mapping[str, Any], rows: Iterable[R
     table = {"machine": device(), "run": trained.task, "seeds": list(trained.seeds)}
     found: dict[str, Any] = {**table, "step": trained.step, **about, "rows": {}}
     for name, row in rows:
-        found["rows"][name] = {key: np.round(each, 2).tolist() for key, each in row.items()}
-        shown = ", ".join(f"{key} {np.mean(each):.1f}" for key, each in row.items())
+        found["rows"][name] = {
+            key: np.round(np.asarray(each, float), 2).tolist() for key, each in row.items()
+        }
+        shown = ", ".join(f"{key} {values.mean():.1f}" for key, values in each.items())
         print(f"{name}: {shown}", flush=True)
         Path(out).write_text(json.dumps(found, indent=1) + "\n")
