@@ -1,7 +1,7 @@
 """Around Hydra's composition (config.py): what conf/ offers, errors, a user's task file."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,21 @@ def options(group: str) -> list[str]:
         for conf in (CONF, THESIS)
         for path in (conf / group).rglob("*.yaml")
     )
+
+
+def check_choices(texts: Iterable[str]) -> None:
+    """Refuse an override that gives a group something else than a name.
+
+    Raises:
+        UsageError: with the names that the group has.
+    """
+    for text in texts:
+        key, _, value = text.lstrip("+").partition("=")
+        each = [value] if value.startswith(("[", "{")) else value.split(",")
+        if all(isinstance(overrides.value_of(one), (str, list)) for one in each):
+            continue
+        if known := options(key.partition("@")[0]):
+            raise UsageError(f"{text}: choose one of {', '.join(known)}")
 
 
 def file(group: str, name: str) -> Path:

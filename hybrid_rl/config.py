@@ -17,7 +17,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, whole
-from hybrid_rl.composition import CONF, check_task, explain, tasks_with
+from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.contract import check as check_world
@@ -75,6 +75,7 @@ def composed(overrides: Sequence[str], config_dir: str | Path | None = None) -> 
     if isinstance(overrides, str):
         raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')
     renamed.check(overrides)
+    check_choices(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
     try:
         if GlobalHydra.instance().is_initialized():

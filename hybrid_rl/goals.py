@@ -24,7 +24,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
-from hybrid_rl.composition import CONF, explain
+from hybrid_rl.composition import CONF, check_choices, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import search_path
 from hybrid_rl.parts import part_class
@@ -33,6 +33,7 @@ from hybrid_rl.trained import chosen as named
 from hybrid_rl.training.episode import Episode
 
 PLANNERS = ("planner", "planner_alone")
+SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
 KEYS = (*configuration.PAID, *PLANNERS)  # of conf/retarget.yaml, which a user may change
 
 
@@ -93,11 +94,16 @@ def retargeted(
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     """The parts of `goal` that a run with this configuration can use."""
     goal = goal.copy()
-    if goal.reward is None and "objective" in config:  # the planner maximises that of the training
+    own = goal.reward is None and "objective" in config
+    if own:  # the planner maximises that of the training
         goal.planner.objective = "${objective}"
-        goal.planner_alone.objective = "${model_objective}"
+        alone = "model_objective" if "model_objective" in config else "objective"
+        goal.planner_alone.objective = f"${{{alone}}}"
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
+    if own and _priced(config, goal.constraint):
+        for planner in (goal[name] for name in PLANNERS if "priced" in goal[name]):
+            planner.priced = True
     if {"model", "reward_model"} - set(config):
         return OmegaConf.masked_copy(goal, [*configuration.PAID])
     if "policy" not in config:
@@ -106,9 +112,25 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     return goal
 
 
+def _priced(config: dict[Any, Any], limit: Any) -> bool:
+    """Whether the reward of a run was learned with the price of this limit.
+
+    That price stays, also if `constraint.price` is another one now.
+    """
+    if isinstance(limit, DictConfig):
+        limit = OmegaConf.to_container(limit)  # it refers to a world
+    before, now = (
+        {key: value for key, value in (each or {}).items() if key not in SOFT}
+        for each in (config.get("constraint"), limit)
+    )
+    learned = "reward_model" in config and part_class(config["reward_model"]["_target_"])
+    return bool(before) and before == now and hasattr(learned, "init")
+
+
 def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
+    check_choices(words)
     if config_dir:
         words.append(search_path(config_dir))
     try:

@@ -47,7 +47,7 @@ def given(texts: Iterable[str]) -> dict[str, str]:
 
 def quoted(value: str) -> str:
     """A value as it is typed in an override, in quotes if Hydra would read it as something else."""
-    if re.fullmatch(r"[\w./-]+", value) and _plain(value) == value:
+    if re.fullmatch(r"[\w./-]+", value) and value_of(value) == value:
         return value
     return QuotedString(value, Quote.double).with_quotes()
 
@@ -170,7 +170,7 @@ def as_typed(line: str, texts: Sequence[str]) -> str:
     head = re.match(r"([\w.]+)=(.*?): ", line)
     if head is None:
         return line
-    values = {str(_plain(head[2])), head[2].strip("'\"")}
+    values = {str(value_of(head[2])), head[2].strip("'\"")}
     for each in parse(texts):
         path, text = key(each), each.get_value_element_as_str()
         if each.is_delete() or path.rsplit(".", 1)[-1] != head[1].rsplit(".", 1)[-1]:
@@ -181,7 +181,7 @@ def as_typed(line: str, texts: Sequence[str]) -> str:
     return line
 
 
-def _plain(text: str) -> Any:
+def value_of(text: str) -> Any:
     """A value as Hydra reads it."""
     try:
         return OverridesParser.create().parse_override(f"a={text}").value()

@@ -17,21 +17,25 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from hybrid_rl.analysis.results import RunFolder
-from hybrid_rl.cli.arguments import Argument, flag, read, whole
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument, flag, read, several, whole
 from hybrid_rl.evaluate import evaluate
+from hybrid_rl.goals import disturbed
 from hybrid_rl.run import folder
 from hybrid_rl.trained import Trained, load
 from scripts.seeds import Row, write
 
 MODES = {"eval/return": "full", "eval/policy_return": "policy"}  # of metrics.jsonl
+WAYS = ("refreshed", "both", "scratch")
 ARGUMENTS = (
     Argument("run", "", "folder of a run of hybrid_stochastic", needed="run=DIR"),
     Argument("change", "", "env.KEY=VALUE or episode.KEY=VALUE", needed="change=env.KEY=VALUE"),
-    Argument("ways", "refreshed;both;scratch", "these, with ; between them"),
+    Argument("ways", list(WAYS), "of these, with commas between them", several(*WAYS)),
     Argument("steps", 8000, "decisions after the change", whole()),
     Argument("every", 500, "decisions between evaluations", whole()),
     Argument("episodes", 3, "of an evaluation, for each seed", whole()),
@@ -79,8 +83,12 @@ def evaluations(run: Path) -> dict[str, dict[str, list[float]]]:
 
 def rows(given: dict[str, Any], trained: Trained) -> Iterator[Row]:
     """Train what is not there, and give what each way gave."""
-    yield "before", {"policy": evaluate(trained, "policy", given["episodes"])["return"].mean(1)}
-    for way in given["ways"].split(";"):
+    keys = (text.partition("=") for text in shlex.split(given["more"]))
+    world = {key: value for key, _, value in keys if key.startswith(("env.", "episode."))}
+    assert trained.config is not None
+    before = replace(trained, episode=disturbed(trained.config, world))
+    yield "before", {"policy": evaluate(before, "policy", given["episodes"])["return"].mean(1)}
+    for way in given["ways"]:
         run = Path(given["folder"]) / way
         if not (run / "summary.json").exists():
             line = [sys.executable, "-m", "hybrid_rl.train", *words(given, way)]
@@ -93,7 +101,7 @@ def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
     if given["show"]:
-        for way in given["ways"].split(";"):
+        for way in given["ways"]:
             print(shlex.join(["python", "-m", "hybrid_rl.train", *words(given, way)]))
         return
     trained = load(given["run"])
@@ -101,4 +109,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command.guarded(main)

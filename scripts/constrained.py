@@ -15,6 +15,7 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, read, whole
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.errors import UsageError
@@ -95,4 +96,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    command.guarded(main)

@@ -17,6 +17,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, read, whole
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.controllers.sampling import SamplingController
@@ -216,4 +217,4 @@ def in_another(trained: Trained, goals: list[Any], change: str) -> tuple[Trained
 
 
 if __name__ == "__main__":
-    main()
+    command.guarded(main)

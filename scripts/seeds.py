@@ -34,7 +34,8 @@ def write(out: str, trained: Trained, about: Mapping[str, Any], rows: Iterable[R
     same = {key: before.get(key) for key in table} == table
     found: dict[str, Any] = {**table, "rows": before["rows"] if same else {}}
     for name, row in rows:
-        found["rows"][name] = {key: np.round(each, 2).tolist() for key, each in row.items()}
-        shown = ", ".join(f"{key} {np.mean(each):.1f}" for key, each in row.items())
+        each = {key: np.asarray(values, float) for key, values in row.items()}
+        found["rows"][name] = {key: values.round(2).tolist() for key, values in each.items()}
+        shown = ", ".join(f"{key} {values.mean():.1f}" for key, values in each.items())
         print(f"{name}: {shown}", flush=True)
         Path(out).write_text(json.dumps(found, indent=1) + "\n")

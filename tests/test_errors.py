@@ -21,6 +21,11 @@ USAGE = [  # overrides of train, words of the line
     ("task=cartpool", "task=cartpool: unknown; choose one of ant, cart_double_pendulum"),
     ("algo=sacc", "algo=sacc: unknown; choose one of analytic, bayesopt, bc, "),
     ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
+    ("constraint=3", "constraint=3: choose one of height, limit, pitch"),
+    ("reward=3", "reward=3: choose one of aim, height, level"),
+    ("reward_model=true", "reward_model=true: choose one of known, network, "),
+    ("controller@planner=3", "controller@planner=3: choose one of adjoint, "),
+    ("experiment=null", "experiment=null: choose one of arrangements/first, "),
     ("env=null", "env=null: must be a group of keys"),
     (
         "task=pendulum,cartpole",

@@ -50,6 +50,22 @@ def test_another_planner_keeps_the_reward_and_its_critic(trained: Path) -> None:
     assert planner.objective == planned.objective
 
 
+def test_a_price_that_was_learned_is_not_charged_again(trained: Path) -> None:
+    """The learned reward has it: of the same limit, and for the reward of the training."""
+    run, near = load(trained), ["constraint=position", "constraint.most=0.5"]
+    paid = retargeted(run, [*near, "planner=gradient", *SMALL])
+    assert not paid.controllers["full"].priced
+    for more, priced in (
+        ([], True),
+        (["constraint=position", "constraint.most=0.5", "constraint.chance=0.1"], True),
+        (["constraint=position", "constraint.most=0.4"], False),
+        (AT, False),
+    ):
+        planner = retargeted(paid, [*more, "planner=gradient", *SMALL]).controllers["full"]
+        assert planner.priced == priced
+        assert planner.constraint is not None
+
+
 def test_a_file_with_models_plans_as_the_run_does(trained: Path, tmp_path, capsys) -> None:
     """Up to the 16 bits of its weights; without them it has a policy alone."""
     file, bare = tmp_path / "both.npz", tmp_path / "bare.npz"

@@ -11,10 +11,9 @@ their model train on it; those that plan on the true dynamics do not.
 Source: Gymnasium's documentation, "Env", "AutoresetMode".
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib import import_module
 from typing import Any, NamedTuple, NoReturn
 
 import gymnasium
@@ -24,7 +23,7 @@ from gymnasium.wrappers import FlattenObservation
 from jax import Array
 
 from hybrid_rl.envs.adapters.copies import Copies
-from hybrid_rl.envs.adapters.unstepped import Unstepped
+from hybrid_rl.envs.adapters.unstepped import Made, imported
 from hybrid_rl.errors import UsageError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
@@ -34,16 +33,14 @@ HUGE = 100_000  # entries; an image has as many
 
 
 @dataclass(frozen=True)
-class External(Unstepped):
+class External(Made):
     """An environment that Gymnasium makes, of which one copy is made to read its spaces.
 
     Raises:
         UsageError: if it cannot be made, or its spaces are none that a method can use.
     """
 
-    id: str = ""
-    make: str | Callable[..., gymnasium.Env] = ""  # in place of an id
-    kwargs: Mapping[str, Any] | None = None  # of the environment
+    id: str = ""  # in place of `make`
     dt: float | None = None  # [s] between decisions; None: what the environment says
     processes: bool = False  # one for each copy; pays where a step takes 1 ms or more
     timeout_s: float | None = None  # [s] for a step, with processes; then the run ends
@@ -57,13 +54,13 @@ class External(Unstepped):
             raise UsageError(
                 f"env.timeout_s={self.timeout_s}: must be above 0, with env.processes=true"
             )
-        object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
+        super().__post_init__()
         _ = self.known
 
     @property
     def name(self) -> str:
         """What messages call it."""
-        return str(getattr(self.make, "__name__", self.make) or self.id)
+        return super().name or self.id
 
     @property
     def known(self) -> "Known":
@@ -117,31 +114,6 @@ class Known(NamedTuple):
     spec: Spec
     steps: int | None  # the time limit [steps of the environment]
     space: Box  # of actions
-
-
-class Items(dict):
-    """Settings of an environment: a dictionary that is not changed, with a hash."""
-
-    def __hash__(self) -> int:  # type: ignore[override]
-        return hash(repr(sorted(self.items(), key=repr)))
-
-
-def imported(make: Any) -> Callable[..., Any]:
-    """The function or class that `MODULE:NAME` names; what is no text stays as it is.
-
-    Raises:
-        UsageError: if it cannot be imported.
-    """
-    if not isinstance(make, str):
-        return make
-    module, colon, name = make.partition(":")
-    if not colon:
-        raise UsageError(f"env.make={make}: give MODULE:CLASS or MODULE:FUNCTION")
-    try:
-        return getattr(import_module(module), name)
-    except Exception as error:  # whatever the user's module does
-        line = in_user_code(error) or str(error)
-        raise UsageError(f"env.make={make}: cannot be imported ({line})") from error
 
 
 @cache

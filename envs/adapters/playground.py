@@ -21,7 +21,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.envs.adapters.external import Items
+from hybrid_rl.envs.adapters.unstepped import Items
 from hybrid_rl.errors import UsageError, gist
 from hybrid_rl.types import EnvState, Spec
 

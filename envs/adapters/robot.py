@@ -17,15 +17,13 @@ A process of its own calls these methods, one at a time, but for `stop`, which i
 a second thread when another method does not return.
 """
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from hybrid_rl.envs.adapters.external import Items, imported
-from hybrid_rl.envs.adapters.unstepped import Unstepped
+from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, imported
 from hybrid_rl.errors import UsageError, gist, in_user_code
 from hybrid_rl.types import Spec
 
@@ -53,15 +51,13 @@ class Outside(Unstepped):
 
 
 @dataclass(frozen=True)
-class Robot(Unstepped):
+class Robot(Made):
     """A robot that learns while it moves. Its sizes are read from its class, without making one.
 
     Raises:
         UsageError: if the class cannot be imported, or lacks something.
     """
 
-    make: str | Callable[..., Any] = ""  # MODULE:CLASS, or the class itself
-    kwargs: Mapping[str, Any] | None = None  # of the class
     past_actions: int = 0  # that the observation ends with, where actions take a period to act
     rate: float | None = None  # greatest change of an action from one decision to the next, of 2
     stale: float = 2.0  # periods after which an observation is too old to act on
@@ -79,13 +75,8 @@ class Robot(Unstepped):
             raise UsageError(f"env.past_actions={self.past_actions}: {line}")
         if self.rate is not None and not self.rate > 0:
             raise UsageError(f"env.rate={self.rate}: must be above 0")
-        object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
+        super().__post_init__()
         _ = self.spec
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-        return str(getattr(self.make, "__name__", self.make))
 
     @cached_property
     def kind(self) -> Any:

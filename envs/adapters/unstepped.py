@@ -1,11 +1,14 @@
-"""Worlds that step outside JAX."""
+"""Worlds that step outside JAX, and what makes those of the user."""
 
-from typing import NoReturn
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, NoReturn
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -29,3 +32,44 @@ class Unstepped:
             f"{type(self).__name__}: steps by itself; no method can plan on it, and evaluate and "
             "render cannot step it (`python -m hybrid_rl.robot run=DIR` moves a robot)"
         )
+
+
+@dataclass(frozen=True)
+class Made(Unstepped):
+    """A world that a class or a function of the user's makes."""
+
+    make: str | Callable[..., Any] = ""  # MODULE:NAME, or the class or function itself
+    kwargs: Mapping[str, Any] | None = None  # of it
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "kwargs", Items(self.kwargs or {}))
+
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return str(getattr(self.make, "__name__", self.make))
+
+
+class Items(dict):
+    """Settings of an environment: a dictionary that is not changed, with a hash."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        return hash(repr(sorted(self.items(), key=repr)))
+
+
+def imported(make: Any) -> Callable[..., Any]:
+    """The function or class that `MODULE:NAME` names; what is no text stays as it is.
+
+    Raises:
+        UsageError: if it cannot be imported.
+    """
+    if not isinstance(make, str):
+        return make
+    module, colon, name = make.partition(":")
+    if not colon:
+        raise UsageError(f"env.make={make}: give MODULE:CLASS or MODULE:FUNCTION")
+    try:
+        return getattr(import_module(module), name)
+    except Exception as error:  # whatever the user's module does
+        line = in_user_code(error) or str(error)
+        raise UsageError(f"env.make={make}: cannot be imported ({line})") from error

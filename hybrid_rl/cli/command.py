@@ -20,7 +20,7 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.composition import CONF, check_task, explain, options
+from hybrid_rl.composition import CONF, check_choices, check_task, explain
 from hybrid_rl.errors import UsageError, in_user_code, shown
 from hybrid_rl.run import inherited
 
@@ -104,9 +104,10 @@ def usage(module: Any) -> str:
 def _check_form(line: Sequence[str]) -> None:
     """Raise UsageError for what is neither key=value nor an option of Hydra's."""
     renamed.check(line)
+    check_choices(line)
     follow = 0
     for at, text in enumerate(line):
-        name, equals, value = text.partition("=")
+        name, equals, _ = text.partition("=")
         if follow:
             follow -= 1
         elif name.startswith("-"):
@@ -120,8 +121,6 @@ def _check_form(line: Sequence[str]) -> None:
             raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
         elif not equals and not text.startswith("~"):
             raise UsageError(f"{text}: has no value; write {arguments.as_pair(line, at)}")
-        elif value == "null" and name != "experiment" and options(name):
-            raise UsageError(f"{text}: choose one of {', '.join(options(name))}")
 
 
 def report(error: BaseException) -> NoReturn:

@@ -18,7 +18,7 @@ apart, do not agree that the best candidate gains on it, that is unless
 With a constraint of excess c, indicator width w, price and chance,
 
     p_t = mean_i sigmoid(c(x_t, u_t, f_i(x_t, u_t)) / w)        over the ensemble's members
-    S = ... - price sum_t p_t
+    S = ... - price sum_t p_t            unless J has learned the price with the reward
 
 and candidates with max_t p_t > chance, t < T, rank below all others, by how far they are beyond the
 limit. The tail does not count there: another plan acts before it comes.
@@ -35,8 +35,17 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core import adjoint, agreement, lifting, sampling
-from hybrid_rl.fields import Count, Discount, Fraction, Natural, NotNegative, Positive, part
+from hybrid_rl.core import adjoint, agreement, sampling
+from hybrid_rl.fields import (
+    Count,
+    Discount,
+    FieldError,
+    Fraction,
+    Natural,
+    NotNegative,
+    Positive,
+    part,
+)
 from hybrid_rl.protocols import Constraint, Model, Objective, Policy
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -90,7 +99,14 @@ class GradientController:
     step: Positive = 0.05  # [u] root mean square of an iteration's change
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
     doubt: NotNegative | None = 1.0  # std over the members by which a plan must beat the policy
-    constraint: Constraint | None = None  # beside its price in a reward that was learned with it
+    constraint: Constraint | None = None
+    priced: bool = False  # whether the objective's reward, learned with it, has its price already
+
+    def __post_init__(self) -> None:
+        """Check the model: through the world itself goes no gradient."""
+        if hasattr(self.model, "start"):
+            words = "has no gradients; choose model=exact, or one that learns, such as ensemble"
+            raise FieldError(self, "model", words)
 
     def init(self, spec: Spec) -> GradientState:
         """No corrections, and the objective's initial memory."""
@@ -103,7 +119,7 @@ class GradientController:
     ) -> tuple[Array, GradientState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
         preparing, drawing = jax.random.split(key)
-        x = lifting.start(self.model, params, obs)
+        x = self.model.lift(params.model, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)
         score = jax.vmap(lambda one: self._scored(params, value, x, one))
         drawn = self._drawn(state, drawing)
@@ -187,7 +203,7 @@ class GradientController:
         xs, us, apart, risk, beyond = ahead
         J = value(Path(jnp.concatenate([x[None], xs]), us))
         score = J - self.disagreement_price * apart.sum()
-        if self.constraint is not None:
+        if self.constraint is not None and not self.priced:
             score = score - self.constraint.price * risk.sum()
         finite, T = jnp.isfinite(score), self.horizon
         far = jnp.where(finite, beyond[:T].sum(), jnp.inf)

@@ -30,6 +30,11 @@ class Branches:
     rows: Array  # [memory / B, B, width] the last transitions
     count: Array  # [] int32 updates so far
 
+    def restarted(self) -> "Branches":
+        """All start again at the next update, without the old transitions."""
+        ended = jnp.full_like(self.age, jnp.iinfo(self.age.dtype).max)
+        return self.replace(age=ended, count=jnp.zeros_like(self.count))
+
 
 def transitions(params: Params, policy: Policy, model: Trainable, reward: Reward) -> Transitions:
     """u ~ pi(x), x' ~ f(x, u) and r, end = reward(x, u, x'); `terminated` is a probability."""

@@ -250,8 +250,10 @@ def _check_seeds(folder: Path, config: DictConfig) -> None:
 
 
 @contextmanager
-def blamed(folder: Path) -> Iterator[None]:
+def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
     """Errors about the configuration of a run name its config.yaml.
+
+    lacking: only those about keys that it lacks; the others are of another configuration.
 
     Raises:
         UsageError: that begins with the path of config.yaml.
@@ -264,6 +266,8 @@ def blamed(folder: Path) -> Iterator[None]:
     except (ConfigKeyError, ConfigAttributeError) as error:
         raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
+        if lacking:
+            raise
         line = str(error).partition("\n")[0]
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 

@@ -1,7 +1,8 @@
 """What a new run begins with, from the newest checkpoint of another one: run=DIR.
 
 The learners begin with all that they know there: parameters, states of optimisers, statistics. The
-memory of decisions is kept only as far as it is true in the new run.
+memory of decisions is kept only as far as it is true in the new run, and imagined decisions only
+where nothing has changed.
 """
 
 from dataclasses import dataclass, replace
@@ -20,6 +21,7 @@ from hybrid_rl.run import checkpoint, folder
 from hybrid_rl.run.records import changes, flat
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.imagined import forgotten
 from hybrid_rl.training.loop import Loop
 
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
@@ -43,7 +45,10 @@ class Start:
 
 def built(config: DictConfig) -> tuple[Run, Start | None]:
     """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
-    return (configuration.build(config), None) if config.get("run") is None else begun(config)
+    if config.get("run") is None:
+        return configuration.build(config), None
+    with folder.blamed(Path(str(config.run)), lacking=True):
+        return begun(config)
 
 
 def begun(config: DictConfig) -> tuple[Run, Start]:
@@ -78,6 +83,8 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
     if memory is not None:
         run = configuration.build(config)  # with room for what it remembers
         memory = _rewritten(run.agent, memory, why == RELABELLED)
+    if why:  # they imagined other rewards, or another world
+        learners = forgotten(learners)
     learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (learners, memory))
     known = [name for learner in run.agent.learners.values() for name in learner.owns]
     line = f"begins with {_listed(known)} of {source} at step {step:,}; {words}"

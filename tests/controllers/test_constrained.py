@@ -58,10 +58,10 @@ PLANNER = GradientController(
 )
 
 
-def driven(constraint: Any, given: Any = LIMIT) -> EnvState:
+def driven(constraint: Any, given: Any = LIMIT, planner: Any = PLANNER) -> EnvState:
     """The states [21] of an episode of 20 decisions, planned with a constraint."""
     episode = Episode(WORLD, 20, constraint=given)
-    acts = replace(PLANNER, constraint=constraint)
+    acts = replace(planner, constraint=constraint)
     return jax.jit(lambda: rollout(episode, acts, Params(), jax.random.key(0), 20))()
 
 
@@ -76,6 +76,8 @@ def test_the_plan_keeps_the_limit_that_it_breaks_without() -> None:
         assert float(states.info["violations"][-1]) == 0
         assert float(states.obs[-1, 0]) > 0.75  # near the limit
     assert float(driven(cheap).info["violations"][-1]) >= 14  # a price that is worth paying
+    states = driven(LIMIT, planner=replace(PLANNER, priced=True))  # by a reward that has no price
+    assert float(states.info["violations"][-1]) >= 14
 
 
 def test_from_beyond_the_limit_the_plan_returns() -> None:

@@ -11,6 +11,8 @@ from jax import Array
 from test_adjoint_controller import SPEC, Cart, Speed
 
 from hybrid_rl.controllers.gradient import GradientController
+from hybrid_rl.fields import FieldError
+from hybrid_rl.models.world import World
 from hybrid_rl.types import Params
 
 
@@ -158,3 +160,9 @@ def test_a_candidate_that_leaves_all_bounds_does_not_act() -> None:
 def test_fields_out_of_range_are_refused(fields: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         GradientController(Cart(), Speed(), **fields)
+
+
+def test_the_world_itself_is_refused() -> None:
+    """No gradient goes through it."""
+    with pytest.raises(FieldError, match="model=World: has no gradients; choose model=exact"):
+        GradientController(World(Cart()), Still())

@@ -6,6 +6,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core import branches
+from hybrid_rl.training.imagined import forgotten
 from hybrid_rl.types import Batch
 
 B = 10
@@ -41,3 +42,14 @@ def test_a_branch_that_ended_restarts() -> None:
     batch = recalled(1.0, 9, 30)
     assert set(np.asarray(batch.obs[:, 0])) == {1.0, 2.0, 3.0}
     np.testing.assert_allclose(batch.terminated, np.asarray(batch.obs[:, 0]) > 2.5)
+
+
+def test_forgotten_branches_start_again() -> None:
+    """Also inside the state of a learner; no older transition is drawn."""
+    old, first = branches.begin(B, 8 * B, 1, 1, 4), jnp.full((B, 1), -9.0)
+    for key in jax.random.split(jax.random.key(3), 10):
+        old = branches.extended(old, counting, first, 1, 4, key)
+    kept = forgotten({"kept": old, "other": 1})["kept"]
+    kept = branches.extended(kept, counting, first - 20, 1, 4, jax.random.key(5))
+    batch = branches.recalled(kept, 1, jax.random.key(4))
+    np.testing.assert_array_equal(batch.obs, -29)

@@ -101,6 +101,34 @@ def test_another_reward_is_that_of_the_memory_too(source):
     np.testing.assert_allclose(rows[:, spec.obs + spec.act], wanted, rtol=1e-4)
 
 
+def test_a_part_that_the_run_did_not_have_gets_its_networks(source):
+    """Another planner, of another part of conf/."""
+    made = inherited.load([f"run={source}", "controllers.full=${gradient_planner}"])
+    assert made.controllers.full._target_.endswith("GradientController")
+    assert made.controllers.full.policy == made.policy
+    assert made.controllers.full.objective.critic == made.critic
+    assert made.policy.hidden == [16]
+
+
+def test_what_was_imagined_is_kept_only_where_nothing_changed(source, monkeypatch):
+    seen = []
+    monkeypatch.setattr(start, "forgotten", lambda tree: seen.append(1) or tree)
+    begun(source, "total_steps=50")
+    assert not seen
+    begun(source, *MOTION)
+    assert seen
+
+
+def test_a_key_that_the_run_lacks_is_named(source, tmp_path):
+    folder = tmp_path / "older"
+    shutil.copytree(source, folder)
+    lines = (folder / "config.yaml").read_text().splitlines(keepends=True)
+    lines = [line for line in lines if not line.startswith("checkpoint_replay")]
+    (folder / "config.yaml").write_text("".join(lines))
+    with pytest.raises(UsageError, match=r"older/config\.yaml: lacks checkpoint_replay$"):
+        begun(folder)
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
