@@ -19,6 +19,7 @@ html_theme = "furo"
 html_title = "hybrid_rl"
 html_static_path = ["static"]  # relative to this file
 html_css_files = ["site.css"]
+html_js_files = [("robots/start.js", {"defer": "defer"})]  # acts on the first page only
 html_show_sphinx = False
 html_favicon = "static/icon.svg"
 html_theme_options = {"top_of_page_buttons": []}

@@ -12,6 +12,7 @@ from hybrid_rl import parts
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, relative, shown
 from hybrid_rl.fields import choices, plain
+from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.overrides import SHOW, meant
 from hybrid_rl.types import NAME
 
@@ -28,7 +29,6 @@ SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 STEPS = 2**31  # decisions, fewer of which are counted
 SEEDS = 2**32  # distinct seeds of JAX's generator
 MODES = ("full", "policy", "planner")
-PRECISIONS = ("highest", "high", "default")
 KINDS = {  # type of a part's field -> its name in messages
     int: "a whole number",
     float: "a number",
@@ -75,7 +75,7 @@ def check(config: DictConfig) -> None:
     for key in ("checkpoint_replay", "distributed"):
         if type(config.get(key, False)) is not bool:
             raise UsageError(f"{key}={config[key]}: must be true or false")
-    for key, known in (("matmul_precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
+    for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
         if config[key] not in known:
             raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
     check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it

@@ -34,7 +34,7 @@ PAID = ("reward", "constraint")  # what the world pays and asks for; a run may l
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, *PAID, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
-    *("matmul_precision", "distributed", "logger", "run", "freeze"),
+    *("precision", "distributed", "logger", "run", "freeze"),
 )
 
 

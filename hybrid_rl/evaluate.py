@@ -36,10 +36,12 @@ from rich.console import Console
 from rich.table import Table
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, read, whole
+from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, one_of, read, whole
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import chosen
+from hybrid_rl.networks import precision
+from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run import memory
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.trained import Trained
@@ -52,6 +54,7 @@ ARGUMENTS = (
     POLICY,
     *GOAL,
     CONFIG_DIR,
+    Argument("precision", "", "of networks; empty: that of the training", one_of("", *PRECISIONS)),
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )
@@ -106,10 +109,12 @@ def main() -> None:
     given, changes = read(__doc__, ARGUMENTS, CHANGES)
     episodes, name = given["episodes"], given["run"] or given["policy"]
     trained, changes = chosen(given, changes)
+    if given["precision"]:
+        precision.choose(given["precision"])
     for note in trained.notes:
         print(note)
     values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
-    values["changes"] = changes
+    values |= {"changes": changes, "precision": precision.chosen()}
     where = "".join(f", {key}={value}" for key, value in changes.items())
     print(f"{name}, mode {given['mode']}, step {trained.step:,}{where}")  # whole, also in a pipe
     Console().print(_table(values))

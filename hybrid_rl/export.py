@@ -23,7 +23,7 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
 from hybrid_rl.errors import UsageError
-from hybrid_rl.networks import Perceptron
+from hybrid_rl.networks import Perceptron, precision
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import chosen
 from hybrid_rl.types import Params, Spec
@@ -66,7 +66,7 @@ def program(
         def act(obs: Array) -> Array:
             return controller.act(params, (), obs, jax.random.key(0))[0]
 
-        return jax.export.export(jax.jit(act), platforms=platforms)(obs)
+        return _exported(act, platforms, obs)
     first = controller.init(spec)
     words = _words((jnp.zeros((), jnp.uint32), first))
 
@@ -78,7 +78,13 @@ def program(
 
     two = jax.ShapeDtypeStruct((2,), jnp.uint32)
     state = jax.ShapeDtypeStruct(words.shape, jnp.uint32)
-    return jax.export.export(jax.jit(decide), platforms=platforms)(obs, state, two)
+    return _exported(decide, platforms, obs, state, two)
+
+
+def _exported(f: Callable[..., Any], platforms: Sequence[str], *given: Any) -> jax.export.Exported:
+    """`f` of arrays of these shapes, in float32 whatever it was trained in."""
+    with precision.using("float32"):
+        return jax.export.export(jax.jit(f), platforms=platforms)(*given)
 
 
 def _words(tree: Any) -> Array:

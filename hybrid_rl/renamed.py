@@ -6,7 +6,10 @@ from hybrid_rl.errors import UsageError
 
 VERSION = "0.3"
 OF_NETWORK = ("hidden", "activation", "normalise", "ends", "rule", "scale", "members", "next_state")
+PRECISION = {"highest": "float32", "high": "tf32", "default": "tf32"}  # of matmul_precision
 RENAMED = {  # an override's beginning, KEY or KEY=VALUE -> what replaces it; the first that fits
+    **{f"matmul_precision={old}": f"precision={new}" for old, new in PRECISION.items()},
+    "matmul_precision": "precision, of bf16, tf32, float32",
     "settings=mbpo": "learning=mbpo",
     "mbpo.learner.early": "policy_learner.during_random",
     "mbpo.learner.expand": "policy_learner.value_expansion",

@@ -44,7 +44,7 @@ ARGUMENTS = (
     Argument("out", "", "the page; empty: DIR/report.html, of several runs report.html"),
     Argument("video", "auto", "auto: as above; none", one_of("auto", "none")),
 )
-MACHINE = ("device", "physics", "matmul_precision", "git_commit")  # keys of summary.json
+MACHINE = ("device", "physics", "precision", "git_commit")  # keys of summary.json
 COMMIT = 10  # characters of its name
 SHOWN = 200  # decisions of a video that is drawn
 TEMPLATE = Path(__file__).with_suffix(".html")

@@ -6,9 +6,10 @@
 
 The sources are README.md, CONTRIBUTING.md, CHANGELOG.md and docs/, at the same paths, so that
 their links work on GitHub and on the site. A page per method is made from its YAML, the section of
-docs/methods.md and the docstrings of its parts; the reference from all docstrings. A warning, such
-as a link that leads nowhere, is an error. `make docs` runs it in .venv-docs. With the environment
-variable GITHUB_REPOSITORY=OWNER/NAME, which workflows on GitHub set, notebooks link to Binder.
+docs/methods.md and the docstrings of its parts; the reference from all docstrings. The robots of
+scripts/browser run on the first page. A warning, such as a link that leads nowhere, is an error.
+`make docs` runs it in .venv-docs. With the environment variable GITHUB_REPOSITORY=OWNER/NAME, which
+workflows on GitHub set, notebooks link to Binder.
 """
 
 import importlib
@@ -27,6 +28,7 @@ from omegaconf import DictConfig, ListConfig
 
 from hybrid_rl import composition, config
 from hybrid_rl.errors import UsageError
+from scripts.browser import robots
 
 ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build" / "docs"
@@ -68,6 +70,11 @@ TREE = """
 PAGES
 ```
 """
+ROBOTS = """
+```{container} robots
+![A trained ant walks](docs/ant_learned.gif)
+```
+"""  # before README's first picture; docs/static/robots/start.js lets robots run there
 NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
 PAGES = {
     "Start": [
@@ -93,7 +100,8 @@ def copy() -> None:
     for name in AT_TOP:
         shutil.copy(ROOT / name, SOURCE / name)
     trees = "".join(tree(caption, pages) for caption, pages in PAGES.items())
-    write("index.md", (ROOT / "README.md").read_text(encoding="utf-8") + trees)
+    text, *pictures = (ROOT / "README.md").read_text(encoding="utf-8").partition("\n![")
+    write("index.md", f"{text}{ROBOTS}{''.join(pictures)}{trees}")
     if repository := os.environ.get("GITHUB_REPOSITORY"):
         for name in NOTEBOOKS:
             on_binder(f"{name}.ipynb", repository)
@@ -247,6 +255,7 @@ def main() -> None:
         print(LINKS / "output.txt")
     else:
         build("html", HTML, *still)
+        robots.write(HTML / "_static" / "robots" / "robots.js")
         print(HTML / "index.html")
 
 

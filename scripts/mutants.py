@@ -51,6 +51,12 @@ MUTANTS = {
         "jump = objective(path) - objective(other)",
         "tests/core tests/controllers",
     ),
+    "robots in the browser clip actions at the wrong end": Mutant(
+        "scripts/browser/javascript.py",
+        '"min": "Math.min({}, {})"',
+        '"min": "Math.max({}, {})"',
+        "tests/test_browser.py",
+    ),
     "discount counted twice": Mutant(
         "hybrid_rl/core/soft_actor_critic.py",
         "batch.reward + part.discount * (1",

@@ -28,10 +28,14 @@ from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
 from hybrid_rl.trained import Trained, load
-from hybrid_rl.training.rollout import evaluate_episodes
+from hybrid_rl.training.rollout import advance, begin, scores
 from scripts.seeds import Row, every, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
+SIGNALS = {
+    "share": "planner/policy_share",
+    "insertion": "planner/mode_insertion_gradient",
+}
 ARGUMENTS = (
     Argument("run", "", "folder of a run with a learned model", needed="run=DIR"),
     Argument("goals", "speed 2", "REWARD TARGET; several with ; between them"),
@@ -81,6 +85,23 @@ class Times:
         return self.factor * u, state, metrics
 
 
+@dataclass(frozen=True)
+class Watched:
+    """A controller whose state has the sum of one of its metrics."""
+
+    controller: Any
+    metric: str
+
+    def init(self, spec: Any) -> Any:
+        """The controller's, and 0."""
+        return self.controller.init(spec), jnp.zeros(())
+
+    def act(self, params: Any, state: Any, obs: Array, key: Array) -> tuple:
+        """The controller's."""
+        u, inner, metrics = self.controller.act(params, state[0], obs, key)
+        return u, (inner, state[1] + metrics[self.metric]), metrics
+
+
 def swapped(part: Any, old: Any, new: Any) -> Any:
     """`part` with `new` in place of every part that equals `old`, at any depth."""
     if part == old:
@@ -113,6 +134,7 @@ def rows(trained: Trained) -> dict[str, Any]:
         "both: mixture": sampling(proposal=MixtureProposal(own, noise), horizon=15, samples=128),
         "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
         "both: gradient": both,
+        **{name: Watched(both, metric) for name, metric in SIGNALS.items()},
     }
 
 
@@ -126,7 +148,10 @@ def varied(both: Any, name: str) -> Any:
 def measured(
     trained: Trained, goals: dict[str, Any], controller: Any, episodes: int
 ) -> dict[str, np.ndarray]:
-    """Mean returns [S] of `controller`, made for the first of the goals, on each of them."""
+    """Means [S] of `controller`, made for the first of the goals, on each of them.
+
+    They are of returns, or of a Watched controller's metric.
+    """
     known = tuple(goals.values())
 
     def one(params: Any, keys: Array) -> Array:
@@ -134,7 +159,12 @@ def measured(
             goal = OneOf(known, index)
             episode = replace(trained.episode, reward=goal)
             acts = swapped(controller, known[0], goal)
-            return evaluate_episodes(episode, acts, params, keys)["return"]
+            env, control, _ = advance(
+                episode, acts, params, begin(episode, acts, keys), jnp.int32(episode.steps)
+            )
+            if isinstance(acts, Watched):
+                return control[1] / env.info["decision"]
+            return scores(env)["return"]
 
         return jax.vmap(on)(jnp.arange(len(known)))
 

@@ -24,9 +24,15 @@ def every(trained: Trained, episodes: int, one: Callable[[Any, Array], Any]) -> 
 
 
 def write(out: str, trained: Trained, about: Mapping[str, Any], rows: Iterable[Row]) -> None:
-    """Write each row to `out` and print its means, as soon as it is measured."""
+    """Write each row to `out` and print its means, as soon as it is measured.
+
+    Other rows that `out` has stay, if they are of the same run.
+    """
     table = {"machine": device(), "run": trained.task, "seeds": list(trained.seeds)}
-    found: dict[str, Any] = {**table, "step": trained.step, **about, "rows": {}}
+    table |= {"step": trained.step, **about}
+    before = json.loads(Path(out).read_text()) if Path(out).exists() else {}
+    same = {key: before.get(key) for key in table} == table
+    found: dict[str, Any] = {**table, "rows": before["rows"] if same else {}}
     for name, row in rows:
         each = {key: np.asarray(values, float) for key, values in row.items()}
         found["rows"][name] = {key: values.round(2).tolist() for key, values in each.items()}

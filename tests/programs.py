@@ -1,7 +1,7 @@
 """Equal runs of a test session share their programs: each is traced and compiled one time.
 
-Equal are agents, controllers and episodes by value, and the numbers of learners and of rounds. A
-test that changes code that is traced puts an empty list for `KEPT`.
+Equal are agents, controllers and episodes by value, the precision, and the numbers of learners and
+of rounds. A test that changes code that is traced puts an empty list for `KEPT`.
 """
 
 from collections.abc import Callable, Iterator
@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from hybrid_rl.networks import precision
 from hybrid_rl.run.evaluations import Evaluator
 from hybrid_rl.training.loop import Loop
 
@@ -31,7 +32,7 @@ def shared() -> Iterator[None]:
     trace, compiled, evaluator = Loop.trace, Loop.compile, Evaluator.__init__
 
     def traced(self: Loop, state: Any) -> Any:
-        of = self.agent, len(self.seeds), self.stride
+        of = self.agent, len(self.seeds), self.stride, precision.chosen()
         return kept(lambda: trace(self, state), "trace", *of)
 
     def program(self: Loop, state: Any, given: Any = None) -> Any:
@@ -43,7 +44,7 @@ def shared() -> Iterator[None]:
             evaluator(self, loop, controller, params, keys)
             return vars(self)
 
-        of = loop.agent.episode, controller, keys.shape
+        of = loop.agent.episode, controller, keys.shape, precision.chosen()
         vars(self).update(kept(make, "evaluation", *of))
 
     with pytest.MonkeyPatch.context() as patch:

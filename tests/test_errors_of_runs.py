@@ -86,11 +86,11 @@ OTHERS = [  # command and its arguments, exit code, words of the line
 
 
 RESUMED = [  # overrides given with resume, words of the line
-    ("task=cartpole", "task=cartpole: with resume only total_steps can be changed; the run in"),
-    ("algo=nn_mppi", "algo=nn_mppi: with resume only total_steps can be changed; the run in"),
+    ("task=cartpole", "task=cartpole: with resume only total_steps and precision"),
+    ("algo=nn_mppi", "algo=nn_mppi: with resume only total_steps and precision"),
     ("seed=7", "has 0"),
-    ("policy.hidden=[8,8]", "policy.hidden=[8,8]: with resume only total_steps can be changed"),
-    ("experiment=thesis/fig_3_2_pendulum", "with resume only total_steps can be changed"),
+    ("policy.hidden=[8,8]", "policy.hidden=[8,8]: with resume only total_steps and precision"),
+    ("experiment=thesis/fig_3_2_pendulum", "with resume only total_steps and precision"),
     ("total_steps=100", "has 600; it can be raised, not lowered"),
     ("total_steps=1e9", f"total_steps=1e9: {COUNT}"),
     ("total_steps=3000000000", "total_steps=3000000000: must be at most 2147483647: "),

@@ -27,7 +27,7 @@ LAYER_FILES = {"types", "errors", "fields", "checks", "composition", "config", "
 LAYER_FILES |= {"parts", "renamed", "trained"}
 SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
-    *("types", "fields", "protocols", "errors", "parts", "envs", "training"),
+    *("types", "fields", "protocols", "errors", "parts", "networks", "envs", "training"),
     *("checks", "composition", "config", "overrides", "renamed"),
 }
 ALLOWED = {
@@ -46,7 +46,7 @@ ALLOWED = {
     "policies": {*SHARED, "archive"},
     "renamed": {"errors"},
     "overrides": {"errors"},
-    "checks": {"types", "errors", "fields", "overrides", "parts", "envs"},
+    "checks": {"types", "errors", "fields", "overrides", "parts", "networks", "envs"},
     "composition": {"errors", "checks", "overrides", "parts", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints

@@ -5,6 +5,7 @@ Every program is compiled before it is timed, and ends with a wait for its resul
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from time import perf_counter
 from typing import Any
 
 import jax
@@ -18,6 +19,7 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, EnvState, Params, Spec
 
+TRIED = 5  # decisions that say how long one takes
 LEARNING = 200_000  # decisions into a run, where every part is at work
 
 
@@ -42,20 +44,31 @@ class Still:
         return self
 
 
-def loop(name: str, agent: Agent, learners: int, decisions: int) -> tuple[Contestant, float]:
-    """`decisions` of each of `learners` in training; and the [s] that compiling took."""
+def loop(
+    name: str, agent: Agent, learners: int, decisions: int, seconds: float | None = None
+) -> tuple[Contestant, float]:
+    """`decisions` of each of `learners` in training; and the [s] that compiling took.
+
+    seconds: as many decisions, at most, as take that long.
+    """
     made = Loop(agent, tuple(range(learners)), decisions)
     state = made.init()
     program = made.compile(state)
     held = [state]
-    start, rounds = jnp.int32(LEARNING), jnp.int32(decisions)
+    start = jnp.int32(LEARNING)
 
-    def go() -> None:
-        held[0], _ = program(held[0], start, rounds)
+    def advance(rounds: int) -> None:
+        held[0], _ = program(held[0], start, jnp.int32(rounds))
         jax.block_until_ready(held[0])
 
+    if seconds is not None:
+        advance(1)
+        began = perf_counter()
+        advance(TRIED)
+        each = (perf_counter() - began) / TRIED
+        decisions = min(max(round(seconds / each), 1), decisions)
     memory = made.memory(program) * made.mesh.size / learners
-    contestant = Contestant(name, go, learners * decisions, memory)
+    contestant = Contestant(name, lambda: advance(decisions), learners * decisions, memory)
     return contestant, made.compile_s
 
 

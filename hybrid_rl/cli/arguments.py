@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
+from hybrid_rl import renamed
 from hybrid_rl.errors import UsageError
 
 Kind = Callable[[str, str], Any]  # (name, text) -> value
@@ -156,6 +157,7 @@ def _refusal(
 ) -> str:
     """The message for an invalid argument."""
     given = line[at]
+    renamed.check([given])
     name = given.partition("=")[0].lstrip("-")
     if name in named:
         return f"{given}: write {as_pair(line, at)}"

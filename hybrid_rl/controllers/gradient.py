@@ -10,6 +10,11 @@ stops working for the seconds after it. d_t is the mean over the entries of the 
 ensemble's disagreement, in running standard deviations of the change; without this price gradients
 lead to where the model is wrong. Without a policy, s = 0: shooting, from noise.
 
+Without a constraint, the policy itself acts where the members of the ensemble, each rolled out
+apart, do not agree that the best candidate gains on it, that is unless
+
+    mean_i [J_i(s, v) - J_i(1, 0)] > doubt std_i [...]        i: the members of the ensemble
+
 With a constraint of excess c, indicator width w, price and chance,
 
     p_t = mean_i sigmoid(c(x_t, u_t, f_i(x_t, u_t)) / w)        over the ensemble's members
@@ -93,6 +98,7 @@ class GradientController:
     iterations: Natural = 5
     step: Positive = 0.05  # [u] root mean square of an iteration's change
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
+    doubt: NotNegative | None = 1.0  # std over the members by which a plan must beat the policy
     constraint: Constraint | None = None
     priced: bool = False  # whether the objective's reward, learned with it, has its price already
 
@@ -125,6 +131,7 @@ class GradientController:
         found = score(each)
         winner = jnp.argmax(self._rank(found))
         plan, chosen = jax.tree.map(lambda leaf: leaf[winner], (each, found))
+        plan, chosen = self._surely(params, value, x, plan, chosen)
         gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
         risk = {} if self.constraint is None else {"planner/risk": chosen.risk}
         metrics = {
@@ -159,8 +166,28 @@ class GradientController:
             return Candidate(jnp.zeros(K), state.plan.v[None] + self.noise * e)
         return Candidate(each[number % count], self.noise * e * loud[:, None, None])
 
-    def _scored(self, params: Params, value: Return, x: Array, one: Candidate) -> Scored:
-        """The candidate from x [n]."""
+    def _surely(
+        self, params: Params, value: Return, x: Array, plan: Candidate, chosen: Scored
+    ) -> tuple[Candidate, Scored]:
+        """The plan at x [n], or the policy's own where the members doubt that it gains."""
+        if self.policy is None or self.doubt is None or self.constraint is not None:
+            return plan, chosen
+        own = Candidate(jnp.ones(()), jnp.zeros_like(plan.v))
+
+        def gain(member: Array) -> Array:
+            a, b = (self._scored(params, value, x, one, member).value for one in (plan, own))
+            return a - b
+
+        members = len(self._predicted(params, x, chosen.u)[2])
+        gains = jax.vmap(gain)(jnp.arange(members))
+        surely = gains.mean() > self.doubt * gains.std()
+        others = (own, self._scored(params, value, x, own))
+        return jax.tree.map(lambda a, b: jnp.where(surely, a, b), (plan, chosen), others)
+
+    def _scored(
+        self, params: Params, value: Return, x: Array, one: Candidate, member: Array | None = None
+    ) -> Scored:
+        """The candidate from x [n], by the mean of the ensemble or by one member."""
         v = jnp.concatenate([one.v, jnp.zeros((self.tail, one.v.shape[1]))])
 
         def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, ...]]:
@@ -169,6 +196,7 @@ class GradientController:
                 u = one.s * self.policy.mean(params.policy, x) + v
             u = jnp.clip(u, -1, 1)
             after, apart, each = self._predicted(params, x, u)
+            after = after if member is None else each[member]
             return after, (after, u, jnp.mean(apart), *self._risk(x, u, each))
 
         _, ahead = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))

@@ -11,7 +11,7 @@ from jax import Array
 
 from hybrid_rl.core.lifting import check_coordinates, select
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import MLP, check
+from hybrid_rl.networks import MLP, check, precision
 from hybrid_rl.types import Spec
 
 
@@ -50,5 +50,6 @@ class Network:
     def __call__(self, params: dict[str, Any], obs: Array) -> Array:
         """z [n] of an observation [o]."""
         y = select(obs, self.coordinates)
-        z: Any = self._net.apply(params["weights"], y)
+        with precision.using("float32"):  # least squares follow
+            z: Any = self._net.apply(params["weights"], y)
         return jnp.concatenate([y, z]) if self.include_state else z

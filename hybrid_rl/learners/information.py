@@ -18,7 +18,7 @@ from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import fisher
 from hybrid_rl.fields import Positive, Share, part
-from hybrid_rl.networks import mean_weights
+from hybrid_rl.networks import mean_weights, precision
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -78,7 +78,8 @@ class InformationLearner:
             def f(theta: Any) -> Array:
                 return self.model.step(mean_weights.replaced(model, theta), x, u)
 
-            F = fisher.jacobian(f, mean_weights.of(model))
+            with precision.using("float32"):
+                F = fisher.jacobian(f, mean_weights.of(model))
             return fisher.diagonal(F, mean_weights.noise(self.model, model, x, self.sigma))
 
         now = jax.vmap(one)(batch.obs, batch.action).mean(0)

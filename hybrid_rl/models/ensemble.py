@@ -100,15 +100,15 @@ class Ensemble:
         share_of = jnp.argmax(member_of[:, None] == jnp.arange(count)[None], 0)  # of each member
         missing = -len(x) % count
 
-        def shares(x: Array) -> Array:  # states are permuted: fewer numbers than weights
-            padded = jnp.pad(x, ((0, missing), (0, 0)))
-            return padded.reshape(count, -1, x.shape[1])[share_of]
-
-        def one(weights: Any, x: Array, u: Array, noise: Array) -> Array:
+        def one(weights: Any, rows: Array) -> Array:
+            x, u, noise = jnp.split(rows, (n, rows.shape[1] - n), axis=1)
             return self.model.draw({**params, "weights": weights}, x, u, noise, key)
 
-        drawn = jax.vmap(one)(weights, *map(shares, (x, u, noise)))[member_of]
-        return drawn.reshape(-1, x.shape[1])[: len(x)]
+        n, rows = x.shape[1], jnp.concatenate([x, u, noise], axis=1)
+        rows = jnp.pad(rows, ((0, missing), (0, 0))).reshape(count, -1, rows.shape[1])
+        # States are permuted: they are fewer numbers than weights.
+        drawn = jax.vmap(one)(weights, _permuted(rows, share_of, member_of))
+        return _permuted(drawn, member_of, share_of).reshape(-1, n)[: len(x)]
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
         """Mean [] over the members of their losses, each on its own share of [members * B, ...].
@@ -132,3 +132,14 @@ class Ensemble:
             return self.model.losses({**params, "weights": weights}, obs, action, next_obs)[0]
 
         return jax.vmap(one)(params["weights"])
+
+
+@jax.custom_vjp
+def _permuted(x: Array, order: Array, inverse: Array) -> Array:
+    """x[order]; its gradient takes the inverse order, where JAX's would add rows one by one."""
+    return x[order]
+
+
+_permuted.defvjp(
+    lambda x, order, inverse: (x[order], inverse), lambda inverse, g: (g[inverse], None, None)
+)

@@ -2,7 +2,7 @@
 
 y = W_L a(... a(W_1 x + b_1) ...) + b_L, with W ~ U(-1, 1) / sqrt(width of x) and b = 0 at first.
 These weights are PyTorch's default, so soft actor-critic starts as Stable-Baselines3's does; they
-have a third of the variance of LeCun's.
+have a third of the variance of LeCun's. `precision` says in which numbers they compute.
 """
 
 from collections.abc import Sequence
@@ -15,6 +15,7 @@ from flax import linen as nn
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.networks import precision
 
 ACTIVATIONS = {
     "relu": nn.relu,
@@ -41,13 +42,14 @@ class MLP(nn.Module):
     @nn.compact
     def __call__(self, x: Array) -> Array:
         """The outputs y [..., out] for x [..., d]."""
+        kind, of_products = precision.of_hidden(), precision.of_products()
         for width in self.hidden:
-            x = nn.Dense(width, kernel_init=SPREAD)(x)
+            x = nn.Dense(width, kernel_init=SPREAD, dtype=kind, precision=of_products)(x)
             if self.layer_norm:
-                x = nn.LayerNorm(use_scale=self.layer_norm != "shift")(x)
+                x = nn.LayerNorm(use_scale=self.layer_norm != "shift", dtype=kind)(x)
             x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
-        return nn.Dense(self.out, kernel_init=last)(x)
+        return nn.Dense(self.out, kernel_init=last, precision=of_products)(x)
 
 
 class Perceptron(NamedTuple):

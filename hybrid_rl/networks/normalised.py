@@ -21,6 +21,8 @@ import jax.numpy as jnp
 from flax import linen as nn
 from jax import Array
 
+from hybrid_rl.networks import precision
+
 EXPANSION = 4  # width of a block's inner layer, in widths of the network
 MOMENTUM = 0.99  # of the running statistics
 EPSILON = 1e-5  # added to variances
@@ -37,6 +39,7 @@ class NormalisedNet(nn.Module):
     @nn.compact
     def __call__(self, x: Array, in_batch: bool) -> Array:
         """The outputs [..., out]; `in_batch` normalises by the statistics of x [B, d] itself."""
+        of_products = precision.of_products()
 
         def normal(x: Array) -> Array:
             return nn.BatchNorm(
@@ -44,13 +47,14 @@ class NormalisedNet(nn.Module):
             )(x)
 
         def linear(x: Array, width: int) -> Array:
-            return nn.Dense(width, use_bias=False, kernel_init=BEGIN)(x)
+            return nn.Dense(width, use_bias=False, kernel_init=BEGIN, precision=of_products)(x)
 
         x = linear(normal(x), self.width)
         for _ in range(self.blocks):
             inner = nn.relu(normal(linear(x, EXPANSION * self.width)))
             x = x + nn.relu(normal(linear(inner, self.width)))
-        return nn.Dense(self.out, kernel_init=BEGIN, name="head")(nn.RMSNorm()(x))
+        head = nn.Dense(self.out, kernel_init=BEGIN, precision=of_products, name="head")
+        return head(nn.RMSNorm()(x))
 
 
 def check(name: str, hidden: tuple[int, ...]) -> None:

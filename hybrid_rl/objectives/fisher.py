@@ -16,7 +16,7 @@ from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import fisher
 from hybrid_rl.fields import FieldError, Natural, Positive, part
-from hybrid_rl.networks import mean_weights
+from hybrid_rl.networks import mean_weights, precision
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Params, Path, Return, Spec
 
@@ -63,7 +63,8 @@ class FisherInformation:
             prior += params.information.total
 
         def step(theta: object, x: Array, u: Array) -> Array:
-            return self.model.step(mean_weights.replaced(params.model, theta), x, u)
+            with precision.using("float32"):
+                return self.model.step(mean_weights.replaced(params.model, theta), x, u)
 
         def exact(path: Path) -> Array:
             F = fisher.along(step, theta, path, self.sensitivity)

@@ -18,7 +18,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.training.agent import Agent
 
-DEFAULTS = ("compile_cache", "matmul_precision")  # those of conf/train.yaml
+DEFAULTS = ("compile_cache", "precision")  # those of conf/train.yaml
 
 
 def run_of(

@@ -25,6 +25,7 @@ from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, UsageError, WorldError
+from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.lock import locked
@@ -250,9 +251,7 @@ def _check_seeds(folder: Path, config: DictConfig) -> None:
 
 @contextmanager
 def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
-    """Errors about the configuration of a run name its config.yaml.
-
-    lacking: only those about keys that it lacks; the others are of another configuration.
+    """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml.
 
     Raises:
         UsageError: that begins with the path of config.yaml.
@@ -265,7 +264,7 @@ def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
     except (ConfigKeyError, ConfigAttributeError) as error:
         raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
-        if lacking:
+        if lacking:  # the others are of another configuration
             raise
         line = str(error).partition("\n")[0]
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
@@ -295,4 +294,6 @@ def parsed(folder: Path, key: str = "runs") -> DictConfig:
         raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
+    if "matmul_precision" in config:  # of an earlier development version
+        config.precision = PRECISION.get(config.pop("matmul_precision"), "tf32")
     return config

@@ -1,4 +1,4 @@
-"""Settings of JAX for a process: compilation cache, matrix precision, threads."""
+"""Settings of JAX for a process: compilation cache, precision, threads."""
 
 import os
 import re
@@ -25,10 +25,12 @@ def prepare(config: DictConfig) -> None:
     import jax
 
     from hybrid_rl.envs.mujoco.native import cores
+    from hybrid_rl.networks import precision
 
     if config.physics == "mjx" and cores() < THREADS:
         os.environ.setdefault("NPROC", str(THREADS))
-    jax.config.update("jax_default_matmul_precision", config.matmul_precision)
+    jax.config.update("jax_default_matmul_precision", "highest")  # of all but networks
+    precision.choose(config.precision)
     if config.compile_cache is None or CACHE in os.environ:
         return
     if cache := cache_folder(str(config.compile_cache)):

@@ -14,6 +14,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.networks import precision
 from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, provenance
 from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.jax_settings import prepare
@@ -29,7 +30,10 @@ from hybrid_rl.training.loops import loop_of
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "logger")
-OF_A_SESSION += ("compile_cache",)
+OF_A_SESSION += ("compile_cache", "precision", "matmul_precision")
+
+ONLY = "with resume only total_steps and precision can be changed"
+SLOWER = "precision=bf16: slower than float32 on a CPU (0.5 to 0.7 of its speed); it is for GPUs"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 
@@ -51,8 +55,8 @@ def train(
     """Run `config` to its end, or to a signal; returns what summary.json holds.
 
     given: the overrides of the user, key -> value; of a resumed run, whose settings come from its
-    folder, only total_steps may differ. handled: `handled(f)` is a context in which the first
-    signal calls f(number).
+    folder, only total_steps and precision may differ. handled: `handled(f)` is a context in which
+    the first signal calls f(number).
 
     Raises:
         UsageError: if the configuration makes no run.
@@ -137,7 +141,10 @@ def _run(
         RunLog(run_dir, run.seeds, copies) as log,
         _progress(run, label, output.shown) as progress,
     ):
-        progress.note("\n".join([f"{label}: run folder {run_dir}", size, *run.notes]))
+        notes = [f"{label}: run folder {run_dir}", size, *run.notes]
+        if precision.chosen() == "bf16" and jax.default_backend() == "cpu":
+            notes.append(SLOWER)
+        progress.note("\n".join(notes))
         loop = loop_of(run.agent, run.seeds, -(-config.log_every // config.num_envs), run_dir)
         duration = Duration(jax.default_backend() == "cpu", instead(config))
         plan = _schedule(config), log, progress, duration
@@ -165,7 +172,7 @@ def _run(
 
 
 def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
-    """The configuration of the run that `config` resumes, with the total_steps of the user.
+    """The configuration of the run that `config` resumes, with what the user may change.
 
     Raises:
         UsageError: if the user gave another key a new value, or lowered total_steps.
@@ -174,12 +181,12 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
     old = folder.read(run_dir, "resume")
     if not checkpoint.steps(run_dir / "checkpoints"):
         raise UsageError(f"resume={run_dir}: holds no checkpoint; start the run again")
-    for key in given.keys() - {"resume", "total_steps", "compile_cache"}:
+    for key in given.keys() - {"resume", "total_steps", "compile_cache", "precision"}:
         before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
         if _same(old, config) if before is UNKNOWN else before == now:
             continue
         has = "" if before is UNKNOWN else f"; the run in resume={run_dir} has {before}"
-        raise UsageError(f"{key}={given[key]}: with resume only total_steps can be changed{has}")
+        raise UsageError(f"{key}={given[key]}: {ONLY}{has}")
     if "total_steps" in given:
         steps = whole(config, "total_steps")
         with folder.blamed(run_dir):
@@ -192,6 +199,8 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
         old.total_steps = steps
         countable(old)
     old.resume, old.compile_cache = config.resume, config.compile_cache
+    if "precision" in given:
+        old.precision = config.precision
     return old
 
 
@@ -211,10 +220,7 @@ def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
         now.pop(key, None)
         then.pop(key, None)
     if changed := changes(then, now):
-        raise UsageError(
-            f"{run_dir / 'config.yaml'}: {', '.join(changed)}; put it back: with resume "
-            "only total_steps can be changed"
-        )
+        raise UsageError(f"{run_dir / 'config.yaml'}: {', '.join(changed)}; put it back: {ONLY}")
 
 
 def _same(old: DictConfig, config: DictConfig) -> bool:
@@ -266,7 +272,7 @@ def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
         "env_steps_per_s": session.record.learning.rate,
         "physics": configuration.physics(config),
         "device": provenance.device(),
-        "matmul_precision": config.matmul_precision,
+        "precision": precision.chosen(),
         "versions": provenance.versions(),
         "git_commit": provenance.git_commit(),
         "run_dir": str(session.log.run_dir),

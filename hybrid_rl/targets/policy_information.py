@@ -20,6 +20,7 @@ from jax import Array
 from hybrid_rl.core import fisher
 from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import FieldError, Positive, check, has, part
+from hybrid_rl.networks import precision
 from hybrid_rl.protocols import Balanced, BalancedEnv, LearnedPolicy
 from hybrid_rl.types import Params, PyTree
 
@@ -68,7 +69,8 @@ class PolicyInformation:
         def mu(weights: Any) -> Array:
             return self.policy.unsquashed({**params.policy, "weights": weights}, x)
 
-        F = fisher.jacobian(mu, params.policy["weights"])
+        with precision.using("float32"):
+            F = fisher.jacobian(mu, params.policy["weights"])
         return fisher.diagonal(F, jnp.full(len(F), self.sigma))
 
     def evidence(self, params: Params, x: Array) -> Array | None:

@@ -93,6 +93,29 @@ def test_strength_is_chosen_by_the_goal() -> None:
     assert (float(fast.plan.s), float(slow.plan.s)) == (1.0, 0.5)
 
 
+@pytest.mark.parametrize(("doubt", "pushes"), [(None, True), (0.9, True), (1.1, False)])
+def test_a_plan_acts_where_the_members_agree_that_it_beats_the_policy(
+    doubt: float | None, pushes: bool
+) -> None:
+    """One member gains from a push to the right what two mean, the other nothing: mean = std."""
+
+    @dataclass(frozen=True)
+    class Torn(Cart):
+        def predictions(self, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
+            """The mean, no disagreement, and what either member predicts."""
+            after, still = self.step(params, x, u), self.step(params, x, jnp.zeros(1))
+            return after, jnp.zeros(2), jnp.stack([still, 2 * after - still])
+
+    @dataclass(frozen=True)
+    class Idle(Steady):
+        def mean(self, params: Any, x: Array) -> Array:
+            """No action."""
+            return jnp.zeros(1)
+
+    u = act(GradientController(Torn(), Speed(), policy=Idle(), **SMALL, noise=0.3, doubt=doubt))[0]
+    assert (float(u[0]) > 0.2) == pushes
+
+
 def test_the_tail_sees_what_comes_after_the_plan() -> None:
     """One decision ahead, speed pays; for ten more the policy has to brake at J's expense."""
 

@@ -230,7 +230,7 @@ def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
     assert line.startswith(f"hybrid_rl: {path}: ")
     assert "replay.capacity was 200 and is 300" in line
     assert "learning_rate was 0.0003 and is 3" in line
-    assert "with resume only total_steps can be changed" in line
+    assert "with resume only total_steps and precision" in line
     assert contents(copied) == before
     path.write_text(text.replace("compile_cache: null", "compile_cache: elsewhere"))
     assert call_train(f"resume={copied}", "total_steps=150") == 0  # of this machine, not the run

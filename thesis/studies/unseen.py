@@ -16,7 +16,7 @@ from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import fisher
-from hybrid_rl.networks import mean_weights
+from hybrid_rl.networks import mean_weights, precision
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 
@@ -92,7 +92,8 @@ def derivatives(model: Any, params: Any, sigma: float, obs: Any, action: Any) ->
                 return model.step(mean_weights.replaced(params, theta), x, u)
 
             noise = mean_weights.noise(model, params, x, sigma)
-            return fisher.jacobian(f, theta) / noise[:, None]
+            with precision.using("float32"):
+                return fisher.jacobian(f, theta) / noise[:, None]
 
         return jax.vmap(one)(x, u)
 

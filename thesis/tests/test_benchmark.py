@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from tiny import call
 
 from hybrid_rl.benchmark import __main__ as benchmark
-from hybrid_rl.benchmark import others, ours, picture
+from hybrid_rl.benchmark import others, ours, parts, picture
 from hybrid_rl.benchmark.picture import draw, redraw
 from hybrid_rl.benchmark.race import Contestant, race
 from hybrid_rl.cli import command
@@ -55,6 +55,26 @@ def test_the_command_measures_every_part(tmp_path, capsys):
     assert tables[0]["solver"]["iterations"] == mjcf.load("cartpole.xml").opt.iterations
     for part in ("physics", "plan", "loop"):
         assert iio.imread(out.with_stem(f"b_{part}").with_suffix(".png")).shape[1] > 500
+
+
+def test_loops_are_timed_by_precision_beside_the_committed_ones(tmp_path, capsys, monkeypatch):
+    """A row for each precision; a row that is not known stands beside the first of its table."""
+    out, known = tmp_path / "b.json", tmp_path / "known.json"
+    line = ["parts=loop", "learners=1", "algo=sac", "rounds=1", "seconds=0.01", f"out={out}"]
+    what = "sac, default, 1 learner"
+    rows = [{"name": "native, tf32", "rate": 1e9}]
+    known.write_text(json.dumps({"machine": "a GPU", "tables": [{"what": what, "rows": rows}]}))
+    monkeypatch.setattr(parts, "REFERENCE", known)
+    assert run(*line, "precision=float32,bf16") == 0
+    (table,) = json.loads(out.read_text())["tables"]
+    assert table["what"] == what
+    assert [row["name"] for row in table["rows"]] == ["native, float32", "native, bf16"]
+    assert capsys.readouterr().out.count("0.000 of 1,000,000,000 (a GPU, native, tf32)") == 2
+
+
+def test_committed_loops_have_rows():
+    known = json.loads(parts.REFERENCE.read_text())
+    assert all(table["rows"][0]["rate"] > 0 for table in known["tables"])
 
 
 @pytest.mark.parametrize("implementation", ["native", "mjx"])
@@ -131,6 +151,9 @@ def test_pictures_fit_a_screen_and_bars_begin_at_zero(tmp_path):
     ("given", "line"),
     [
         ("parts=physic", "parts=physic: unknown; choose of physics, plan"),
+        ("parts=loop precision=low", "precision=low: unknown; choose of auto, bf16, tf32, float32"),
+        ("matmul_precision=default", "matmul_precision=default is precision=tf32"),
+        ("parts=act settings=fast", "settings=fast: parts=act does not use it; loop would"),
         ("rounds=0", "rounds=0: must be a whole number, 1 or more"),
         ("out=table.txt", "out=table.txt: must end in .json"),
         ("algo=sac parts=plan", "plan: sac has no planner by samples"),

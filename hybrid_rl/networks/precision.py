@@ -1,0 +1,44 @@
+"""The numbers in which networks compute; whatever is no network computes in float32.
+
+    float32  as everything else
+    tf32     products in TF32 on a GPU: factors rounded to 10 bits, sums in float32
+    bf16     also the hidden layers of a multilayer perceptron in bfloat16: products, layer norm and
+             activations of 7 bits. Weights, their gradients' steps, the last layer and all that
+             follows it are float32, so checkpoints do not depend on it.
+    auto     AUTO of the device, or float32
+
+A program has the precision in which it was traced: `choose` sets it for a run, `using` for a block.
+"""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax.lax import Precision
+
+AUTO = {"gpu": "tf32"}  # kind of device -> precision
+PRECISIONS = ("auto", "bf16", "tf32", "float32")
+_CHOSEN = jax.make_user_context("auto")  # a part of JAX's keys of traced programs
+
+using = _CHOSEN  # with using("float32"): ...
+
+
+def choose(name: str) -> None:
+    """Networks compute in one of PRECISIONS from now on, in every thread."""
+    _CHOSEN.set_global(name)
+
+
+def chosen() -> str:
+    """bf16, tf32 or float32."""
+    name = _CHOSEN.value
+    return AUTO.get(jax.default_backend(), "float32") if name == "auto" else name
+
+
+def of_products() -> Precision:
+    """That of a network's products of float32 matrices."""
+    return Precision.HIGHEST if chosen() == "float32" else Precision.DEFAULT
+
+
+def of_hidden() -> Any:
+    """The type of hidden layers; None: that of inputs and weights."""
+    return jnp.bfloat16 if chosen() == "bf16" else None

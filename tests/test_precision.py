@@ -1,0 +1,148 @@
+"""What computes in which numbers, by precision=NAME."""
+
+import json
+import re
+from collections import Counter
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from small import load
+from tiny import CONF, call, call_train, only_line
+
+import hybrid_rl
+from hybrid_rl import evaluate
+from hybrid_rl.config import build
+from hybrid_rl.controllers.policy import PolicyController
+from hybrid_rl.export import program
+from hybrid_rl.networks import MLP, normalised, precision
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.types import Params, Spec
+
+pytestmark = pytest.mark.turns(2)
+
+
+@pytest.fixture(autouse=True)
+def _as_before():
+    """Other tests compute as they would without these."""
+    yield
+    precision.choose("auto")
+
+
+def products(f, *given):
+    """The types of the results of all products in `f`, and their precisions."""
+    text = str(jax.make_jaxpr(f)(*given))
+    kinds = re.findall(r":(\w+)\[[\d,]*\] = dot_general", text)
+    return Counter(kinds), set(re.findall(r"precision=\(?(?:Precision\.)?(\w+)", text))
+
+
+@pytest.mark.parametrize(
+    ("name", "hidden", "of_products"),
+    [("float32", "f32", "HIGHEST"), ("tf32", "f32", "DEFAULT"), ("bf16", "bf16", "DEFAULT")],
+)
+def test_hidden_layers_have_the_precision_and_outputs_float32(name, hidden, of_products):
+    net, x = MLP((8, 8), 3, layer_norm=True), jnp.ones((4, 5))
+    with precision.using(name):
+        params = net.init(jax.random.key(0), x)
+        kinds, at = products(net.apply, params, x)
+        gradient = jax.grad(lambda params: net.apply(params, x).sum())(params)
+        assert kinds == Counter({hidden: 2}) + Counter({"f32": 1})
+        assert at == {of_products}
+        assert net.apply(params, x).dtype == jnp.float32
+    assert {leaf.dtype for leaf in jax.tree.leaves((params, gradient))} == {jnp.dtype("float32")}
+
+
+def test_on_a_cpu_auto_is_float32():
+    net, x = MLP((8,), 3), jnp.ones(5)
+    precision.choose("auto")
+    assert products(lambda: net.init(jax.random.key(0), x))[1] == {"HIGHEST"}
+
+
+def test_residual_networks_stay_in_float32():
+    net = normalised.NormalisedNet(8, 1, 2)
+    with precision.using("bf16"):
+        params = normalised.init(net, jax.random.key(0), 3)
+        kinds, _ = products(lambda x: normalised.apply(net, params, x), jnp.ones((4, 3)))
+    assert set(kinds) == {"f32"}
+
+
+@pytest.mark.parametrize("algo", ["koopman_active", "koopman_embedding", "gp_active", "kle3"])
+def test_what_is_no_network_stays_in_float32(algo):
+    agent = build(load(algo, "task=pendulum", f"algo={algo}")).agent
+    with precision.using("bf16"):
+        state = jax.eval_shape(agent.init, jax.random.key(0))
+        assert set(products(agent.step, state, jnp.int32(0))[0]) == {"f32"}
+
+
+def test_information_is_measured_in_float32():
+    """Of a model's weights, along a path; the model itself learns in bfloat16."""
+    run = build(load("fisher", "task=pendulum", "algo=fisher"))
+    with precision.using("bf16"):
+        state = jax.eval_shape(run.agent.init, jax.random.key(0))
+        params = jax.eval_shape(run.agent.params, state)
+        learner = run.agent.learners["model"]
+        information = run.agent.learners["information"]
+        rows = jax.eval_shape(
+            lambda memory: run.agent._batch(memory, information, params, jax.random.key(0)),
+            state.memory,
+        )
+        key = jax.random.key(0)
+        of_model = products(learner.update, state.learners["model"], params, rows, key)[0]
+        measured = products(information.update, state.learners["information"], params, rows, key)
+    assert "bf16" in of_model
+    assert set(measured[0]) == {"f32"}
+
+
+def test_an_exported_policy_computes_in_float32():
+    policy, spec = TanhGaussian((8,)), Spec(3, 1, 0.05)
+    precision.choose("bf16")
+    params = Params(policy=policy.init(jax.random.key(0), spec))
+    made = program(spec, PolicyController(policy, explore=False), params)
+    assert "bf16" not in made.mlir_module()
+
+
+def test_a_run_keeps_its_precision_and_can_change_it(tmp_path, capfd):
+    """Its parameters and the states of its optimisers are float32 with each."""
+
+    def called():
+        return json.loads((folder / "summary.json").read_text())["precision"]
+
+    folder = tmp_path / "run"
+    given = ["settings=tiny", "algo=sac", "eval_modes=[]", "checkpoint_every=300"]
+    assert call_train(CONF, *given, "precision=bf16", f"run_dir={folder}") == 0
+    assert "precision=bf16: slower than float32 on a CPU" in capfd.readouterr().out
+    assert called() == "bf16"
+    leaves = jax.tree.leaves(hybrid_rl.load(folder).params)
+    assert {leaf.dtype.name for leaf in leaves} == {"float32"}
+    assert call_train(f"resume={folder}", "total_steps=650") == 0
+    assert called() == "bf16"
+    assert call_train(f"resume={folder}", "total_steps=700", "precision=float32") == 0
+    assert called() == "float32"
+    assert call(evaluate.main, f"run={folder}", "episodes=1", "precision=bf16") == 0
+    found = json.loads((folder / "evaluation_full.json").read_text())
+    assert found["precision"] == "bf16"
+    assert np.isfinite(found["mean"]).all()
+
+
+def test_bf16_learns_other_numbers_than_float32():
+    """A step of an optimiser, from the same parameters, is close and not equal."""
+    net, x = MLP((32, 32), 3), jax.random.normal(jax.random.key(1), (16, 5))
+    params = net.init(jax.random.key(0), x)
+
+    def slope(name):
+        with precision.using(name):
+            return jax.grad(lambda params: (net.apply(params, x) ** 2).sum())(params)
+
+    of_bf16, of_float32 = (
+        np.concatenate([leaf.ravel() for leaf in jax.tree.leaves(slope(name))])
+        for name in ("bf16", "float32")
+    )
+    error = np.linalg.norm(of_bf16 - of_float32) / np.linalg.norm(of_float32)
+    assert 0 < error < 0.05
+
+
+def test_the_old_key_is_refused_in_one_line(capfd):
+    assert call_train("task=pendulum", "matmul_precision=default") == 2
+    assert "matmul_precision=default: since 0.3" in (line := only_line(capfd))
+    assert "precision=tf32" in line
