@@ -251,9 +251,7 @@ def _check_seeds(folder: Path, config: DictConfig) -> None:
 
 @contextmanager
 def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
-    """Errors about the configuration of a run name its config.yaml.
-
-    lacking: only those about keys that it lacks; the others are of another configuration.
+    """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml.
 
     Raises:
         UsageError: that begins with the path of config.yaml.
@@ -266,7 +264,7 @@ def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
     except (ConfigKeyError, ConfigAttributeError) as error:
         raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
-        if lacking:
+        if lacking:  # the others are of another configuration
             raise
         line = str(error).partition("\n")[0]
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
