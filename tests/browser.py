@@ -71,10 +71,16 @@ class Browser:
         )
 
     def click(self, text: str) -> None:
-        """Click on the first visible element with exactly this text or label."""
-        x, y = self.wait(lambda: self.value(f"({FIND})({json.dumps(text)})"))
+        """Click on the innermost visible element with exactly this text, once it stands still."""
+        x, y = self.wait(lambda: self._still(f"({FIND})({json.dumps(text)})"))
         self.mouse("press", x, y, 1)
         self.mouse("release", x, y)
+
+    def _still(self, script: str) -> Any:
+        """What a script evaluates to, if it is the same after a moment."""
+        before = self.value(script)
+        time.sleep(0.5)
+        return before if before == self.value(script) else None
 
     def picture(self, file: Path) -> None:
         """Write a screenshot."""

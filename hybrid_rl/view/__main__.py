@@ -22,8 +22,10 @@ if __name__ == "__main__":
 
     interrupt.install()
 
+import contextlib
+import io
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -120,7 +122,8 @@ def serve(given: Mapping[str, Any]) -> Any:
     """
     viser: Any = installed()
     try:
-        return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
+        with contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
+            return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
     except (OSError, OverflowError) as error:
         line = f"host={given['host']} port={given['port']}: cannot be used ({error})"
         raise UsageError(line) from error
@@ -139,11 +142,10 @@ def installed() -> Any:
         raise UsageError(f"view: {INSTALL}") from error
 
 
-def main() -> None:
-    """The command."""
-    given, changes = read(__doc__, ARGUMENTS, GROUPS)
-    check(given, changes)
-    installed()
+def show(
+    given: Mapping[str, Any], changes: Mapping[str, str], opened: Callable[[str], Any] | None = None
+) -> None:
+    """Serve the window until Ctrl-C; opened: called with its address."""
     print("compiling the first programs", flush=True)
     servers: list[Any] = []
 
@@ -152,12 +154,22 @@ def main() -> None:
         return servers[0]
 
     session = open_session(given, changes, server)
-    port = servers[0].get_port()
-    print(f"open http://{given['host']}:{port} in a browser; Ctrl-C ends it", flush=True)
+    address = f"http://{given['host']}:{servers[0].get_port()}"
+    print(f"open {address} in a browser; Ctrl-C ends it", flush=True)
+    if opened:
+        opened(address)
     try:
         session.run(threading.Event())
     finally:
         servers[0].stop()
+
+
+def main() -> None:
+    """The command."""
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    check(given, changes)
+    installed()
+    show(given, changes)
 
 
 if __name__ == "__main__":

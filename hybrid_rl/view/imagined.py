@@ -65,7 +65,7 @@ def _of_robot(episode: Episode, state: EnvState) -> Reading | None:
         speed = x[:, q - hidden : q]
         moved = spec.dt * jnp.cumsum((speed[1:] + speed[:-1]) / 2, 0)
         start = simulated(state)[0].qpos[:hidden]
-        along = start + jnp.concatenate([jnp.zeros((1, hidden)), moved])
+        along = start[None] + jnp.concatenate([jnp.zeros((1, hidden)), moved])
         return jnp.concatenate([along, x[:, : q - hidden]], 1)
 
     return read

@@ -44,19 +44,24 @@ class Panel:
         self._gui.set_panel_label("hybrid_rl")
         self._status = self._gui.add_markdown("")
         self._run()
-        self._modes = self._gui.add_dropdown("mode", tuple(modes), wishes.choice.mode)
+        self._modes = self._gui.add_dropdown(
+            "mode", tuple(modes), initial_value=wishes.choice.mode
+        )
         self._modes.on_update(lambda _: self._choose(mode=self._modes.value))
         if rewards:
             names = ("of the training", *rewards)
-            reward = self._gui.add_dropdown("reward", names, wishes.choice.reward or names[0])
+            first = wishes.choice.reward or names[0]
+            reward = self._gui.add_dropdown("reward", names, initial_value=first)
             reward.on_update(
                 lambda _: self._choose(reward="" if reward.value == names[0] else reward.value)
             )
         self._goal = self._gui.add_folder("Goal", visible=False)
-        self._body = self._gui.add_folder("Body and disturbances", visible=False)
+        self._plots = {each: self._plot(each) for each in PLOTS}
+        self._body = self._gui.add_folder(
+            "Body and disturbances", expand_by_default=False, visible=False
+        )
         self._goals: list[Slider] = []
         self._handles: list[Any] = []
-        self._plots = {each: self._plot(each) for each in PLOTS}
 
     def _run(self) -> None:
         """Pause, step, a new episode, its seed, the speed."""

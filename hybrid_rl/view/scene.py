@@ -18,7 +18,7 @@ from hybrid_rl.view.imagined import body_of, track
 from hybrid_rl.view.push import Pull
 
 PALE, BRIGHT, PULL = (70, 90, 120), (255, 122, 0), (214, 40, 40)  # colours of lines
-BACK = 1.3  # times as far as in a video, as the panel covers a part
+BACK = 1.6  # times as far as in a video, as the panel covers a part
 
 
 class Scene:
@@ -107,5 +107,6 @@ class Scene:
             if found.type == mujoco.mjtCamera.mjCAMERA_TRACKING:
                 centre = self._data.subtree_com[found.trackbodyid]
         self.draw(self._data.qpos)
+        view.fov = np.radians(self.model.vis.global_.fovy)
         view.look_at = centre + self.offset
         view.position = view.look_at - BACK * distance * ahead

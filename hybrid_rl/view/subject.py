@@ -19,7 +19,7 @@ from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
-DISTURBED = ("delay", "sensor_noise", "action_noise")  # fields of an episode that have sliders
+DISTURBED = {"delay": 5.0, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
 SPAN = 5.0  # a slider ends at so many times its value, or at so many
 
 
@@ -68,6 +68,8 @@ def sliders(group: str, part: Any) -> list[Slider]:
         if isinstance(value, bool) or not isinstance(value, int | float):
             continue
         whole, most = field.type is int, SPAN * max(1.0, abs(value))
+        if group == "episode":
+            most = max(DISTURBED.get(field.name, most), value)
         rules = [get_args(kind)[1:] for kind in choices(field.type)]
         above = get_args(Positive)[1:] in rules
         signed = not (above or whole or get_args(NotNegative)[1:] in rules or group == "episode")
