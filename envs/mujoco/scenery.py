@@ -55,13 +55,13 @@ def check_drawable(env: Any) -> None:
 
 def _first(env: Any) -> PhysicsState:
     """The shapes of the simulation's state in `env`."""
-    simulated = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
-    if not simulated:
+    found = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
+    if not found:
         missing = [f"`{name}`" for name in ("scene", "pose") if not hasattr(env, name)]
         raise ValueError(
             f"{type(env).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
         )
-    return simulated[0]
+    return found[0]
 
 
 def simulated(state: EnvState) -> list[PhysicsState]:

@@ -45,7 +45,7 @@ class Panel:
         self._status = self._gui.add_markdown("")
         self._run()
         self._modes = self._gui.add_dropdown(
-            "mode", tuple(modes), initial_value=wishes.choice.mode
+            "mode", tuple(modes), initial_value=wishes.choice.mode, visible=len(modes) > 1
         )
         self._modes.on_update(lambda _: self._choose(mode=self._modes.value))
         if rewards:

@@ -1,4 +1,4 @@
-"""The robot, its imagined paths and a push, drawn in the browser by viser and mjviser.
+"""The robot and its imagined paths, drawn in the browser by viser and mjviser.
 
 mjviser follows the first body that moves by moving the whole world; what is drawn beside the robot,
 and what a drag says, moves with it.
@@ -17,7 +17,7 @@ from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.view.imagined import body_of, track
 from hybrid_rl.view.push import Pull
 
-PALE, BRIGHT, PULL = (70, 90, 120), (255, 122, 0), (214, 40, 40)  # colours of lines
+PALE, BRIGHT = (70, 90, 120), (255, 122, 0)  # colours of lines
 BACK = 1.6  # times as far as in a video, as the panel covers a part
 
 
@@ -54,11 +54,6 @@ class Scene:
         self._line("candidates", paths, PALE, 1.5)
         self._line("chosen", paths[chosen : chosen + 1], BRIGHT, 5.0)
 
-    def pulled(self, pull: Pull | None) -> None:
-        """A line for the push; None: there is none."""
-        ends = np.zeros((0, 2, 3)) if pull is None else np.stack([pull.at, pull.to])[None]
-        self._line("pull", ends, PULL, 4.0)
-
     def _line(
         self, name: str, paths: np.ndarray, colour: tuple[int, int, int], width: float
     ) -> None:
@@ -84,8 +79,8 @@ class Scene:
                 self._pull(None)
                 return
             name = self.model.body(int(bodies[event.instance_index or 0])).name
-            ends = [np.array(at) - self.offset for at in (event.start_position, event.end_position)]
-            self._pull(Pull(name, *ends, time.monotonic()))
+            at, to = (np.array(p) - self.offset for p in (event.start_position, event.end_position))
+            self._pull(Pull(name, at, to, time.monotonic()))
 
         return dragged
 

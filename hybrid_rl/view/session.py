@@ -87,9 +87,10 @@ class Session:
     def _decide(self) -> None:
         """One decision, after a push; a new episode after the last one."""
         player, pull = self.player, self.wishes.pull
-        if bool(player.state.done):
+        total = float(player.state.info["return"])
+        if bool(player.state.done) or not np.isfinite(total):  # a body that cannot be simulated
             self.episodes += 1
-            self._ended = f"; the last one: {float(player.state.info['return']):,.1f}"
+            self._ended = f"; the last one: {total:,.1f}"
             self._begin()
         if pull is not None and pull.fresh and push.possible(player.state):
             player.state = push.pushed(player.state, pull, self._dt)
@@ -102,17 +103,14 @@ class Session:
         self._history.add(t, float(reward), metrics)
 
     def _picture(self) -> None:
-        """The robot, its imagined paths and the push."""
-        player, pull = self.player, self.wishes.pull
-        decided = player.decided
+        """The robot and its imagined paths."""
+        player, decided = self.player, self.player.decided
         self._scene.draw(np.asarray(player.cast.world.pose(player.state)))
         poses = decided.poses if decided and self.wishes.candidates else None
         if poses is None or decided is None:
             self._scene.imagine(None)
         else:
             self._scene.imagine(np.asarray(poses), int(decided.chosen))
-        shown = pull is not None and pull.fresh and push.possible(player.state)
-        self._scene.pulled(pull if shown else None)
 
     def _report(self) -> None:
         """Plots, sliders and a line, a few times a second."""

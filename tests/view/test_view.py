@@ -119,7 +119,7 @@ def test_a_push_is_at_most_the_robots_weight():
     near = push.force(model, np.zeros(3), [0.0, 0.01, 0])
     np.testing.assert_allclose(near, [0, 0.01 * push.STIFFNESS * mass, 0])
     at = np.asarray(state.data.qpos[:3], float)
-    pull = push.Pull("torso", at, at + [0, 0, 5.0], 0.0)
+    pull = push.Pull("torso", at, at + np.array([0, 0, 5.0]), 0.0)
     dv = push.change(state.data, pull, 0.05)
     assert 0.05 * most * 0.9 < dv[2] < 0.05 * most * 3  # the legs follow later
     moved = push.pushed(state, pull, 0.05)
