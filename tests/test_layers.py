@@ -55,7 +55,7 @@ ALLOWED = {
     "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "trained", "analysis"},
     "benchmark": {*CONFIG, "run", "cli", "trained", "analysis", "benchmark"},
     # shows what commands show, on goals that `goals` makes
-    "view": {*CONFIG, "controllers", "run", "cli", "trained", "command", "view"},
+    "view": {*SHARED, *CONFIG, "run", "cli", "trained", "command", "view"},
     # as a user's project would, and nothing but the command `render` imports it
     "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "trained", "analysis", "thesis"},
 }

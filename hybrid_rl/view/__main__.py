@@ -23,7 +23,9 @@ if __name__ == "__main__":
     interrupt.install()
 
 import contextlib
+import errno
 import io
+import socket
 import threading
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -43,6 +45,14 @@ from hybrid_rl.cli.arguments import (
 )
 from hybrid_rl.errors import UsageError
 
+
+def port(name: str, given: str) -> int:
+    """A number of a TCP port."""
+    if (number := whole()(name, given)) > 65535:
+        raise UsageError(f"{name}={given}: must be a whole number, 1 to 65535")
+    return number
+
+
 ARGUMENTS = (
     Argument("run", "", "folder of a trained run, or of one that is training"),
     POLICY,
@@ -52,7 +62,7 @@ ARGUMENTS = (
     CONFIG_DIR,
     Argument("mode", "full", "of run or policy: full, policy or planner", text),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
-    Argument("port", 8080, "of the address, or the next one that is free", whole(least=1)),
+    Argument("port", 8080, "of the address, or the next one that is free", port),
     Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
 )
 GROUPS = {**CHANGES, "expert": "with task=T: a key of its expert"}
@@ -114,19 +124,29 @@ def check(given: Mapping[str, Any], changes: Mapping[str, str]) -> None:
         raise UsageError("mode: a scripted expert has none; give it with run=DIR")
 
 
+def check_address(host: str, port: int) -> None:
+    """Raise UsageError for an address that this machine cannot serve.
+
+    viser would wait for it without end; a port that is in use is not wrong, as it takes the next.
+    """
+    try:
+        family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family, kind) as probe:
+            probe.bind(address)
+    except OSError as error:
+        if error.errno != errno.EADDRINUSE:
+            raise UsageError(f"host={host} port={port}: cannot be used ({error})") from error
+
+
 def serve(given: Mapping[str, Any]) -> Any:
     """A server at the address, where only this machine may ask unless host=... says otherwise.
 
     Raises:
-        UsageError: without viser, or for an address that cannot be had.
+        UsageError: without viser.
     """
     viser: Any = installed()
-    try:
-        with contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
-            return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
-    except (OSError, OverflowError) as error:
-        line = f"host={given['host']} port={given['port']}: cannot be used ({error})"
-        raise UsageError(line) from error
+    with contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
+        return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
 
 
 def installed() -> Any:
@@ -168,6 +188,7 @@ def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
     check(given, changes)
+    check_address(given["host"], given["port"])
     installed()
     show(given, changes)
 
