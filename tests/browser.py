@@ -36,7 +36,7 @@ class Browser:
             for each in json.load(urlopen(f"http://127.0.0.1:{port}/json"))
             if each["type"] == "page"
         ]
-        self._socket = connect(page["webSocketDebuggerUrl"], max_size=None)
+        self._socket = connect(page["webSocketDebuggerUrl"], max_size=None, ping_interval=None)
         self._number, self.events = 0, []
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.send(f"{domain}.enable")

@@ -181,7 +181,8 @@ def show(
     try:
         session.run(threading.Event())
     finally:
-        servers[0].stop()
+        with contextlib.redirect_stdout(io.StringIO()):
+            servers[0].stop()
 
 
 def main() -> None:

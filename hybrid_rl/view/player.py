@@ -55,7 +55,8 @@ class Player:
         self._made: dict[Any, Any] = {}  # programs that were compiled
         self._subjects: dict[Any, Subject] = {}
         self._pool = ThreadPoolExecutor(1, "compile")
-        self.wanted, self._coming = choice, None
+        self.wanted = self._asked = choice
+        self._coming: Future[Cast] | None = None
         self.problem = ""  # why the last choice is not shown
         subject = self._subject(choice)
         if choice.mode not in subject.controllers:
@@ -88,7 +89,7 @@ class Player:
         """Show this as soon as its programs are ready."""
         self.wanted, self.problem = choice, ""
         if choice != self.cast.choice and self._coming is None:
-            self._coming = self._pool.submit(self._make, choice)
+            self._ask()
 
     def advance(self) -> None:
         """One decision."""
@@ -110,17 +111,21 @@ class Player:
 
     def exchange(self) -> None:
         """Take programs that are ready, and ask for those that are wanted now."""
-        ready: Future[Cast] | None = self._coming
+        ready = self._coming
         if ready is None or not ready.done():
             return
         self._coming = None
         try:
             self._enter(ready.result())
-        except UsageError as error:
+        except UsageError as error:  # it stays wanted, and is not asked for again
             self.problem = str(error)
-            self.wanted = self.cast.choice
-        if self.wanted != self.cast.choice:
-            self._coming = self._pool.submit(self._make, self.wanted)
+        if self.wanted not in (self._asked, self.cast.choice):
+            self.choose(self.wanted)
+
+    def _ask(self) -> None:
+        """Make the programs of what is wanted."""
+        self._asked = self.wanted
+        self._coming = self._pool.submit(self._make, self._asked)
 
     def _enter(self, cast: Cast) -> None:
         """Go on with other programs, from the state of the world as it is."""

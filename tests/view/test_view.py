@@ -87,6 +87,8 @@ def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
     one.choose(Choice("policy", changes={"env.mass": "-1"}))
     settle(one)
     assert "mass=-1" in one.problem
+    one.exchange()
+    assert not one.compiling  # it is not asked for again
     assert one.cast.world.episode.delay == 2
     one.advance()
 
