@@ -129,21 +129,28 @@ def of_policy(episode: Episode, controllers: dict[str, Controller], mode: str) -
     return path
 
 
-def body_of(model: mujoco.MjModel) -> int:
-    """The body whose path is drawn: a torso that moves freely, else the end of an arm."""
+def point_of(model: mujoco.MjModel) -> tuple[int, float]:
+    """The body whose path is drawn, and the reach of the point: see `track`.
+
+    It is the middle of a torso that moves freely, else the end of an arm's last body.
+    """
     moving = np.flatnonzero(model.body_weldid > 0)
     if not len(moving):
-        return 0
+        return 0, 1.0
     joint = model.body_jntadr[moving[0]]
     hinged = joint >= 0 and model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
-    return int(moving[-1] if hinged else moving[0])
+    return (int(moving[-1]), 2.0) if hinged else (int(moving[0]), 1.0)
 
 
-def track(model: mujoco.MjModel, body: int, poses: np.ndarray) -> np.ndarray:
-    """The positions [K, T, 3] [m] of the centre of mass of `body` at poses [K, T, nq]."""
+def track(model: mujoco.MjModel, poses: np.ndarray, body: int, reach: float = 1.0) -> np.ndarray:
+    """The positions [K, T, 3] [m] of a point of `body` at poses [K, T, nq].
+
+    reach: from the body's origin, where its joint is, in distances to its centre of mass; 2 is the
+    end of a rod.
+    """
     data, points = mujoco.MjData(model), np.empty((*poses.shape[:2], 3), np.float32)
     for k, t in np.ndindex(*poses.shape[:2]):
         data.qpos[:] = poses[k, t]
         mujoco.mj_kinematics(model, data)
-        points[k, t] = data.xipos[body]
+        points[k, t] = data.xpos[body] + reach * (data.xipos[body] - data.xpos[body])
     return points

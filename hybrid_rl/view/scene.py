@@ -14,7 +14,7 @@ from mjviser import ViserMujocoScene
 from viser import SceneNodeDragEvent, ViserServer
 
 from hybrid_rl.envs.mujoco import scenery
-from hybrid_rl.view.imagined import body_of, track
+from hybrid_rl.view.imagined import point_of, track
 from hybrid_rl.view.push import Pull
 
 PALE, BRIGHT = (70, 90, 120), (255, 122, 0)  # colours of lines
@@ -30,7 +30,7 @@ class Scene:
         self.model = scenery.dressed(scenery.scene_of(env))
         self._data = mujoco.MjData(self.model)
         self._drawn = ViserMujocoScene(server, self.model, num_envs=1)
-        self._body = body_of(self.model)
+        self._point = point_of(self.model)
         self._lines: dict[str, Any] = {}
         for group in self._drawn._mesh_groups:
             group.handle.on_drag("left")(self._dragged(group.body_ids))
@@ -49,8 +49,8 @@ class Scene:
         self._drawn.update_from_mjdata(self._data)
 
     def imagine(self, poses: np.ndarray | None, chosen: int = 0) -> None:
-        """Paths of one body at poses [K, T, nq], the chosen one bright; None: no paths."""
-        paths = np.zeros((0, 2, 3)) if poses is None else track(self.model, self._body, poses)
+        """Paths of one point at poses [K, T, nq], the chosen one bright; None: no paths."""
+        paths = np.zeros((0, 2, 3)) if poses is None else track(self.model, poses, *self._point)
         self._line("candidates", paths, PALE, 1.5)
         self._line("chosen", paths[chosen : chosen + 1], BRIGHT, 5.0)
 

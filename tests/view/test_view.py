@@ -15,6 +15,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.rewards.aim import Aim
 from hybrid_rl.training.episode import Episode
@@ -109,6 +110,17 @@ def test_positions_follow_from_observations(env, fits):
     obs = jnp.concatenate([first.obs[None], states.obs])
     apart = np.asarray(read(first, obs))[1:] - jax.vmap(env.pose)(states)
     assert np.abs((apart + np.pi) % (2 * np.pi) - np.pi).max() < fits  # angles may turn round
+
+
+def test_the_path_of_a_pendulum_is_that_of_its_tip():
+    model = scenery.dressed(scenery.scene_of(Pendulum()))
+    points = imagined.track(
+        model, np.array([[[0.0], [np.pi / 2], [np.pi]]]), *imagined.point_of(model)
+    )
+    middle = points[0, [0, 2]].mean(0)
+    away = np.linalg.norm(points[0] - middle, axis=1)
+    np.testing.assert_allclose(away, away[0], rtol=1e-3)
+    assert away[0] == pytest.approx(2 * np.linalg.norm(model.body_ipos[-1]), rel=1e-3)
 
 
 def test_a_push_is_at_most_the_robots_weight():
