@@ -45,11 +45,18 @@ def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Traine
     Raises:
         UsageError: for a run, a name, a key or a value that is unusable.
     """
+    return changed(named(given), given, changes)
+
+
+def changed(
+    trained: Trained, given: Mapping[str, Any], changes: Mapping[str, str]
+) -> tuple[Trained, dict[str, str]]:
+    """The same of a run or policy that is read already."""
     ours = tuple(each.name for each in GOAL)
     goal = {key: given[key] for key in ours if given[key]}
     goal |= {key: value for key, value in changes.items() if key.split(".")[0] in ours}
     words = [f"{key}={value}" for key, value in goal.items()]
-    trained = retargeted(named(given), words, given["config_dir"])
+    trained = retargeted(trained, words, given["config_dir"])
     rest = {key: value for key, value in changes.items() if key not in goal}
     if rest:
         assert trained.config is not None

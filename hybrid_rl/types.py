@@ -99,6 +99,13 @@ class Path(NamedTuple):
     u: Array  # [T, m]
 
 
+class Considered(NamedTuple):
+    """The candidates of a planner in one decision."""
+
+    paths: Path  # [K, ...]
+    chosen: Array  # [] the number of the one that acts, or that weighs most
+
+
 class Params(NamedTuple):
     """Read-only view of everything that is learned; each field has one learner at most."""
 

@@ -54,6 +54,8 @@ ALLOWED = {
     "trained": {*SHARED, *CONFIG, "archive", "data", "controllers", "run"},
     "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "trained", "analysis"},
     "benchmark": {*CONFIG, "run", "cli", "trained", "analysis", "benchmark"},
+    # shows what commands show, on goals that `goals` makes
+    "view": {*SHARED, *CONFIG, "run", "cli", "trained", "command", "view"},
     # as a user's project would, and nothing but the command `render` imports it
     "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "trained", "analysis", "thesis"},
 }

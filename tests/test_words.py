@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parents[1]
 CODE = ("hybrid_rl/**/*.py", "envs/**/*.py", "hydra_plugins/*.py", "tests/**/*.py", "scripts/*.py")
 TEXT = ("conf/**/*.yaml", "tests/conf/**/*.yaml", "*.md", "docs/**/*.md", "pyproject.toml")
 PICTURES = re.compile(
-    r"hybrid_rl/(analysis|benchmark|render)|thesis|tests/(analysis|test_figures|test_render)"
+    r"hybrid_rl/(analysis|benchmark|render|view)|thesis|tests/(analysis|test_figures|test_render)"
 )
 WORDS = {  # regular expression -> what to write
     "told": "the verb for what happens: print, log, report",
@@ -25,7 +25,7 @@ WORDS = {  # regular expression -> what to write
     r"climb\w*": "gradient ascent, target_density",
     r"explorer\.level": "guarded.level",
     r"likelihood\.\w+=|\$\{likelihood\}|@likelihood": "model_learner",
-    r"look(s|ed|ing)?(?! (at|for|like|up)\b)": "prepare, consult, search",
+    r"look(s|ed|ing)?(?![ _](at|for|like|up)\b)": "prepare, consult, search",
     r"(?<!\bin )(?<!\btakes )(?<!\btake )(?<!decimal )places?(?! of\b)": "position, folder, index",
     r"rows(?=\s*=\s*(scan_)?unroll)": "unroll",
 }

@@ -44,7 +44,7 @@ def pose_of(env: Any) -> Callable[[EnvState], Array]:
     if hasattr(env, "pose"):
         return env.pose
     _first(env)
-    return lambda state: _simulated(state)[0].qpos
+    return lambda state: simulated(state)[0].qpos
 
 
 def check_drawable(env: Any) -> None:
@@ -55,16 +55,18 @@ def check_drawable(env: Any) -> None:
 
 def _first(env: Any) -> PhysicsState:
     """The shapes of the simulation's state in `env`."""
-    simulated = _simulated(jax.eval_shape(env.reset, jax.random.key(0)))
-    if not simulated:
+    found = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
+    if not found:
         missing = [f"`{name}`" for name in ("scene", "pose") if not hasattr(env, name)]
         raise ValueError(
             f"{type(env).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
         )
-    return simulated[0]
+    return found[0]
 
 
-def _simulated(state: EnvState) -> list[PhysicsState]:
+def simulated(state: EnvState) -> list[PhysicsState]:
+    """The states of MuJoCo's models in the state of an environment."""
+
     def is_one(x: Any) -> bool:
         return isinstance(x, PhysicsState)
 

@@ -47,7 +47,7 @@ from hybrid_rl.fields import (
     part,
 )
 from hybrid_rl.protocols import Constraint, Model, Objective, Policy
-from hybrid_rl.types import Params, Path, Return, Spec
+from hybrid_rl.types import Considered, Params, Path, Return, Spec
 
 
 class Candidate(NamedTuple):
@@ -73,7 +73,7 @@ class Scored(NamedTuple):
     disagreement: Array  # [] sum over time
     risk: Array  # [] the largest probability of a violation before the tail
     beyond: Array  # [] distance beyond the limit, until then [widths]; above 0, as it is smooth
-    u: Array  # [m] its first action
+    path: Path  # x [T+tail+1, n], u [T+tail, m]
 
 
 @part
@@ -118,6 +118,12 @@ class GradientController:
         self, params: Params, state: GradientState, obs: Array, key: Array
     ) -> tuple[Array, GradientState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
+        return self.considered(params, state, obs, key)[:3]
+
+    def considered(
+        self, params: Params, state: GradientState, obs: Array, key: Array
+    ) -> tuple[Array, GradientState, dict[str, Array], Considered]:
+        """The same, and the candidates: what acts, then the refined, their starts, the drawn."""
         preparing, drawing = jax.random.split(key)
         x = self.model.lift(params.model, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)
@@ -132,6 +138,7 @@ class GradientController:
         winner = jnp.argmax(self._rank(found))
         plan, chosen = jax.tree.map(lambda leaf: leaf[winner], (each, found))
         plan, chosen = self._surely(params, value, x, plan, chosen)
+        u = chosen.path.u[0]
         gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
         risk = {} if self.constraint is None else {"planner/risk": chosen.risk}
         metrics = {
@@ -140,10 +147,14 @@ class GradientController:
             "planner/gain": jnp.where(jnp.isfinite(gain), gain, jnp.nan),  # of the gradients
             "planner/strength": plan.s,
             **risk,
-            **self._agreement(params, value, x, chosen.u),
+            **self._agreement(params, value, x, u),
         }
-        after = GradientState(Candidate(plan.s, sampling.shift(plan.v)), chosen.u, memory)
-        return chosen.u, after, metrics
+        after = GradientState(Candidate(plan.s, sampling.shift(plan.v)), u, memory)
+        paths = jax.tree.map(
+            lambda one, *leaves: jnp.concatenate([one[None], *leaves]),
+            *(chosen.path, found.path, first.path),
+        )
+        return u, after, metrics, Considered(paths, jnp.int32(0))
 
     def greedy(self) -> "GradientController":
         """The same controller: the best candidate acts."""
@@ -201,14 +212,15 @@ class GradientController:
 
         _, ahead = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))
         xs, us, apart, risk, beyond = ahead
-        J = value(Path(jnp.concatenate([x[None], xs]), us))
+        path = Path(jnp.concatenate([x[None], xs]), us)
+        J = value(path)
         score = J - self.disagreement_price * apart.sum()
         if self.constraint is not None and not self.priced:
             score = score - self.constraint.price * risk.sum()
         finite, T = jnp.isfinite(score), self.horizon
         far = jnp.where(finite, beyond[:T].sum(), jnp.inf)
         score = jnp.where(finite, score, -jnp.inf)
-        return Scored(score, J, apart.sum(), risk[:T].max(), far, us[0])
+        return Scored(score, J, apart.sum(), risk[:T].max(), far, path)
 
     def _predicted(self, params: Params, x: Array, u: Array) -> tuple[Array, Array, Array]:
         """The next state [n], the disagreement [n] or [], and every member's state [members, n]."""

@@ -21,7 +21,7 @@ from jax import Array
 from hybrid_rl.core import agreement, lifting, sampling
 from hybrid_rl.fields import Count, FieldError, Positive, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
-from hybrid_rl.types import EnvState, Params, Path, Spec
+from hybrid_rl.types import Considered, EnvState, Params, Path, Spec
 
 ToGo = Callable[[Path], Array]  # path -> S [T+1], the return from each time on
 
@@ -79,6 +79,12 @@ class SamplingController:
         self, params: Params, state: SamplingState, obs: Array, key: Array
     ) -> tuple[Array, SamplingState, dict[str, Array]]:
         """Action [m], next state, metrics. The key is consumed."""
+        return self.considered(params, state, obs, key)[:3]
+
+    def considered(
+        self, params: Params, state: SamplingState, obs: Array, key: Array
+    ) -> tuple[Array, SamplingState, dict[str, Array], Considered]:
+        """The same, and the candidates."""
         rolling, choosing = jax.random.split(key)
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
@@ -113,7 +119,7 @@ class SamplingController:
             **self._agreement(params, x, plan, to_go),
         }
         after = state._replace(plan=sampling.shift(plan, self.rest), u=action, memory=memory)
-        return action, after, metrics
+        return action, after, metrics, Considered(samples.path, jnp.argmax(w[:, 0]))
 
     def _to_go(
         self, params: Params, state: SamplingState, x: Any, key: Array

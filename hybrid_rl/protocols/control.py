@@ -59,7 +59,11 @@ class Proposal(Protocol):
 
 
 class Controller(Protocol):
-    """obs -> action."""
+    """obs -> action.
+
+    One that compares candidates may have `considered`, with the arguments of `act`, whose first
+    three results are those of `act`; the fourth is Considered.
+    """
 
     def init(self, spec: Spec) -> PyTree:
         """State at the start of an episode."""

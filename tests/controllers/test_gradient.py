@@ -72,6 +72,25 @@ def test_without_a_policy_it_reaches_the_best_action() -> None:
     assert float(metrics["planner/gain"]) > 0
 
 
+def test_the_path_that_acts_is_among_the_considered() -> None:
+    """It begins at the state, with the action; all candidates are there."""
+    planner = GradientController(Cart(), Speed(0.5), **SMALL)
+    given = Params(), planner.init(SPEC), jnp.array((0.2, -0.1)), jax.random.key(0)
+    u, _, metrics, found = planner.considered(*given)
+    np.testing.assert_array_equal(u, planner.act(*given)[0])
+    assert found.paths.x.shape == (2 * (2 + 1) + 8, 6, 2)  # refined and starts, all that were drawn
+    np.testing.assert_allclose(found.paths.x[:, 0], np.tile([0.2, -0.1], (14, 1)), atol=1e-6)
+    chosen = jax.tree.map(lambda leaf: leaf[found.chosen], found.paths)
+    np.testing.assert_array_equal(chosen.u[0], u)
+    assert float(metrics["planner/planned_return"]) == pytest.approx(value_of(chosen), abs=1e-5)
+
+
+def value_of(path: Any) -> float:
+    """J of a path."""
+    value, _ = Speed(0.5).prepare(Params(), (), path.x[0], jnp.zeros(1), jax.random.key(0))
+    return float(value(path))
+
+
 def test_disagreement_costs_its_price() -> None:
     """J rises by 0.5 per u in the first decision; a price above that keeps u at 0."""
     still, moving = (

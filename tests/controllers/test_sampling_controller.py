@@ -85,8 +85,12 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     w = np.asarray(sampling.weights(to_go[:, :-1], 0.1))[:, 0]
     first = [float(reward.outcome(params, X, jnp.full(1, k / K), X)[0]) for k in range(K)]
     controller = SamplingController(Cart(), objective, Grid(), horizon=T, samples=K)
-    metrics = controller.act(params, controller.init(SPEC), X, jax.random.key(1))[2]
+    given = params, controller.init(SPEC), X, jax.random.key(1)
+    metrics = controller.act(*given)[2]
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
+    found = controller.considered(*given)[3]  # the candidates, and the one that weighs most
+    np.testing.assert_allclose(found.paths.x, paths.x, atol=1e-5)
+    assert int(found.chosen) == np.argmax(w)
 
 
 def test_agreement_is_measured_now_and_then() -> None:

@@ -56,6 +56,7 @@ def runs_here(name, given):
     if name == "render" and given.get("mode") == "training":  # test_belief_frames.py
         return False
     elsewhere = ("train", "benchmark", "stand_in", "robot")  # test_benchmark.py, test_robot_run.py
+    elsewhere += ("view", "demo")  # test_view.py, test_demo.py
     return name not in elsewhere and "..." not in given.values()
 
 

@@ -1,0 +1,1 @@
+"""A live window on a robot in the browser."""

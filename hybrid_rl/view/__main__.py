@@ -1,0 +1,198 @@
+"""A live window on a robot in the browser: change its goal and its body, push it.
+
+    python -m hybrid_rl.view policy=halfcheetah
+    python -m hybrid_rl.view policy=halfcheetah reward=speed reward.target=2
+    python -m hybrid_rl.view run=DIR [mode=full] [seed=]
+    python -m hybrid_rl.view task=panda_stack
+
+It prints an address; open it in a browser. For a machine elsewhere, `ssh -L 8080:localhost:8080
+MACHINE` makes it the same address here. Ctrl-C ends it.
+
+Policy, planner or both move the robot. Lines are what they imagine for its torso or hand, the
+chosen plan bright. Sliders change the reward, the body and the disturbances; drag the robot to push
+it, with at most its own weight. Another mode, reward or body needs other programs, and the robot
+goes on as before until they are compiled: a planner takes a minute or two the first time.
+
+A run that is training is followed by its newest checkpoint. With task=T the task's scripted expert
+acts. reward, constraint, planner, env.KEY and episode.KEY are as with `evaluate`.
+"""
+
+if __name__ == "__main__":
+    from hybrid_rl.cli import interrupt
+
+    interrupt.install()
+
+import contextlib
+import errno
+import io
+import socket
+import threading
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import (
+    CHANGES,
+    CONFIG_DIR,
+    GOAL,
+    POLICY,
+    Argument,
+    read,
+    text,
+    whole,
+)
+from hybrid_rl.errors import UsageError
+
+
+def port(name: str, given: str) -> int:
+    """A number of a TCP port."""
+    if (number := whole()(name, given)) > 65535:
+        raise UsageError(f"{name}={given}: must be a whole number, 1 to 65535")
+    return number
+
+
+ARGUMENTS = (
+    Argument("run", "", "folder of a trained run, or of one that is training"),
+    POLICY,
+    Argument("task", "", "instead: a task with a scripted expert"),
+    Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
+    *GOAL,
+    CONFIG_DIR,
+    Argument("mode", "full", "of run or policy: full, policy or planner", text),
+    Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
+    Argument("port", 8080, "of the address, or the next one that is free", port),
+    Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
+)
+GROUPS = {**CHANGES, "expert": "with task=T: a key of its expert"}
+INSTALL = 'needs viser and mjviser; pip install "hybrid_rl[view]"'
+
+
+def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: Any) -> Any:
+    """The session that the arguments name.
+
+    server: makes a viser.ViserServer, after all that can be wrong with the arguments.
+
+    Raises:
+        UsageError: for arguments that are unusable, or a world that cannot be drawn.
+    """
+    from hybrid_rl.composition import options
+    from hybrid_rl.envs.adapters.external import External
+    from hybrid_rl.envs.mujoco.scenery import check_drawable
+    from hybrid_rl.trained import chosen
+    from hybrid_rl.view.following import Follower
+    from hybrid_rl.view.panel import Wishes
+    from hybrid_rl.view.player import Choice, Player
+    from hybrid_rl.view.session import Session
+    from hybrid_rl.view.subject import Source, learner
+
+    trained = None if given["task"] else chosen(given)
+    source = Source(given, changes, trained)
+    if trained is not None and isinstance(trained.episode.env, External):
+        raise UsageError("a Gymnasium environment draws itself; use render")
+    if trained is not None:
+        try:
+            check_drawable(trained.episode.env)
+        except ValueError as error:
+            raise UsageError(str(error)) from error
+    choice = Choice("expert" if given["task"] else given["mode"], given["reward"])
+    seed = given["seed"] or 0 if trained is None else given["seed"] or trained.seeds[0]
+    player = Player(source, learner(trained, given["seed"]), choice, seed)
+    folder = Path(given["run"]) if given["run"] else None
+    follower = Follower(folder, trained, given["seed"]) if folder and trained else None
+    rewards = options("reward") if source.plans else []
+    name = given["task"] or (trained.task if trained else "")
+    step = trained.step if trained else None
+    return Session(server(), name, player, Wishes(choice, seed), rewards, step, follower)
+
+
+def check(given: Mapping[str, Any], changes: Mapping[str, str]) -> None:
+    """Raise UsageError unless one thing is named, with arguments that it can have."""
+    named = [given[name] for name in ("run", "policy", "task") if given[name]]
+    if len(named) != 1:
+        raise UsageError(
+            "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
+            "policy=NAME a trained policy, task=T shows the task's scripted expert"
+        )
+    expert = given["expert"] or any(key.startswith("expert.") for key in changes)
+    if expert and not given["task"]:
+        raise UsageError("expert: is of a task; give it with task=T")
+    if given["task"] and (given["reward"] or given["constraint"] or given["planner"]):
+        raise UsageError("reward, constraint, planner: a scripted expert has none; give run=DIR")
+    if given["task"] and given["mode"] != "full":
+        raise UsageError("mode: a scripted expert has none; give it with run=DIR")
+
+
+def check_address(host: str, port: int) -> None:
+    """Raise UsageError for an address that this machine cannot serve.
+
+    viser would wait for it without end; a port that is in use is not wrong, as it takes the next.
+    """
+    try:
+        family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family, kind) as probe:
+            probe.bind(address)
+    except OSError as error:
+        if error.errno != errno.EADDRINUSE:
+            raise UsageError(f"host={host} port={port}: cannot be used ({error})") from error
+
+
+def serve(given: Mapping[str, Any]) -> Any:
+    """A server at the address, where only this machine may ask unless host=... says otherwise.
+
+    Raises:
+        UsageError: without viser.
+    """
+    viser: Any = installed()
+    with contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
+        return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
+
+
+def installed() -> Any:
+    """The module viser.
+
+    Raises:
+        UsageError: if it, or mjviser, is not installed.
+    """
+    try:
+        import_module("mjviser")
+        return import_module("viser")
+    except ImportError as error:
+        raise UsageError(f"view: {INSTALL}") from error
+
+
+def show(
+    given: Mapping[str, Any], changes: Mapping[str, str], opened: Callable[[str], Any] | None = None
+) -> None:
+    """Serve the window until Ctrl-C; opened: called with its address."""
+    print("compiling the first programs", flush=True)
+    servers: list[Any] = []
+
+    def server() -> Any:
+        servers.append(serve(given))
+        return servers[0]
+
+    session = open_session(given, changes, server)
+    address = f"http://{given['host']}:{servers[0].get_port()}"
+    print(f"open {address} in a browser; Ctrl-C ends it", flush=True)
+    if opened:
+        opened(address)
+    try:
+        session.run(threading.Event())
+    finally:
+        with contextlib.redirect_stdout(io.StringIO()):
+            servers[0].stop()
+
+
+def main() -> None:
+    """The command."""
+    given, changes = read(__doc__, ARGUMENTS, GROUPS)
+    check(given, changes)
+    check_address(given["host"], given["port"])
+    installed()
+    show(given, changes)
+
+
+if __name__ == "__main__":
+    command.guarded(main)

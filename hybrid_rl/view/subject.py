@@ -1,0 +1,158 @@
+"""Who acts in which world, and what of it can be changed while it runs.
+
+A number of a reward or of a constraint is an argument of the compiled programs: a slider moves it
+without a compilation. Everything else makes other programs.
+"""
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cached_property
+from typing import Any, get_args
+
+from hybrid_rl.config import PAID
+from hybrid_rl.demonstrate import scripted
+from hybrid_rl.fields import NotNegative, Positive, choices
+from hybrid_rl.goals import changed
+from hybrid_rl.protocols import Controller
+from hybrid_rl.trained import Trained
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.types import Params
+
+DISTURBED = {"delay": 5.0, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
+SPAN = 5.0  # a slider ends at so many times its value, or at so many
+
+
+@dataclass(frozen=True)
+class Slider:
+    """The range of a number; key: group.KEY as on the command line."""
+
+    key: str
+    value: float
+    least: float
+    most: float
+    step: float
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A learner or a scripted expert, in a world."""
+
+    episode: Episode
+    controllers: dict[str, Controller]  # mode -> who acts
+    scripted: bool = False
+
+    def sees_world(self, mode: str) -> bool:
+        """Whether who acts in `mode` gets the state of the world, and not only observations."""
+        return self.scripted or getattr(self.controllers[mode], "needs_world", False)
+
+    @cached_property
+    def goals(self) -> list[Slider]:
+        """The numbers of the reward and of the constraint."""
+        parts = {name: getattr(self.episode, name) for name in PAID}
+        return [each for name, part in parts.items() if part for each in sliders(name, part)]
+
+    @cached_property
+    def body(self) -> list[Slider]:
+        """The numbers of the environment, and the disturbances of its episodes."""
+        found = sliders("episode", self.episode)
+        found = [each for each in found if each.key.partition(".")[2] in DISTURBED]
+        return sliders("env", self.episode.env) + found
+
+
+def sliders(group: str, part: Any) -> list[Slider]:
+    """One for each number of a part."""
+    found = []
+    for field in fields(part):
+        value = getattr(part, field.name)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            continue
+        whole, most = field.type is int, SPAN * max(1.0, abs(value))
+        if group == "episode":
+            most = max(DISTURBED.get(field.name, most), value)
+        rules = [get_args(kind)[1:] for kind in choices(field.type)]
+        above = get_args(Positive)[1:] in rules
+        signed = not (above or whole or get_args(NotNegative)[1:] in rules or group == "episode")
+        step = 1.0 if whole else most / 100
+        least = -most if signed else step if above else 0.0
+        found.append(Slider(f"{group}.{field.name}", value, least, most, step))
+    return found
+
+
+def with_goals(whole: Any, episode: Episode, numbers: Mapping[str, Any]) -> Any:
+    """`whole`, a part that holds the goals of `episode`, with other `numbers` in them.
+
+    numbers: group.KEY -> value [], which may be traced: the checks of the fields do not run.
+    """
+    for name in PAID:
+        part = getattr(episode, name)
+        mine = {key.partition(".")[2]: value for key, value in numbers.items()}
+        mine = {key: mine[key] for key in mine if f"{name}.{key}" in numbers}
+        if part is not None and mine:
+            whole = _exchanged(whole, part, _put(part, mine))
+    return whole
+
+
+def _put(part: Any, values: Mapping[str, Any]) -> Any:
+    """A copy of a frozen part with other values of its fields."""
+    part = copy.copy(part)
+    for name, value in values.items():
+        object.__setattr__(part, name, value)
+    return part
+
+
+def _exchanged(whole: Any, old: Any, new: Any) -> Any:
+    """`whole`, in which `new` stands wherever `old` stood."""
+    if isinstance(whole, tuple) and type(whole) is tuple:
+        return tuple(_exchanged(each, old, new) for each in whole)
+    if not is_dataclass(whole) or isinstance(whole, type):
+        return whole
+    if type(whole) is type(old) and whole == old:
+        return new
+    each = {field.name: getattr(whole, field.name) for field in fields(whole)}
+    other = {name: _exchanged(value, old, new) for name, value in each.items()}
+    other = {name: value for name, value in other.items() if value is not each[name]}
+    return _put(whole, other) if other else whole
+
+
+@dataclass(frozen=True)
+class Source:
+    """What the arguments of the command name, read once."""
+
+    given: Mapping[str, Any]
+    changes: Mapping[str, str]
+    trained: Trained | None  # None: a scripted expert
+
+    @property
+    def plans(self) -> bool:
+        """Whether there is a learned model with which to plan for another reward."""
+        return self.trained is not None and self.trained.params.model is not None
+
+    def subject(self, reward: str, changes: Mapping[str, str]) -> Subject:
+        """Who acts, with a reward of conf/reward ("": that of the training) and other changes.
+
+        Raises:
+            UsageError: for a reward or a value that does not fit.
+        """
+        if self.trained is None:
+            expert = {"expert": self.given["expert"]} if self.given["expert"] else {}
+            task = self.given["task"]
+            episode, controller, _ = scripted(task, {**expert, **self.changes, **changes})
+            return Subject(episode, {"expert": controller}, scripted=True)
+        words = dict(self.changes)
+        if reward != self.given["reward"]:
+            words = {key: value for key, value in words.items() if not key.startswith("reward.")}
+        given = {**self.given, "reward": reward}
+        trained = changed(self.trained, given, {**words, **changes})[0]
+        return Subject(trained.episode, trained.controllers)
+
+
+def learner(trained: Trained | None, seed: int | None) -> Params:
+    """The parameters of the learner of `seed`; None: the first. A scripted expert has none.
+
+    Raises:
+        UsageError: for a seed that the run does not have.
+    """
+    if trained is None:
+        return Params()
+    return trained.learner(seed, next(iter(trained.controllers)), world=True)[1]

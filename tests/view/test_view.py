@@ -1,0 +1,254 @@
+"""The live window: its programs, what it draws, its pushes; the page itself in Chromium."""
+
+import threading
+from importlib.util import find_spec
+
+import browser
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from tiny import call, call_train, only_line, run
+
+from hybrid_rl import trained
+from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.ant import Ant
+from hybrid_rl.envs.halfcheetah import HalfCheetah
+from hybrid_rl.envs.mujoco import scenery
+from hybrid_rl.envs.quadcopter import Quadcopter
+from hybrid_rl.rewards.aim import Aim
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.view import __main__ as view
+from hybrid_rl.view import imagined, push
+from hybrid_rl.view.following import Follower
+from hybrid_rl.view.history import History
+from hybrid_rl.view.player import Choice, Player
+from hybrid_rl.view.subject import Source, learner, sliders, with_goals
+
+BLANK = {each.name: each.default for each in view.ARGUMENTS}
+PATIENCE = 60.0  # [s]
+
+
+def player(policy, choice):
+    read = trained.read(policy)
+    source = Source({**BLANK, "policy": policy}, {}, read)
+    return Player(source, learner(read, None), choice, seed=0)
+
+
+def settle(one):
+    """Wait until what was asked for acts, or is known not to fit."""
+
+    def ready():
+        one.exchange()
+        return not one.compiling
+
+    browser.Browser.wait(ready)
+
+
+def test_a_number_of_the_goal_is_an_argument_of_the_program():
+    """As if the episode had been made with it."""
+    world = Pendulum()
+    episode = Episode(world, reward=Aim(world, "height", 1.0))
+
+    @jax.jit
+    def reward(numbers, state):
+        return with_goals(episode, episode, numbers).step(state, jnp.ones(1)).reward
+
+    state = episode.reset(jax.random.key(0))
+    for target in (-0.5, 0.25):
+        made = Episode(world, reward=Aim(world, "height", target)).step(state, jnp.ones(1)).reward
+        got = reward({"reward.target": jnp.float32(target), "reward.effort": 0.05}, state)
+        assert got == pytest.approx(float(made), abs=1e-6)
+
+
+def test_sliders_have_the_range_of_their_field():
+    found = {one.key: one for one in sliders("reward", Aim(Pendulum(), "height", -3.0))}
+    assert set(found) == {"reward.target", "reward.effort"}  # alive is null
+    assert (found["reward.target"].least, found["reward.target"].most) == (-15, 15)
+    assert found["reward.effort"].least == 0
+    (mass,) = [one for one in sliders("env", HalfCheetah()) if one.key == "env.mass"]
+    assert mass.least > 0
+
+
+def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
+    one = player("cartpole", Choice("policy"))
+    one.advance()
+    before = np.asarray(one.state.data.qpos)
+    one.choose(Choice("policy", changes={"env.mass": "3"}))
+    settle(one)
+    assert one.cast.world.episode.env.mass == 3
+    assert one.state.data.asset != trained.read("cartpole").episode.env._body.asset
+    np.testing.assert_array_equal(one.state.data.qpos, before)  # goes on, no new episode
+    one.advance()
+    assert one.state.info["decision"] == 2
+    one.choose(Choice("policy", changes={"episode.delay": "2"}))  # has another state
+    settle(one)
+    assert one.state.info["late"].shape == (2, 1)
+    one.choose(Choice("policy", changes={"env.mass": "-1"}))
+    settle(one)
+    assert "mass=-1" in one.problem
+    one.exchange()
+    assert not one.compiling  # it is not asked for again
+    assert one.cast.world.episode.delay == 2
+    one.advance()
+
+
+@pytest.mark.parametrize(
+    ("env", "fits"), [(HalfCheetah(), 0.05), (Pendulum(), 1e-5), (Quadcopter(), None)]
+)
+def test_positions_follow_from_observations(env, fits):
+    """Of a true path of 20 decisions; not of a drone, which observes no position."""
+    episode = Episode(env)
+    read = imagined.reading(episode)
+    if fits is None:
+        assert read is None
+        return
+    first = episode.reset(jax.random.key(3))
+    action = 0.3 * jnp.ones(env.spec.act)
+    _, states = jax.lax.scan(lambda s, _: (episode.step(s, action),) * 2, first, length=20)
+    obs = jnp.concatenate([first.obs[None], states.obs])
+    apart = np.asarray(read(first, obs))[1:] - jax.vmap(env.pose)(states)
+    assert np.abs((apart + np.pi) % (2 * np.pi) - np.pi).max() < fits  # angles may turn round
+
+
+def test_the_path_of_a_pendulum_is_that_of_its_tip():
+    model = scenery.dressed(scenery.scene_of(Pendulum()))
+    points = imagined.track(
+        model, np.array([[[0.0], [np.pi / 2], [np.pi]]]), *imagined.point_of(model)
+    )
+    middle = points[0, [0, 2]].mean(0)
+    away = np.linalg.norm(points[0] - middle, axis=1)
+    np.testing.assert_allclose(away, away[0], rtol=1e-3)
+    assert away[0] == pytest.approx(2 * np.linalg.norm(model.body_ipos[-1]), rel=1e-3)
+
+
+def test_a_push_is_at_most_the_robots_weight():
+    """In the air a pull at the torso changes the velocity of the whole robot by F dt / m."""
+    env = Ant()
+    state = jax.jit(env.reset)(jax.random.key(0))
+    model = env._body.model
+    mass, most = model.body_mass.sum(), push.GRAVITY
+    assert np.linalg.norm(push.force(model, np.zeros(3), [9.0, 0, 0])) == pytest.approx(mass * most)
+    near = push.force(model, np.zeros(3), [0.0, 0.01, 0])
+    np.testing.assert_allclose(near, [0, 0.01 * push.STIFFNESS * mass, 0])
+    at = np.asarray(state.data.qpos[:3], float)
+    pull = push.Pull("torso", at, at + np.array([0, 0, 5.0]), 0.0)
+    dv = push.change(state.data, pull, 0.05)
+    assert 0.05 * most * 0.9 < dv[2] < 0.05 * most * 3  # the legs follow later
+    moved = push.pushed(state, pull, 0.05)
+    np.testing.assert_allclose(moved.data.qvel - state.data.qvel, dv, atol=1e-6)
+    assert not push.change(state.data, push.Pull("nothing", at, at, 0.0), 0.05).any()
+
+
+def test_a_run_is_followed_by_its_newest_checkpoint(tmp_path, monkeypatch):
+    monkeypatch.setattr("hybrid_rl.view.following.EVERY", 0.05)
+    folder = tmp_path / "run"
+    run(folder, "task=pendulum", "algo=sac")
+    first = trained.load(folder)
+    follower = Follower(folder, first, None)
+    try:
+        assert call_train(f"resume={folder}", f"total_steps={first.step + 20}") == 0
+        params, step = browser.Browser.wait(follower.newest)
+    finally:
+        follower.close()
+    assert step > first.step
+    was, now = (jax.tree.leaves(each.policy) for each in (learner(first, None), params))
+    assert any((a != b).any() for a, b in zip(was, now, strict=True))
+
+
+def test_plots_leave_out_what_does_not_apply():
+    history = History()
+    for i in range(3):
+        share = {"planner/policy_share": np.nan if i == 1 else 0.5}
+        history.add(0.1 * i, float(i), share)
+    assert history.curve("reward")[1].tolist() == [0, 1, 2]
+    assert history.curve("agreement")[0].tolist() == [0, 0.2]
+    assert len(history.curve("value")[0]) == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        ("", "run, policy, task: give one of them"),
+        ("policy=ant task=pendulum", "give one of them"),
+        ("task=panda_stack reward=speed", "a scripted expert has none"),
+        ("task=panda_stack mode=policy", "mode: a scripted expert has none"),
+        ("policy=ant expert=babble", "expert: is of a task"),
+        ("policy=ant host=192.0.2.1", "host=192.0.2.1 port=8080: cannot be used"),
+        ("policy=ant port=70000", "port=70000: must be a whole number, 1 to 65535"),
+        ("policy=ant port=0", "port=0: must be a whole number, 1 or more"),
+    ],
+)
+def test_what_does_not_fit_is_one_line(words, line, capfd):
+    assert call(lambda: command.guarded(view.main), *words.split()) == 2
+    assert line in only_line(capfd)
+
+
+def test_without_viser_it_names_what_to_install(monkeypatch, capfd):
+    def missing(name):
+        raise ImportError(name)
+
+    monkeypatch.setattr(view, "import_module", missing)
+    assert call(lambda: command.guarded(view.main), "policy=pendulum") == 2
+    assert 'pip install "hybrid_rl[view]"' in only_line(capfd)
+
+
+@pytest.fixture
+def window():
+    """A session that plays, and its server."""
+    if not (browser.FOUND and find_spec("viser") and find_spec("mjviser")):
+        pytest.skip("needs chromium and the extra `view`")
+    server = view.serve({**BLANK, "port": 8471})
+    given = {**BLANK, "policy": "halfcheetah", "mode": "policy"}
+    session = view.open_session(given, {}, lambda: server)
+    over = threading.Event()
+    thread = threading.Thread(target=session.run, args=(over,))
+    thread.start()
+    yield session, server
+    over.set()
+    thread.join()
+    server.stop()
+
+
+def pixel(client, point, width=1280, height=800):
+    """Where [2] the browser draws a point [3]."""
+    import viser.transforms as tf
+
+    camera = client.camera
+    x, y, z = tf.SO3(camera.wxyz).inverse() @ (point - camera.position)
+    scale = height / 2 / np.tan(camera.fov / 2)
+    return width / 2 + scale * x / z, height / 2 + scale * y / z
+
+
+def test_the_page_shows_the_robot_steps_and_is_pushed(window):
+    """Without an error, and without a request to another host."""
+    session, server = window
+    page = browser.Browser(f"http://127.0.0.1:{server.get_port()}/")
+    try:
+        page.wait(lambda: "mode policy" in (page.value("document.body.innerText") or ""))
+        page.click("Step")
+        page.wait(lambda: session.wishes.paused and not session.wishes.steps)
+        before = session.decisions
+        page.click("Step")
+        page.wait(lambda: session.decisions == before + 1)
+        session.wishes.paused = False
+        client = page.wait(lambda: next(iter(server.get_clients().values()), None))
+        page.wait(lambda: drag(page, session, client), 3 * PATIENCE)
+        # viser's own page logs this of its wheel and touch events
+        known = "Unable to preventDefault inside passive event listener"
+        assert [each for each in page.errors() if known not in str(each)] == []
+    finally:
+        page.close()
+
+
+def drag(page, session, client):
+    """Whether a drag of the torso has pushed the robot."""
+    torso = session._scene._data.body("torso").xipos + session._scene.offset
+    x, y = pixel(client, torso)
+    page.mouse("move", x, y)
+    page.mouse("press", x, y, 1)
+    for i in range(1, 8):
+        page.mouse("move", x + 10 * i, y - 5 * i, 1)
+    page.mouse("release", x + 70, y - 35)
+    return session.pushes
