@@ -5,7 +5,7 @@ import json
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,24 @@ FLAGS = (  # of software rendering, where a machine has no display and no GPU
 PROGRAM = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""
 )
+
+
+FIND = """text => {
+  const seen = [...document.querySelectorAll('label, button, span, p, div')].filter(
+    e => e.textContent.trim() === text && e.getClientRects().length);
+  if (!seen.length) return null;
+  const box = seen[seen.length - 1].getBoundingClientRect();
+  return [box.x + box.width / 2, box.y + box.height / 2];
+}"""
+
+
+def until(ready: Callable[[], Any], seconds: float = 60) -> Any:
+    """What `ready` returns as soon as it is true."""
+    end = time.monotonic() + seconds
+    while not (got := ready()):
+        assert time.monotonic() < end, f"not within {seconds} s"
+        time.sleep(0.05)
+    return got
 
 
 @contextmanager
@@ -98,16 +116,34 @@ class Chromium:
 
     def wait(self, condition: str, seconds: float = 60) -> None:
         """Until a condition in JavaScript holds."""
-        end = time.monotonic() + seconds
-        while not self.run(f"Boolean({condition})"):
-            assert time.monotonic() < end, f"{condition}: not within {seconds} s; {self.errors}"
-            time.sleep(0.05)
+        try:
+            until(lambda: self.run(f"Boolean({condition})"), seconds)
+        except AssertionError as error:
+            raise AssertionError(f"{condition}: {error}; {self.errors}") from error
 
     def mouse(self, kind: str, x: float, y: float) -> None:
         """mousePressed, mouseMoved or mouseReleased at a point, with the left button."""
         self(
             "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=1, clickCount=1
         )
+
+    def click(self, text: str) -> None:
+        """Click on the innermost visible element with exactly this text, once it stands still."""
+        x, y = until(lambda: self._still(f"({FIND})({json.dumps(text)})"))
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            self.mouse(kind, x, y)
+
+    def _still(self, script: str) -> Any:
+        """What a script evaluates to, if it is the same after a moment."""
+        before = self.run(script)
+        time.sleep(0.5)
+        return before if before == self.run(script) else None
+
+    def size(self, width: int, height: int) -> None:
+        """The window's size [pixels]."""
+        mobile = width < 500
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile}
+        self("Emulation.setDeviceMetricsOverride", **size)
 
     def screenshot(self, file: Path) -> None:
         """A PNG of the window."""

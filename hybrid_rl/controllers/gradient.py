@@ -189,7 +189,7 @@ class GradientController:
             a, b = (self._scored(params, value, x, one, member).value for one in (plan, own))
             return a - b
 
-        members = len(self._predicted(params, x, chosen.u)[2])
+        members = len(self._predicted(params, x, chosen.path.u[0])[2])
         gains = jax.vmap(gain)(jnp.arange(members))
         surely = gains.mean() > self.doubt * gains.std()
         others = (own, self._scored(params, value, x, own))

@@ -78,8 +78,8 @@ def test_the_path_that_acts_is_among_the_considered() -> None:
     given = Params(), planner.init(SPEC), jnp.array((0.2, -0.1)), jax.random.key(0)
     u, _, metrics, found = planner.considered(*given)
     np.testing.assert_array_equal(u, planner.act(*given)[0])
-    assert found.paths.x.shape == (2 * (2 + 1) + 8, 6, 2)  # refined and starts, all that were drawn
-    np.testing.assert_allclose(found.paths.x[:, 0], np.tile([0.2, -0.1], (14, 1)), atol=1e-6)
+    assert found.paths.x.shape == (1 + 2 * (2 + 1) + 8, 6, 2)  # what acts, refined, starts, drawn
+    np.testing.assert_allclose(found.paths.x[:, 0], np.tile([0.2, -0.1], (15, 1)), atol=1e-6)
     chosen = jax.tree.map(lambda leaf: leaf[found.chosen], found.paths)
     np.testing.assert_array_equal(chosen.u[0], u)
     assert float(metrics["planner/planned_return"]) == pytest.approx(value_of(chosen), abs=1e-5)
