@@ -111,6 +111,8 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     if own and _priced(config, goal.constraint):
         for planner in (goal[name] for name in PLANNERS if "priced" in goal[name]):
             planner.priced = True
+    if "proposal" in config or "policy" not in config:
+        del goal.proposal
     if {"model", "reward_model"} - set(config):
         return OmegaConf.masked_copy(goal, [*configuration.PAID])
     if "policy" not in config:

@@ -50,6 +50,13 @@ def test_another_planner_keeps_the_reward_and_its_critic(trained: Path) -> None:
     assert planner.objective == planned.objective
 
 
+def test_a_policy_has_proposals_for_any_planner() -> None:
+    """Its file has none; they are its roll-outs at several strengths."""
+    goal = ["reward=speed", "planner.samples=4", "planner.horizon=2"]
+    planner = retargeted(read("halfcheetah"), [*goal, "planner=sampling"]).controllers["full"]
+    assert planner.proposal.strengths == (1.0, 0.8, 0.6, 0.4, 0.2)
+
+
 def test_a_price_that_was_learned_is_not_charged_again(trained: Path) -> None:
     """The learned reward has it: of the same limit, and for the reward of the training."""
     run, near = load(trained), ["constraint=position", "constraint.most=0.5"]
