@@ -3,11 +3,12 @@
     python -m hybrid_rl.figures study=tuning runs=runs/sweeps/TIME out=tuning.png
 
 Read from trials.json of the sweep's folder (hybrid_rl/cli/study.py), which every tuned sweep draws
-at its end, too. The importance of a key is the share by PED-ANOVA (Watanabe et al. 2023) among the
-finished trials, for the better half of them; pruned trials are shown where they ended.
+at its end, too. The importance of a key is its share by PED-ANOVA (Watanabe et al. 2023) in what
+sets the best tenth of the finished trials apart; a pruned trial is shown at its last evaluation.
 """
 
 import math
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ACROSS = 3  # panels in a row
+WIDTH = 26  # [characters] of a title
 KINDS = {  # state of a trial -> its points
     "complete": {"color": BLUE, "marker": "o", "label": "finished"},
     "pruned": {"color": GREY, "marker": "x", "label": "pruned, at its last evaluation"},
@@ -80,9 +82,10 @@ def draw(numbers: dict[str, Any]) -> "Figure":
 def _importances(axes: "Axes", shares: dict[str, float]) -> None:
     """A bar for each key, the longest on top."""
     ordered = sorted(shares.items(), key=lambda pair: pair[1])
-    axes.barh([_name(key) for key, _ in ordered], [share for _, share in ordered], color=BLUE)
+    names = [key.rpartition(".")[2] for key, _ in ordered]
+    axes.barh(range(len(names)), [share for _, share in ordered], color=BLUE, tick_label=names)
     axes.set_xlim(0, 1)
-    axes.set_title("importance" if shares else "importance: needs two finished trials")
+    axes.set_title("importance" if shares else "importance: needs two results")
     axes.grid(axis="y", visible=False)
 
 
@@ -105,7 +108,7 @@ def _results(axes: "Axes", numbers: dict[str, Any], key: str, kind: str) -> None
     elif kind == "log" and known:
         axes.set_xscale("log")
         plain_log(axes.xaxis, narrow=True)
-    axes.set_title(key)
+    axes.set_title("\n".join(textwrap.wrap(key.replace(".", ". "), WIDTH)).replace(". ", "."))
 
 
 def _position(value: Any, names: list[str]) -> float:
@@ -119,8 +122,3 @@ def _order(name: str) -> tuple[float, str]:
         return float(name), name
     except ValueError:
         return np.inf, name
-
-
-def _name(key: str) -> str:
-    """The last name of a key."""
-    return key.rpartition(".")[2]

@@ -6,7 +6,8 @@ in study.db, from which a study goes on as if it had not stopped: the random num
 follow from the seed and the number of trials before it.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+import warnings
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 FILE, RESULT = "study.db", "final_eval"
 TOLD = "line"  # attribute of the trials that have an answer
+GOLDEN = 0.618  # no whole number is so far between two of them
+DISTINCT = 2  # results, from which importances follow
 SAFE = 2  # evaluations, before the last of which no run is pruned
 
 Row = dict[str, Any]
@@ -42,6 +45,8 @@ class Settings:
 
 def distribution(override: Override) -> "BaseDistribution":
     """The values of a swept override: those that are listed are names, as they are typed.
+
+    interval(1,4) has all numbers between, int(interval(1,4)) the whole ones.
 
     Raises:
         UsageError: if there are none.
@@ -64,9 +69,12 @@ def distribution(override: Override) -> "BaseDistribution":
 
 
 def ends(values: "BaseDistribution") -> list[Any]:
-    """The listed values, or the least and the greatest one."""
+    """The listed values; or the least one, the greatest one, and of fractions one between."""
     given: Any = values
-    return list(given.choices) if hasattr(given, "choices") else [given.low, given.high]
+    if hasattr(given, "choices"):
+        return list(given.choices)
+    between = [] if isinstance(given.low, int) else [given.low + GOLDEN * (given.high - given.low)]
+    return [given.low, *between, given.high]
 
 
 class Watch:
@@ -152,25 +160,28 @@ class Study:
                 return True
         return False
 
-    def tell(self, trial: "Trial", code: int, line: str, pruned: bool) -> None:
-        """Close a trial by the exit code and the last line of its run; pruned: it was."""
+    def tell(self, trial: "Trial", code: int, line: str, pruned: bool) -> str:
+        """Close a trial by the exit code and the last line of its run; returns its result.
+
+        pruned: the study ended it.
+        """
         seen = self._frozen(trial).intermediate_values
         if code:
-            self._answer(trial, self._state.FAIL, f"failed ({code}): {line}")
-        elif pruned:
-            step = max(seen)
+            return self._answer(trial, self._state.FAIL, f"failed ({code}): {line}")
+        if not seen:
+            return self._answer(trial, self._state.FAIL, "failed: no evaluation of all seeds")
+        step = max(seen)
+        if pruned:
             line = f"pruned at {step:,} with {seen[step]:,.4g}"
-            self._answer(trial, self._state.PRUNED, line)
-        elif seen:
-            self._answer(trial, self._state.COMPLETE, f"{seen[max(seen)]:,.4g}")
-        else:
-            self._answer(trial, self._state.FAIL, "failed: no evaluation of all seeds")
+            return self._answer(trial, self._state.PRUNED, line)
+        return self._answer(trial, self._state.COMPLETE, f"{seen[step]:,.4g}")
 
-    def _answer(self, trial: "Trial", state: Any, line: str) -> None:
+    def _answer(self, trial: "Trial", state: Any, line: str) -> str:
         seen = self._frozen(trial).intermediate_values
         trial.set_user_attr(TOLD, line)
         value = seen[max(seen)] if state == self._state.COMPLETE else None
         self._study.tell(trial.number, value, state=state)
+        return line
 
     def _frozen(self, trial: "Trial") -> "FrozenTrial":
         return self._study.get_trials(deepcopy=False)[trial.number]
@@ -179,7 +190,7 @@ class Study:
         """What trials.json holds: keys, trials, the best of them, and how much each key mattered.
 
         Importances are those of PED-ANOVA (Watanabe et al. 2023) over the finished trials; their
-        sum is 1. There are none for fewer than two.
+        sum is 1. There are none for fewer than two results.
         """
         trials = [_row(each) for each in self.trials]
         done = [row for row in trials if row["state"] == "complete"]
@@ -188,15 +199,17 @@ class Study:
             "keys": {key: _kind(values) for key, values in self._space.items()},
             "trials": trials,
             "best": max(done, key=lambda row: row["result"])["trial"] if done else None,
-            "importances": self._importances(len(done)),
+            "importances": self._importances({row["result"] for row in done}),
         }
 
-    def _importances(self, done: int) -> dict[str, float]:
+    def _importances(self, results: Collection[float]) -> dict[str, float]:
         from optuna.importance import PedAnovaImportanceEvaluator, get_param_importances
 
-        if done < SAFE:
+        if len(results) < DISTINCT:
             return {}
-        found = get_param_importances(self._study, evaluator=PedAnovaImportanceEvaluator())
+        with warnings.catch_warnings():  # of many that share the best result
+            warnings.simplefilter("ignore", UserWarning)
+            found = get_param_importances(self._study, evaluator=PedAnovaImportanceEvaluator())
         return {key: float(found.get(key, 0.0)) for key in self._space}
 
 

@@ -28,7 +28,7 @@ from hybrid_rl.run.lock import locked
 
 INSTALL = 'hydra/sweeper=tuned: Optuna is not installed; pip install "hybrid_rl[tune]"'
 OWN = ("resume", "distributed")  # keys that trials cannot have
-HINT = "write KEY=choice(A,B), KEY=interval(LOW,HIGH) or KEY=tag(log,interval(LOW,HIGH))"
+HINT = "write KEY=choice(A,B), KEY=interval(0.1,0.5), or KEY=tag(log,interval(1e-4,1e-2))"
 
 
 class Tuner(sweep.Sweeper):
@@ -72,7 +72,7 @@ class Tuner(sweep.Sweeper):
         folder = Path(str(config.run_dir or self.config.hydra.sweep.dir))
         fixed = [each for each in fixed if not each.startswith("run_dir=")]
         kept = [each for each in arguments if not each.startswith("run_dir=")]
-        run_folder.writable(folder, "run_dir")
+        self.config.hydra.sweep.dir = str(run_folder.writable(folder, "run_dir"))
         with (
             locked(folder, "run_dir"),
             study.opened(folder, settings, space, kept, config.eval_every) as opened,
@@ -148,7 +148,8 @@ class Tuner(sweep.Sweeper):
         if watched is not None and watched.misled:
             sys.exit(2)
         pruned = watched is not None and watched.pruned
-        opened.tell(trial, result["code"], result["line"], pruned)
+        line = opened.tell(trial, result["code"], result["line"], pruned)
+        print(f"trial {number}: {line}", flush=True)
 
     def _report(self, opened: study.Study, folder: Path) -> None:
         """Print the table, write trials.json and trials.png."""
@@ -165,6 +166,8 @@ class Tuner(sweep.Sweeper):
         for row in rows:
             if row["trial"] == numbers["best"]:
                 print(f"best, trial {row['trial']}: {study.short(row['values'])} {row['line']}")
+        if opened.open:
+            print(f"continue: the same command with run_dir={folder}", flush=True)
         if rows:
             self._drawn(numbers, folder / "trials.png")
             print(f"{folder / 'trials.png'} and trials.json", flush=True)
