@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ACROSS = 3  # panels in a row
 WIDTH = 26  # [characters] of a title
-KINDS = {  # state of a trial -> its points
+KINDS: dict[str, dict[str, Any]] = {  # state of a trial -> its points
     "complete": {"color": BLUE, "marker": "o", "label": "finished"},
     "pruned": {"color": GREY, "marker": "x", "label": "pruned, at its last evaluation"},
 }
@@ -99,7 +99,7 @@ def _results(axes: "Axes", numbers: dict[str, Any], key: str, kind: str) -> None
         axes.plot(x, [row["result"] for row in rows], linestyle="", **style)
     for row in known:
         if row["trial"] == numbers["best"]:
-            ring = {"markersize": 11, "markerfacecolor": "none", "markeredgecolor": VERMILION}
+            ring: dict[str, Any] = {"markersize": 11, "markerfacecolor": "none", "markeredgecolor": VERMILION}
             at = _position(row["values"][key], names)
             axes.plot([at], [row["result"]], linestyle="", marker="o", label="best", **ring)
     if kind == "names":

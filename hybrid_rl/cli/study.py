@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from optuna.trial import FrozenTrial, Trial
 
 FILE, RESULT = "study.db", "final_eval"
-TOLD = "line"  # attribute of the trials that have an answer
+ANSWER = "line"  # attribute of the trials that have an answer
 GOLDEN = 0.618  # no whole number is so far between two of them
 DISTINCT = 2  # results, from which importances follow
 SAFE = 2  # evaluations, before the last of which no run is pruned
@@ -128,7 +128,7 @@ class Study:
     def trials(self) -> "list[FrozenTrial]":
         """Those that have an answer."""
         every = self._study.get_trials(deepcopy=False)
-        return [each for each in every if each.state.is_finished() and TOLD in each.user_attrs]
+        return [each for each in every if each.state.is_finished() and ANSWER in each.user_attrs]
 
     @property
     def open(self) -> bool:
@@ -178,7 +178,7 @@ class Study:
 
     def _answer(self, trial: "Trial", state: Any, line: str) -> str:
         seen = self._frozen(trial).intermediate_values
-        trial.set_user_attr(TOLD, line)
+        trial.set_user_attr(ANSWER, line)
         value = seen[max(seen)] if state == self._state.COMPLETE else None
         self._study.tell(trial.number, value, state=state)
         return line
@@ -283,5 +283,5 @@ def _row(trial: "FrozenTrial") -> Row:
         "state": trial.state.name.lower(),  # complete, pruned, fail
         "result": seen[max(seen)] if seen else None,  # of the last evaluation
         "step": max(seen) if seen else None,  # of it
-        "line": trial.user_attrs[TOLD],
+        "line": trial.user_attrs[ANSWER],
     }

@@ -201,14 +201,14 @@ class Trackio(Logger):
             if not rows:
                 continue
             with redirect_stdout(StringIO()):  # several lines each time
-                run = self._run(seed)
+                trackio: Any = import_module("trackio")
+                run = self._run(trackio, seed)
                 for row in rows:
                     run.log(scalars(row) | {"wall_s": row["wall_s"]}, step=int(row["step"]))
-                run.finish()
+                trackio.finish()
             rows.clear()
 
-    def _run(self, seed: int) -> Any:
-        trackio: Any = import_module("trackio")
+    def _run(self, trackio: Any, seed: int) -> Any:
         resume = "allow" if seed in self._begun else "never"
         self._begun.add(seed)
         return trackio.init(

@@ -106,7 +106,8 @@ def test_trackio_gets_the_rows_of_a_seed_together(tmp_path, monkeypatch):
         runs.append(Fake(**given))
         return runs[-1]
 
-    monkeypatch.setitem(sys.modules, "trackio", SimpleNamespace(init=init))
+    module = SimpleNamespace(init=init, finish=lambda: runs[-1].finish())
+    monkeypatch.setitem(sys.modules, "trackio", module)
     made = [loggers.made(["trackio"], tmp_path, [3, 4], CONFIG) for _ in range(2)]
     with RunLog(tmp_path, [3, 4], made[0]) as log:
         for step in (1, 2):
