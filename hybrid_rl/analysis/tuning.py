@@ -99,7 +99,11 @@ def _results(axes: "Axes", numbers: dict[str, Any], key: str, kind: str) -> None
         axes.plot(x, [row["result"] for row in rows], linestyle="", **style)
     for row in known:
         if row["trial"] == numbers["best"]:
-            ring: dict[str, Any] = {"markersize": 11, "markerfacecolor": "none", "markeredgecolor": VERMILION}
+            ring: dict[str, Any] = {
+                "markersize": 11,
+                "markerfacecolor": "none",
+                "markeredgecolor": VERMILION,
+            }
             at = _position(row["values"][key], names)
             axes.plot([at], [row["result"]], linestyle="", marker="o", label="best", **ring)
     if kind == "names":
