@@ -159,11 +159,14 @@ def train(
     return result
 
 
-def _job(config: DictConfig) -> dict[str, Any]:
-    """One run of the command; returns what summary.json holds."""
+def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
+    """One run of the command; returns what summary.json holds. on_row: as of `train`."""
     typed = overrides.of_job(HydraConfig.get())
     config = inherited.resolved(config, typed)
-    summary = launch.train(config, overrides.given(typed), interrupt.answered)
+    output = launch.Output(None if on_row is None else loggers.Function(on_row))
+    summary = launch.train(config, overrides.given(typed), interrupt.answered, output)
+    if output.on_row is not None and output.on_row.problem is not None:
+        raise output.on_row.problem
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
     say(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})")

@@ -8,8 +8,10 @@ from importlib.util import find_spec
 from itertools import cycle, islice
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
 from omegaconf import DictConfig
 
 from hybrid_rl import config, figures
@@ -42,14 +44,21 @@ def module(name: str) -> ModuleType:
 def jobs(words: list[str]) -> list[tuple[str, ...]]:
     """Overrides of enough jobs of a sweep that each value is in one of them."""
     parsed = OverridesParser.create().parse_overrides([word for word in words if "=" in word])
-    values = [
-        list(one.sweep_string_iterator()) if one.is_sweep_override() else [one.get_value_string()]
-        for one in parsed
-    ]
+    values = [listed(one) for one in parsed]
     most = max(map(len, values), default=1)
     rows = zip(*(islice(cycle(each), most) for each in values), strict=True)
     keys = [one.get_key_element() for one in parsed]
     return [tuple(f"{k}={v}" for k, v in zip(keys, row, strict=True)) for row in rows]
+
+
+def listed(one: Override) -> list[str]:
+    """The values of an override; of a range without steps its ends."""
+    if one.is_interval_sweep():
+        ends: Any = one.value()
+        return [str(ends.start), str(ends.end)]
+    return (
+        list(one.sweep_string_iterator()) if one.is_sweep_override() else [one.get_value_string()]
+    )
 
 
 def training(page: str) -> list[tuple[str, ...]]:

@@ -77,7 +77,7 @@ def test_the_studies_are_listed_without_their_libraries(toy, capsys, arguments):
     lines = capsys.readouterr().out.splitlines()[1:]
     names = ["active_learning", "bayesian_optimisation", "contact_maps", "ergodic_coverage"]
     names += ["held_out", "imitation", "koopman", "koopman_settings"]
-    names += ["learning_curves", "model_learning", "robots"]
+    names += ["learning_curves", "model_learning", "robots", "tuning"]
     assert [line.split()[0] for line in lines] == names
     assert all(line.endswith(".") for line in lines)
 
@@ -161,7 +161,7 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["from=RUNS/../numbers.json"], "numbers.json: has no numbers of this study"),
         (["study=toy", "from=a.json"], "from=a.json: unknown argument; give key=value with study"),
         (["study=toys", "--help"], "study=toys: unknown; choose one of active_learning, "),
-        (["study=toys"], "robots, or a module of yours"),
+        (["study=toys"], "tuning, or a module of yours"),
         (["study=koopmann"], "or a module of yours (did you mean koopman?)"),
         (["study=library"], "library.py has no functions figure and summary"),
         (["study=broken"], "broken.py:1: ZeroDivisionError"),

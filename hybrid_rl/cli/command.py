@@ -48,8 +48,11 @@ Options:
 `python -m hybrid_rl.list` shows the tasks, the methods and the experiments."""
 
 
-def hydra_main(job: Callable[[DictConfig], Any]) -> None:
-    """Run `job` on the configuration that the command line composes, once or in a sweep."""
+def hydra_main(job: Callable[..., Any]) -> None:
+    """Run `job` on the configuration that the command line composes, once or in a sweep.
+
+    A sweeper may give `job` further arguments.
+    """
     import hydra
     from hydra.core.hydra_config import HydraConfig
     from hydra.types import RunMode
@@ -63,9 +66,9 @@ def hydra_main(job: Callable[[DictConfig], Any]) -> None:
             overrides.refuse_unused([config], typed, configuration.READ)
             job(config)
 
-    def alone(config: DictConfig) -> Any:
+    def alone(config: DictConfig, *more: Any) -> Any:
         if HydraConfig.get().mode == RunMode.MULTIRUN:  # checked, and reported, by sweep.Sweeper
-            return job(config)
+            return job(config, *more)
         return _reported(lambda: checked(config))  # ends here, before Hydra adds lines of its own
 
     if set(arguments.HELP) & set(sys.argv[1:]):

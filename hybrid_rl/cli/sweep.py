@@ -8,7 +8,7 @@ the highest one of its jobs. `jobs.json` in the sweep's folder holds what the ta
 import json
 import sys
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from typing import Any
 from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
@@ -36,16 +37,17 @@ ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a 
 class Task:
     """A job of a sweep as Hydra calls it; its errors become its result."""
 
-    def __init__(self, job: Callable[[DictConfig], Any]) -> None:
-        self.job = job
+    def __init__(self, job: Callable[[DictConfig], Any], called: str = "job") -> None:
+        self.job, self.called = job, called
         self.results: dict[int, Result] = {}  # number of a job -> its result
-        self.labels: list[str] = []  # the overrides in which the jobs differ
+        self.labels: dict[int, str] = {}  # the overrides in which the jobs differ
 
     def __call__(self, config: DictConfig) -> Result:
         """Run one job."""
         hydra = HydraConfig.get()
         number, typed = int(hydra.job.num), of_job(hydra)
-        print(f"job {number}: {self.labels[number]}", flush=True)
+        name = f"{self.called} {number}"
+        print(f"{name}: {self.labels[number]}", flush=True)
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result
         try:
@@ -54,16 +56,16 @@ class Task:
         except (SystemExit, KeyboardInterrupt) as end:
             code = end.code if isinstance(end, SystemExit) else 130
             result |= {"code": code, "line": "stopped"}
-            if _here(hydra):  # all of the sweep is stopped
+            if here(hydra):  # all of the sweep is stopped
                 raise
         except Exception as error:
             code, line = command.diagnosis(error) or (1, traceback.format_exc().strip())
-            print(f"hybrid_rl: job {number}: {line}", file=sys.stderr, flush=True)
+            print(f"hybrid_rl: {name}: {line}", file=sys.stderr, flush=True)
             result |= {"code": code, "line": line.splitlines()[-1]}
         return result
 
 
-def _here(hydra: Any) -> bool:
+def here(hydra: Any) -> bool:
     """Whether jobs run in this process."""
     return str(hydra.launcher._target_).endswith("BasicLauncher")
 
@@ -97,10 +99,8 @@ class Sweeper(BasicSweeper):
         assert self.launcher is not None
         assert self.hydra_context is not None
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
-        parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
-        swept = parser.parse_overrides([*self._parse_config(), *arguments])
-        (jobs,) = self.split_arguments(swept, None)
-        self.task.labels = _labels(jobs)
+        (jobs,) = self.split_arguments(self._parsed(arguments), None)
+        self.task.labels = labels(jobs)
         jobs = _folders(jobs, self._checked(jobs, arguments))
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
@@ -108,7 +108,7 @@ class Sweeper(BasicSweeper):
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
         results, size = self.task.results, self.max_batch_size or len(jobs)
         try:
-            with nullcontext() if _here(self.config.hydra) else watched(results):
+            with nullcontext() if here(self.config.hydra) else watched(results):
                 for first in range(0, len(jobs), size):
                     self.launcher.launch(jobs[first : first + size], first)
         finally:
@@ -117,6 +117,12 @@ class Sweeper(BasicSweeper):
         if worst:
             sys.exit(worst)
 
+    def _parsed(self, arguments: Sequence[str]) -> list[Override]:
+        """The overrides of the command line and of hydra.sweeper.params."""
+        assert self.hydra_context is not None
+        parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
+        return parser.parse_overrides([*self._parse_config(), *arguments])
+
     def _checked(self, jobs: Sequence[Sequence[str]], typed: Sequence[str]) -> list[DictConfig]:
         """The configuration of each job, after all checks that need no compilation.
 
@@ -124,7 +130,6 @@ class Sweeper(BasicSweeper):
         """
         assert self.config is not None
         assert self.hydra_context is not None
-        here = _here(self.config.hydra)
         refuse_new_keys(jobs[0], self.config.hydra.overrides.hydra)
         configs = []
         loader = self.hydra_context.config_loader
@@ -138,7 +143,7 @@ class Sweeper(BasicSweeper):
             configs.append(config)
         refuse_unused(configs, typed, configuration.READ)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
-            if not here and config.physics in ACCELERATED:
+            if not here(self.config.hydra) and config.physics in ACCELERATED:
                 config = config.copy()
                 config.physics = "native"
             try:
@@ -149,7 +154,8 @@ class Sweeper(BasicSweeper):
                         prepare(whole)  # first: a check of the user's world initialises JAX
                         built(whole)
             except UsageError as error:
-                label = f"job {number}: {self.task.labels[number]}".removesuffix(": ")
+                label = f"{self.task.called} {number}: {self.task.labels[number]}"
+                label = label.removesuffix(": ")
                 raise UsageError(f"{error} ({label})") from error
         return configs
 
@@ -181,39 +187,45 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
     return complete
 
 
-def _labels(jobs: Sequence[Sequence[str]]) -> list[str]:
+def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:
     """The overrides of each job that not all jobs share."""
     common = set.intersection(*map(set, jobs))
-    return [" ".join(text for text in overrides if text not in common) for overrides in jobs]
+    own = ([text for text in overrides if text not in common] for overrides in jobs)
+    return {number: " ".join(texts) for number, texts in enumerate(own)}
 
 
 def _report(
     folder: Path,
-    labels: Sequence[str],
+    labels: Mapping[int, str],
     jobs: Sequence[Sequence[str]],
     results: dict[int, Result],
 ) -> None:
     """Print the table of a sweep, and write it to jobs.json."""
     rows = []
-    for number, (label, overrides) in enumerate(zip(labels, jobs, strict=True)):
+    for number, overrides in enumerate(jobs):
         given = [text for text in overrides if text.startswith(("run_dir=", "resume="))]
         run_dir = "".join(str(each.value()) for each in parse(given[:1]))
         result = results.get(number, {"code": None, "line": "not run"})
         if result["code"] != 0 and run_dir:
             with suppress(OSError):  # it holds something, or is not there
                 Path(run_dir).rmdir()
-        rows.append({"job": number, "overrides": label, "run_dir": run_dir, **result})
+        rows.append({"job": number, "overrides": labels[number], "run_dir": run_dir, **result})
     (folder / "jobs.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     cells = [("job", "overrides", "run folder", "result")]
     cells += [(str(r["job"]), r["overrides"], r["run_dir"], _shown(r)) for r in rows]
-    widths = [max(len(row[i]) for row in cells) for i in range(3)]
-    print()
-    for row in cells:
-        columns = [f"{text:{width}}" for text, width in zip(row, [*widths, 0], strict=True)]
-        print("  ".join(columns).rstrip())
+    show(cells)
     failed = [str(row["job"]) for row in rows if row["code"] != 0]
     which = f"; not {', '.join(failed)}" if failed else ""
     print(f"{len(rows) - len(failed)} of {len(rows)} jobs done{which}", flush=True)
+
+
+def show(cells: Sequence[Sequence[str]]) -> None:
+    """Print the rows of a table below an empty line, in columns."""
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    print()
+    for row in cells:
+        columns = [f"{text:{width}}" for text, width in zip(row, widths, strict=True)]
+        print("  ".join(columns).rstrip())
 
 
 def _shown(row: dict[str, Any]) -> str:

@@ -2,9 +2,11 @@
 
     csv      metrics.csv, a line step,seed,wall_s,metric,value for each number
     wandb    Weights & Biases, a run of theirs for each seed, in a group for each run folder
+    trackio  Trackio, the same in a database on this disk, at each checkpoint
 
 W&B's own variables apply: WANDB_PROJECT, WANDB_ENTITY and, without a network, WANDB_MODE=offline.
-A resumed run continues the runs of W&B, which drop steps that they have already.
+A resumed run continues the runs of W&B, which drop steps that they have already. Trackio's
+databases are in runs/trackio, or in TRACKIO_DIR.
 """
 
 import csv
@@ -12,7 +14,9 @@ import json
 import os
 import uuid
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import redirect_stdout
 from importlib import import_module
+from io import StringIO
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -21,8 +25,9 @@ from hybrid_rl.run.reading import appended, lines, text
 from hybrid_rl.run.records import COORDINATES, Row, row_of
 
 HEADER = (*COORDINATES, "metric", "value")
-NAMES = ("csv", "wandb")
-INSTALL = 'not installed; pip install "hybrid_rl[wandb]"'
+NAMES = ("csv", "wandb", "trackio")
+PACKAGES = NAMES[1:]  # extras of the same name
+TRACKIO = ("TRACKIO_DIR", "runs/trackio")  # read by Trackio when it is imported
 
 
 class Logger(Protocol):
@@ -170,6 +175,58 @@ class WandB(Logger):
         self._runs.clear()
 
 
+class Trackio(Logger):
+    """Runs of Trackio for `seeds`, with the settings `config`, in a project for each task.
+
+    Only one of them can be open, so rows are kept until `flush`, before a checkpoint, or the end.
+    """
+
+    def __init__(self, folder: Path, seeds: Sequence[int], config: dict[str, Any]) -> None:
+        self._folder, self._config = folder, config
+        self._rows: dict[int, list[Row]] = {seed: [] for seed in seeds}
+        self._begun: set[int] = set()  # seeds that have a run
+
+    def rewind(self, rows: Iterable[Row], step: int) -> None:
+        """Continue the runs, which have these rows."""
+        self._begun = set(self._rows)
+
+    def write(self, row: Row) -> None:
+        """Keep a row."""
+        if scalars(row):
+            self._rows[int(row["seed"])].append(row)
+
+    def flush(self) -> None:
+        """Hand over all rows, seed by seed."""
+        for seed, rows in self._rows.items():
+            if not rows:
+                continue
+            with redirect_stdout(StringIO()):  # several lines each time
+                trackio: Any = import_module("trackio")
+                run = self._run(trackio, seed)
+                for row in rows:
+                    run.log(scalars(row) | {"wall_s": row["wall_s"]}, step=int(row["step"]))
+                trackio.finish()
+            rows.clear()
+
+    def _run(self, trackio: Any, seed: int) -> Any:
+        resume = "allow" if seed in self._begun else "never"
+        self._begun.add(seed)
+        return trackio.init(
+            project=str(self._config["task"]),
+            name=f"{self._folder} seed {seed}",
+            group=str(self._folder),
+            config=self._config | {"seed": seed},
+            resume=resume,
+            embed=False,
+            auto_log_gpu=False,
+            auto_log_cpu=False,
+        )
+
+    def close(self) -> None:
+        """Hand over the rest."""
+        self.flush()
+
+
 class Function(Logger):
     """A function of the user's, which is called with every new row, a dictionary.
 
@@ -204,11 +261,13 @@ def check(given: Any) -> tuple[str, ...]:
     names = () if given is None else (given,) if isinstance(given, str) else tuple(given)
     if unknown := [name for name in names if name not in NAMES]:
         raise UsageError(f"logger={unknown[0]}: choose of {', '.join(NAMES)}, or null")
-    if "wandb" in names:
+    for name in (each for each in names if each in PACKAGES):
+        os.environ.setdefault(*TRACKIO)
         try:
-            import_module("wandb")
+            import_module(name)
         except ImportError as error:
-            raise UsageError(f"logger=wandb: {INSTALL}") from error
+            line = f'logger={name}: not installed; pip install "hybrid_rl[{name}]"'
+            raise UsageError(line) from error
     return names
 
 
@@ -216,4 +275,9 @@ def made(
     names: Iterable[str], folder: Path, seeds: Sequence[int], config: dict[str, Any]
 ) -> list[Logger]:
     """The loggers `names` of the run in `folder`."""
-    return [CSV(folder) if n == "csv" else WandB(folder, seeds, config) for n in names]
+    kinds: dict[str, Callable[[], Logger]] = {
+        "csv": lambda: CSV(folder),
+        "wandb": lambda: WandB(folder, seeds, config),
+        "trackio": lambda: Trackio(folder, seeds, config),
+    }
+    return [kinds[name]() for name in names]

@@ -97,13 +97,46 @@ def test_each_seed_is_a_run_of_wandb_that_a_resumed_run_continues(tmp_path, wand
     assert all(run.ended for run in wandb)
 
 
+def test_trackio_gets_the_rows_of_a_seed_together(tmp_path, monkeypatch):
+    """At a checkpoint, and the rest at the end; a resumed run continues its runs."""
+    runs = []
+
+    def init(**given):
+        assert all(run.ended for run in runs)  # one at a time
+        runs.append(Fake(**given))
+        return runs[-1]
+
+    module = SimpleNamespace(init=init, finish=lambda: runs[-1].finish())
+    monkeypatch.setitem(sys.modules, "trackio", module)
+    made = [loggers.made(["trackio"], tmp_path, [3, 4], CONFIG) for _ in range(2)]
+    with RunLog(tmp_path, [3, 4], made[0]) as log:
+        for step in (1, 2):
+            log.write([row(step, 3, a=0.5 * step), row(step, 4, a=float("inf"))])
+        assert runs == []
+        offset = log.flush()
+        log.write([row(3, 3, a=3.0)])
+    assert [run.logged for run in runs] == [
+        [(1, {"a": 0.5, "wall_s": 0.5}), (2, {"a": 1.0, "wall_s": 1.0})],
+        [(3, {"a": 3.0, "wall_s": 1.5})],
+    ]
+    with RunLog(tmp_path, [3, 4], made[1]) as log:
+        log.rewind(offset, step=2)
+        log.write([row(3, 4, a=4.0)])
+    assert [run.given["resume"] for run in runs] == ["never", "allow", "allow"]
+    assert [run.given["config"]["seed"] for run in runs] == [3, 3, 4]
+    assert {run.given["project"] for run in runs} == {"ant"}
+
+
 def test_a_logger_is_unknown_or_not_installed_in_one_line(monkeypatch, tmp_path, capfd):
     assert loggers.check(None) == ()
     assert loggers.check(["csv"]) == ("csv",)
-    with pytest.raises(UsageError, match="logger=mlflow: choose of csv, wandb, or null"):
+    with pytest.raises(UsageError, match="logger=mlflow: choose of csv, wandb, trackio, or null"):
         loggers.check(["csv", "mlflow"])
-    monkeypatch.setitem(sys.modules, "wandb", None)
-    given = ["task=pendulum", "algo=sac", "logger=wandb", f"run_dir={tmp_path / 'run'}"]
-    assert call_train(*given) == 2
-    assert 'logger=wandb: not installed; pip install "hybrid_rl[wandb]"' in only_line(capfd)
-    assert not (tmp_path / "run").exists()
+    monkeypatch.setenv("TRACKIO_DIR", str(tmp_path))
+    for name in loggers.PACKAGES:
+        monkeypatch.setitem(sys.modules, name, None)
+        given = ["task=pendulum", "algo=sac", f"logger={name}", f"run_dir={tmp_path / 'run'}"]
+        assert call_train(*given) == 2
+        line = f'logger={name}: not installed; pip install "hybrid_rl[{name}]"'
+        assert line in only_line(capfd)
+        assert not (tmp_path / "run").exists()
