@@ -131,14 +131,16 @@ def rare(run: Evidence) -> str | None:
 def noise(run: Evidence) -> str | None:
     """Changes of the observation that the next decision takes back: noise of a sensor.
 
-    Noise n of variance s^2 makes residuals n' - n of the change, and -s^2 of their covariance from
-    one decision to the next, so that -2 cov is its share of the change.
+    Noise n of variance s^2 makes n' - n of the change, and -s^2 of the covariance of what is left
+    of it from one decision to the next, so that -2 cov is its share. What is left is predicted
+    from the observation before: that of the decision has the same noise n.
     """
-    if run.made is None or len(run.at(1)[0]) < ENOUGH:
+    if run.made is None or len(run.at(2)[0]) < ENOUGH:
         return None
-    k, t = run.at(0)
+    k, t = run.at(1)
     y = run.change((k, t))
-    left = residual(run.known((k, t), actions=1), y)
+    before = run.known((k, t - 1), actions=1)
+    left = residual(np.concatenate((before, run.made.action[k, t]), axis=1), y)
     next_one = (k[1:] == k[:-1]) & (t[1:] == t[:-1] + 1) & ~run.begins[k[1:], t[1:]]
     both = (left[1:] * left[:-1])[next_one]
     share = -2 * both.mean(0) / y.var(0)
@@ -149,27 +151,27 @@ def noise(run: Evidence) -> str | None:
     size = np.sqrt(np.maximum(-both.mean(0), 0))[at]
     return (
         f"obs {_numbers(run.moving[at])} moves and moves back: noise of about "
-        f"{', '.join(f'{each:.2g}' for each in size)} is {share[at].max():.0%} of its change; "
+        f"{', '.join(f'{each:.2g}' for each in size)} is {min(share[at].max(), 1):.0%} of its change; "
         "filter the sensor, or give the learner several observations"
     )
 
 
 def hidden(run: Evidence) -> str | None:
-    """Changes that observation and action do not tell, and the decision before does."""
+    """Changes that observation and two actions do not tell, and the last observation does."""
     if run.made is None or len(run.at(1)[0]) < ENOUGH:
         return None
     where = run.at(1)
     y = run.change(where)
-    unseen = 1 - explained(run.known(where, actions=1), y)
+    unseen = 1 - explained(run.known(where, actions=2), y)
     more = 1 - explained(run.known(where, obs=1, actions=2), y)
     at = np.flatnonzero((unseen > UNSEEN) & (more < (1 - HISTORY) * unseen))
     if not len(at):
         return None
     worst = at[np.argmax(unseen[at])]
     return (
-        f"observation and action tell {1 - unseen[worst]:.0%} of how obs "
-        f"{_numbers(run.moving[at])} changes, with the decision before {1 - more[worst]:.0%}: what "
-        "moves is not observed; add velocities, or the last observation, to the observation"
+        f"observation and actions tell {1 - unseen[worst]:.0%} of how obs "
+        f"{_numbers(run.moving[at])} changes, with the last observation {1 - more[worst]:.0%}: "
+        "what moves is not observed; add velocities, or the last observation, to the observation"
     )
 
 
