@@ -148,11 +148,11 @@ def noise(run: Evidence) -> str | None:
     at = np.flatnonzero((share > NOISE) & sure)
     if not len(at):
         return None
-    size = np.sqrt(np.maximum(-both.mean(0), 0))[at]
+    size = ", ".join(f"{each:.2g}" for each in np.sqrt(-both.mean(0)[at]))
     return (
-        f"obs {_numbers(run.moving[at])} moves and moves back: noise of about "
-        f"{', '.join(f'{each:.2g}' for each in size)} is {min(share[at].max(), 1):.0%} of its change; "
-        "filter the sensor, or give the learner several observations"
+        f"obs {_numbers(run.moving[at])} moves and moves back: noise of about {size} is "
+        f"{min(share[at].max(), 1):.0%} of its change; filter the sensor, or "
+        "give the learner several observations"
     )
 
 
