@@ -64,9 +64,9 @@ def draw(branch: dict[str, Any]) -> Figure:
     return picture
 
 
-def box(axes: Any, left: float, y: float, width: float, text: str, colour: str) -> None:
+def box(axes: Any, left: float, y: float, width: float, text: str, edge: str) -> None:
     """A text in a frame around y."""
-    shape = {"boxstyle": "round,pad=0,rounding_size=0.06", "fc": "white", "ec": colour, "lw": 1.3}
+    shape = {"boxstyle": "round,pad=0,rounding_size=0.06", "fc": "white", "ec": edge, "lw": 1.3}
     axes.add_patch(FancyBboxPatch((left, y - HIGH / 2), width, HIGH, **shape))
     axes.text(left + width / 2, y, text, ha="center", va="center", fontsize=9)
 

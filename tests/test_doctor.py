@@ -68,7 +68,7 @@ def test_a_delay_is_counted(delay):
     assert found(given) == {"action"}
 
 
-def test_a_slow_motor_and_one_that_is_off_are_told_apart():
+def test_a_slow_motor_and_one_that_is_off_have_different_lines():
     assert "older actions act more" in observed.action(evidence(*oscillator(lag=20.0)))
     none_arrives = oscillator(delay=STEPS)
     assert "no action changed" in observed.action(evidence(*none_arrives))
@@ -94,6 +94,8 @@ def test_noise_is_measured():
 
 def test_a_velocity_that_is_missing_is_missed():
     x, action = oscillator()
+    few = evidence(x[:3, :, :1] ** 3, action[:3])
+    assert observed.hidden(few) is None  # a plane does not fit, which proves nothing
     assert "not observed" in observed.hidden(evidence(x[..., :1], action))
 
 

@@ -53,7 +53,7 @@ ALLOWED = {
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "trained": {*SHARED, *CONFIG, "archive", "data", "controllers", "run"},
     "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "trained", "analysis"},
-    "doctor": {*CONFIG, "data", "run", "cli", "trained", "analysis", "doctor"},
+    "doctor": {*CONFIG, "core", "data", "run", "cli", "trained", "analysis", "doctor"},
     "benchmark": {*CONFIG, "run", "cli", "trained", "analysis", "benchmark"},
     # as a user's project would, and nothing but the command `render` imports it
     "thesis": {*SHARED, *CONFIG, "data", "beliefs", "run", "cli", "trained", "analysis", "thesis"},

@@ -28,7 +28,7 @@ from hybrid_rl.trained import built, restore
 from hybrid_rl.types import Transition
 
 FOLDS = 100  # stretches of time, of which every second one is predicted by the others
-MOST = 5000  # decisions of a regression, the newest ones
+MOST = 12_000  # decisions of a regression, the newest ones
 PER_FEATURE = 10  # decisions at least for each feature of a regression
 RIDGE = 1e-4  # of features with variance 1, per decision
 STILL = 1e-6  # std of an entry, over its size, below which it does not change
@@ -112,12 +112,17 @@ def explained(z: np.ndarray, y: np.ndarray) -> np.ndarray:
 def _features(z: np.ndarray) -> np.ndarray:
     z = np.asarray(z, float)
     z = (z - z.mean(0)) / np.maximum(z.std(0), np.finfo(np.float32).eps)
-    p = z.shape[1]
     phi = [np.ones((len(z), 1)), z]
-    if len(z) >= PER_FEATURE * (1 + p + p * (p + 1) // 2):
-        i, j = np.triu_indices(p)
+    if curved(z):
+        i, j = np.triu_indices(z.shape[1])
         phi.append(z[:, i] * z[:, j])
     return np.concatenate(phi, axis=1)
+
+
+def curved(z: np.ndarray) -> bool:
+    """Whether z [N, p] are decisions enough for the products of its entries."""
+    n, p = z.shape
+    return n >= PER_FEATURE * (1 + p + p * (p + 1) // 2)
 
 
 def read(path: Path) -> Evidence:

@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.analysis.held_out import RandomActions
+from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.doctor.evidence import Evidence, explained
 from hybrid_rl.doctor.limits import (
     ENOUGH,
@@ -61,6 +62,8 @@ def forecast(run: Evidence) -> str | None:
         jnp.asarray(each[where]) for each in (run.made.obs, run.made.action, run.made.next_obs)
     )
     params = jax.tree.map(lambda leaf: leaf[0], load(run.path).params.model)
+    if not is_identity(learner.model, params, run.run.agent.spec.obs):
+        return None
     step = jax.jit(jax.vmap(learner.model.step, (None, 0, 0)))
     wrong = np.asarray(((step(params, obs, act) - after) ** 2).mean(0))[run.moving]
     share = wrong / np.asarray(((after - obs) ** 2).mean(0))[run.moving]
@@ -80,8 +83,7 @@ def ends(run: Evidence) -> str | None:
     if run.made is None:
         return None
     k, t = np.nonzero(run.made.terminated)
-    lengths = [_length(run, *at) for at in zip(k, t, strict=True)]
-    lengths = [each for each in lengths if each]
+    lengths = [each for each in _lengths(run, k, t) if each]
     if len(lengths) < 3:
         return None
     length, number = Counter(lengths).most_common(1)[0]
@@ -99,33 +101,33 @@ def ends(run: Evidence) -> str | None:
     return None
 
 
-def _length(run: Evidence, k: int, t: int) -> int:
-    """Decisions of the episode that ended with (k, t); 0 if its beginning is not in memory."""
-    first = np.flatnonzero(run.begins[k, : t + 1])[-1]
-    return int(t - first + 1) if first else 0
+def _lengths(run: Evidence, k: np.ndarray, t: np.ndarray) -> list[int]:
+    """Decisions of each episode that ended with (k, t); 0 if its beginning may not be in memory."""
+    first = [np.flatnonzero(run.begins[i, : j + 1])[-1] for i, j in zip(k, t, strict=True)]
+    return [int(j - start + 1) if start else 0 for j, start in zip(t, first, strict=True)]
 
 
 def short(run: Evidence) -> str | None:
-    """Episodes whose last observation is told by the first one."""
+    """Episodes whose last observation follows from the first one."""
     if run.made is None:
         return None
     k, t = np.nonzero(run.made.truncated)
-    lengths = np.array([_length(run, *at) for at in zip(k, t, strict=True)], int)
+    lengths = np.array(_lengths(run, k, t), int)
     whole = lengths > 0
     k, t, lengths = k[whole], t[whole], lengths[whole]
     if len(k) < ENOUGH or run.made.terminated.sum() > len(k):
         return None
-    begin = run.made.obs[k, t - lengths + 1][:, run.moving]
-    end = run.made.next_obs[k, t][:, run.moving]
+    begin = np.asarray(run.made.obs)[k, t - lengths + 1][:, run.moving]
+    end = np.asarray(run.made.next_obs)[k, t][:, run.moving]
     moved = (end - begin).std(0) > 0
     if not moved.any():
         return None
-    told = float(np.median(explained(begin, end)[moved]))
-    if told < START:
+    fixed = float(np.median(explained(begin, end)[moved]))
+    if fixed < START:
         return None
     return (
-        f"the start of an episode tells {told:.0%} of its end, {int(np.median(lengths))} decisions "
-        "later: the episode is over before the policy has a say; episode.steps="
+        f"the start of an episode fixes {fixed:.0%} of its end, {int(np.median(lengths))} "
+        "decisions later: it is over before the policy has a say; episode.steps="
         f"{10 * int(np.median(lengths))}"
     )
 
@@ -155,7 +157,8 @@ def sign(run: Evidence) -> str | None:
     if isinstance(episode.env, External) or not any("world/success" in r for r in run.folder.rows):
         return None
     keys = jax.random.split(jax.random.key(START_KEY), EPISODES)
-    go = partial(rollout_with_actions, episode, RandomActions(), Params())
+    controller: Any = RandomActions()
+    go = partial(rollout_with_actions, episode, controller, Params())
     states = jax.jit(jax.vmap(lambda key: go(key, episode.steps)[1]))(keys)
     good, paid = (np.asarray(each)[:, 1:] for each in (states.metrics["success"], states.reward))
     good = good > 0

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hybrid_rl.doctor.evidence import Evidence, explained, residual
+from hybrid_rl.doctor.evidence import Evidence, curved, explained, residual
 from hybrid_rl.doctor.limits import (
     CLIPPED,
     DISTINCT,
@@ -44,7 +44,7 @@ def clipped(run: Evidence) -> str | None:
     return (
         f"obs {_numbers(at)} stood at its limit, {obs[:, worst].min():.4g} or "
         f"{obs[:, worst].max():.4g}, in {share[worst]:.0%} of the decisions: it is clipped, and "
-        "what lies beyond looks the same; widen the limits, or divide it by a larger number"
+        "what lies beyond it is not seen; widen the limits, or divide it by a larger number"
     )
 
 
@@ -96,7 +96,7 @@ def action(run: Evidence) -> str | None:
             "no action changed what is observed afterwards: is it applied, and is the motor on? "
             "render run=DIR shows it"
         )
-    if late:
+    if late and not effect[0]:
         return (
             f"an action acts {late} decision{'s' * (late > 1)} later ({shown}): a delay; shorten "
             "it, or show the learner its last actions (env.past_actions of task=robot)"
@@ -133,22 +133,27 @@ def noise(run: Evidence) -> str | None:
 
     Noise n of variance s^2 makes n' - n of the change, and -s^2 of the covariance of what is left
     of it from one decision to the next, so that -2 cov is its share. What is left is predicted
-    from the observation before: that of the decision has the same noise n.
+    from the observation before: that of the decision has the same noise n. A contact moves and
+    moves back, too, but what the decision's own observation leaves of it has no such covariance.
     """
     if run.made is None or len(run.at(2)[0]) < ENOUGH:
         return None
     k, t = run.at(1)
     y = run.change((k, t))
-    before = run.known((k, t - 1), actions=1)
-    left = residual(np.concatenate((before, run.made.action[k, t]), axis=1), y)
     next_one = (k[1:] == k[:-1]) & (t[1:] == t[:-1] + 1) & ~run.begins[k[1:], t[1:]]
-    both = (left[1:] * left[:-1])[next_one]
-    share = -2 * both.mean(0) / y.var(0)
-    sure = -both.mean(0) > ERRORS * both.std(0) / np.sqrt(len(both))
+
+    def both(seen: np.ndarray) -> np.ndarray:  # [N, o] products of what is left in succession
+        left = residual(seen, y)
+        return (left[1:] * left[:-1])[next_one]
+
+    before = np.concatenate((run.known((k, t - 1), actions=1), run.made.action[k, t]), axis=1)
+    older, own = both(before), both(run.known((k, t), actions=1))
+    share = -2 * older.mean(0) / y.var(0)
+    sure = -own.mean(0) > ERRORS * own.std(0) / np.sqrt(len(own))
     at = np.flatnonzero((share > NOISE) & sure)
     if not len(at):
         return None
-    size = ", ".join(f"{each:.2g}" for each in np.sqrt(-both.mean(0)[at]))
+    size = ", ".join(f"{each:.2g}" for each in np.sqrt(-older.mean(0)[at]))
     return (
         f"obs {_numbers(run.moving[at])} moves and moves back: noise of about {size} is "
         f"{min(share[at].max(), 1):.0%} of its change; filter the sensor, or "
@@ -162,8 +167,11 @@ def hidden(run: Evidence) -> str | None:
         return None
     where = run.at(1)
     y = run.change(where)
+    last = run.known(where, obs=1, actions=2)
+    if not curved(last):  # a plane's error would be taken for something hidden
+        return None
     unseen = 1 - explained(run.known(where, actions=2), y)
-    more = 1 - explained(run.known(where, obs=1, actions=2), y)
+    more = 1 - explained(last, y)
     at = np.flatnonzero((unseen > UNSEEN) & (more < (1 - HISTORY) * unseen))
     if not len(at):
         return None
