@@ -64,12 +64,12 @@ class Evidence:
 
     def at(self, lags: int) -> tuple[np.ndarray, np.ndarray]:
         """(k, t) of the newest decisions that have `lags` others before them in their episode."""
-        age = np.zeros(self.begins.shape, int)
-        for t in range(1, age.shape[1]):
-            age[:, t] = np.where(self.begins[:, t], 0, age[:, t - 1] + 1)
-        each = max(MOST // len(age), 1)
-        k, t = np.nonzero(age[:, -each:] >= lags)
-        return k, t + max(age.shape[1] - each, 0)
+        learners, decisions = self.begins.shape
+        now = np.arange(decisions)
+        first = np.maximum.accumulate(np.where(self.begins, now, 0), axis=1)
+        each = max(MOST // learners, 1)
+        k, t = np.nonzero((now - first)[:, -each:] >= lags)
+        return k, t + max(decisions - each, 0)
 
     def change(self, where: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """[N, o] change of the moving entries by the decisions at `where`."""
@@ -146,7 +146,8 @@ def _made(path: Path, config: Any, run: Run) -> Transition | None:
         memory: Any = restore(path, run, "memory")[1].memory
     except CheckpointError:
         return None
-    rows, count = np.asarray(memory.rows), int(np.asarray(memory.count).min())
+    rows: Any = np.asarray(memory.rows)
+    count = int(np.asarray(memory.count).min())
     length = rows.shape[1]
     if count > length:  # the ring is full: from the oldest on
         rows = np.roll(rows, -(count % length), axis=1)
