@@ -8,12 +8,12 @@ Begin with a task and a method by name, as on the command line (`python -m hybri
     policy = result.load().policy(seed=0)  # action = policy(obs)
     (curve,) = hr.curves(result.folder, "eval/return")  # curve.x [G], curve.each [S, G]
 
-Public are the names in `__all__`: `train`, `load`, `curves`, `make` and `compose` by name; `Agent`,
-`Episode`, `Loop`, `EnvState`, `Spec` and `check` for methods and worlds of your own;
-`OnlineLearner` for a loop of your own, such as a robot's; the planning
-cores `sampling` and `adjoint`, whose `plan` takes any `step(x, u)`; and two errors. Parts are in
-their modules, such as `hybrid_rl.learners.sac.SAC`. What is public changes only with a line in the
-changelog; the rest may change without one. docs/python.md has an example of each.
+Public are the names in `__all__`: `train`, `load`, `curves`, `metrics`, `make` and `compose` by
+name; `Agent`, `Episode`, `Loop`, `EnvState`, `Spec` and `check` for methods and worlds of your own;
+`OnlineLearner` for a loop of your own, such as a robot's; the planning cores `sampling` and
+`adjoint`, whose `plan` takes any `step(x, u)`; and two errors. Parts are in their modules, such as
+`hybrid_rl.learners.sac.SAC`. What is public changes only with a line in the changelog; the rest may
+change without one. docs/python.md has an example of each.
 
 Importing this package imports neither JAX nor MuJoCo: each name is imported at its first use.
 """
@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hybrid_rl.analysis.curves import curves
+    from hybrid_rl.analysis.frames import metrics
     from hybrid_rl.config import load as compose
     from hybrid_rl.core import adjoint, sampling
     from hybrid_rl.envs.contract import check
@@ -53,6 +54,7 @@ __all__ = [
     "curves",
     "load",
     "make",
+    "metrics",
     "sampling",
     "train",
 ]
@@ -72,6 +74,7 @@ _MEMBERS = {  # public name -> module and name there
     "curves": ("analysis.curves", "curves"),
     "load": ("named", "load"),
     "make": ("named", "make"),
+    "metrics": ("analysis.frames", "metrics"),
 }
 
 

@@ -58,7 +58,7 @@ PACKAGES = {  # page of the reference -> folders and modules
     "Learners and data": ("learners", "data"),
     "Training": ("training",),
     "Runs": ("run",),
-    "Analysis": ("analysis",),
+    "Analysis": ("analysis", "doctor"),
     "Thesis": ("thesis.studies",),
     "Environments": ("envs",),
 }
@@ -78,7 +78,8 @@ ROBOTS = """
 NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
 PAGES = {
     "Start": [
-        *("Getting started <self>", "docs/concepts", "docs/howto", "docs/python", "docs/faq"),
+        *("Getting started <self>", "docs/concepts", "docs/which_method", "docs/howto"),
+        *("docs/not_learning", "docs/python", "docs/faq"),
         *("docs/files", "docs/renamed", "CONTRIBUTING"),
     ],
     "Notebooks": NOTEBOOKS,

@@ -53,6 +53,7 @@ ALLOWED = {
     "cli": {*CONFIG, "run", "cli"},  # what the commands share
     "trained": {*SHARED, *CONFIG, "archive", "data", "controllers", "run"},
     "analysis": {*SHARED, *CONFIG, "data", "run", "cli", "trained", "analysis"},
+    "doctor": {*CONFIG, "core", "data", "run", "cli", "trained", "analysis", "doctor"},
     "benchmark": {*CONFIG, "run", "cli", "trained", "analysis", "benchmark"},
     # shows what commands show, on goals that `goals` makes
     "view": {*SHARED, *CONFIG, "run", "cli", "trained", "command", "view"},

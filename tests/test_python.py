@@ -224,7 +224,17 @@ def test_a_curve_is_a_table_of_its_values(monkeypatch):
     ]
 
 
+def test_the_rows_of_runs_are_a_table(monkeypatch, tmp_path):
+    pandas = ModuleType("pandas")
+    pandas.DataFrame = list
+    monkeypatch.setitem(sys.modules, "pandas", pandas)
+    rows = [{"step": 4, "seed": 0, "wall_s": 1.0, "eval/return": 2.0}]
+    rows.append({"step": 4, "seed": 1, "wall_s": 1.0, "model/loss": 3.0})
+    (tmp_path / "metrics.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+    assert hr.metrics(tmp_path) == [{"run": str(tmp_path), **row} for row in rows]
+
+
 def test_without_pandas_the_error_names_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(ImportError, match="pip install pandas"):
+    with pytest.raises(ImportError, match=r"hybrid_rl\[pandas\]"):
         curve().frame()

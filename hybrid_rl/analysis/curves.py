@@ -12,12 +12,12 @@ A seed that diverged or had an infinite or NaN return is a failure (hybrid_rl.an
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hybrid_rl.analysis.frames import pandas
 from hybrid_rl.analysis.logged import Learner, common, count_failures, learners, swept
 from hybrid_rl.analysis.results import NOT_ROWS, RunFolder, differences, find, short
 from hybrid_rl.errors import UsageError
@@ -52,17 +52,13 @@ class Curve:
         """A pandas.DataFrame: a row per value, columns task, label, seed, metric, x, value.
 
         Raises:
-            ImportError: without pandas, which is not a dependency.
+            ImportError: without pandas.
         """
-        try:
-            pandas: Any = import_module("pandas")
-        except ImportError as error:
-            line = "frame: needs pandas, which is not installed; pip install pandas"
-            raise ImportError(line) from error
+        frame = pandas().DataFrame
         s, g = np.nonzero(np.isfinite(self.each))
         values = {"seed": np.array(self.seeds)[s], "metric": self.metric}
         values |= {"x": self.x[g], "value": self.each[s, g]}
-        return pandas.DataFrame({"task": self.task, "label": self.label} | values)
+        return frame({"task": self.task, "label": self.label} | values)
 
 
 def curves(

@@ -21,7 +21,9 @@ it has no header.
 
 Before a table that is written whole: <!-- machines --> for machines.yaml, and for the claims of
 atlas.yaml <!-- claims Chapter 3 --> or <!-- claims Figure 3-3, Figure 3-5 -->; for printed.yaml
-<!-- rows Chapter 3 -->, <!-- printed Chapter 3 --> and <!-- ours Chapter 3 -->
+<!-- rows Chapter 3 -->, <!-- printed Chapter 3 --> and <!-- ours Chapter 3 -->; for what
+the doctor prints <!-- doctor broken --> or <!-- doctor sound -->; for which_method.yaml
+<!-- leaves -->
 
 A text or a cell may show the first of the expression's numbers only. They are written with the
 decimals that stand there.
@@ -32,7 +34,7 @@ from typing import Any
 
 import yaml
 
-from scripts.pages import atlas, machines, printed
+from scripts.pages import atlas, examined, leaves, machines, printed
 from scripts.pages.values import evaluated
 
 NUMBER = re.compile(r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\.\d)")
@@ -41,6 +43,8 @@ TABLE = re.compile(r"(<!-- table\n)((?:.+\n)+?)(-->\n)((?:\|.*\n){3,})")
 MACHINES = re.compile(r"(<!-- machines -->\n)((?:\|.*\n)+)")
 CLAIMS = re.compile(r"(<!-- claims (.+) -->\n)((?:\|.*\n)+)")
 PRINTED = re.compile(r"(<!-- (rows|printed|ours) (.+) -->\n)((?:\|.*\n)+)")
+DOCTOR = re.compile(r"(<!-- doctor (broken|sound) -->\n)((?:\|.*\n)+)")
+LEAVES = re.compile(r"(<!-- leaves -->\n)((?:\|.*\n)+)")
 CELL = re.compile(r"(?<=\|)[^|\n]+")
 
 
@@ -60,6 +64,8 @@ def written(page: str) -> str:
     page = MACHINES.sub(lambda m: m[1] + machines.table(), page)
     page = CLAIMS.sub(lambda m: m[1] + atlas.claims(m[2]), page)
     page = PRINTED.sub(lambda m: m[1] + printed.table(m[2], m[3]), page)
+    page = DOCTOR.sub(lambda m: m[1] + examined.table(m[2]), page)
+    page = LEAVES.sub(lambda m: m[1] + leaves.table(), page)
     page = INLINE.sub(lambda m: m[1] + m[2] + m[3] + filled(m[4], m[2]) + m[5], page)
     return TABLE.sub(lambda m: m[1] + m[2] + m[3] + table(m[4], yaml.safe_load(m[2])), page)
 

@@ -87,4 +87,5 @@ def test_commands_run(folder, monkeypatch, can_draw, capfd):
 def test_the_commands_are_those_of_the_pages():
     """Of each command one at least."""
     names = {name for name, _ in programs()}
-    assert names == {"demonstrate", "evaluate", "export", "figures", "list", "render", "report"}
+    known = {"demonstrate", "doctor", "evaluate", "export", "figures", "list", "render", "report"}
+    assert names == known

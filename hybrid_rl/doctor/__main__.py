@@ -1,0 +1,68 @@
+"""What is wrong with a run that does not learn, as far as its folder shows it.
+
+    python -m hybrid_rl.doctor run=runs/hopper/sac/TIME
+
+A line for each fault: what was seen, what it means, what to try. They come in the order in which
+they are to be mended, as the later may follow from the first. It reads metrics.jsonl,
+summary.json, and replay memory and model of the newest checkpoint; if the task measures success,
+it also runs a few episodes of random actions. Nothing is written. docs/not_learning.md has the
+checks, and how often they were right.
+"""
+
+if __name__ == "__main__":
+    from hybrid_rl.cli import interrupt
+
+    interrupt.install()
+
+from collections.abc import Callable
+from pathlib import Path
+
+from hybrid_rl.cli import command
+from hybrid_rl.cli.arguments import Argument
+from hybrid_rl.cli.arguments import read as arguments
+from hybrid_rl.doctor import learned, observed
+from hybrid_rl.doctor.evidence import Evidence, read
+
+ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
+CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of docs/not_learning.md
+    "numbers": learned.diverged,
+    "silent sensor": observed.constant,
+    "observation limits": observed.clipped,
+    "action rate": observed.rare,
+    "noise": observed.noise,
+    "action": observed.action,
+    "hidden state": observed.hidden,
+    "model": learned.forecast,
+    "ends": learned.ends,
+    "episode": learned.short,
+    "reward": learned.reward,
+    "reward's sign": learned.sign,
+    "random decisions": learned.random,
+    "critic": learned.critic,
+}
+
+
+def examine(folder: Path | str) -> dict[str, str]:
+    """Name of a check -> its line, for those of CHECKS that have found something.
+
+    Raises:
+        UsageError: if `folder` holds no run, or a damaged one.
+    """
+    run = read(Path(folder))
+    found = {name: check(run) for name, check in CHECKS.items()}
+    return {name: line for name, line in found.items() if line}
+
+
+def main() -> None:
+    """The command."""
+    folder = Path(arguments(__doc__, ARGUMENTS)[0]["run"])
+    found = examine(folder)
+    width = max(map(len, found), default=0)
+    for name, line in found.items():
+        print(f"{name:{width}}  {line}")
+    if not found:
+        print(f"{folder}: {len(CHECKS)} checks, and nothing to see; docs/not_learning.md goes on")
+
+
+if __name__ == "__main__":
+    command.guarded(main)

@@ -1,0 +1,156 @@
+"""What a run folder shows of itself: rows, settings, and the decisions in its replay memory.
+
+Decisions are K sequences of T, one for each learner and environment, oldest first. Changes of the
+observation, y = o' - o, are predicted from what was known at the decision by
+
+    y = W phi(z),  phi(z) = (1, z, z z^T),  W = argmin |Y - W Phi|^2 + ridge |W|^2,
+
+with z scaled to variance 1; phi is linear where z has too many entries for the decisions there
+are. Every second of FOLDS stretches of time is predicted by W of the others.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import jax
+import numpy as np
+
+from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl.config import Run
+from hybrid_rl.data.replay import unpack
+from hybrid_rl.errors import CheckpointError
+from hybrid_rl.run import checkpoint
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.trained import built, restore
+from hybrid_rl.types import Transition
+
+FOLDS = 100  # stretches of time, of which every second one is predicted by the others
+MOST = 12_000  # decisions of a regression, the newest ones
+PER_FEATURE = 10  # decisions at least for each feature of a regression
+RIDGE = 1e-4  # of features with variance 1, per decision
+STILL = 1e-6  # std of an entry, over its size, below which it does not change
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """A run, as far as its folder holds it."""
+
+    folder: RunFolder
+    config: Any  # of config.yaml
+    run: Run
+    made: Transition | None  # [K, T, ...] NumPy; None: no checkpoint has the replay memory
+
+    @property
+    def path(self) -> Path:
+        """The run folder."""
+        return self.folder.path
+
+    @cached_property
+    def begins(self) -> np.ndarray:
+        """[K, T] whether a decision is the first of its episode, or of the memory."""
+        assert self.made is not None
+        over = (self.made.terminated + self.made.truncated) > 0
+        return np.concatenate((np.ones_like(over[:, :1]), over[:, :-1]), axis=1)
+
+    @cached_property
+    def moving(self) -> np.ndarray:
+        """[o] the entries of the observation that change."""
+        assert self.made is not None
+        obs = self.made.obs.reshape(-1, self.made.obs.shape[-1])
+        return np.flatnonzero(obs.std(0) > STILL * (1 + abs(obs).max(0)))
+
+    def at(self, lags: int) -> tuple[np.ndarray, np.ndarray]:
+        """(k, t) of the newest decisions that have `lags` others before them in their episode."""
+        learners, decisions = self.begins.shape
+        now = np.arange(decisions)
+        first = np.maximum.accumulate(np.where(self.begins, now, 0), axis=1)
+        each = max(MOST // learners, 1)
+        k, t = np.nonzero((now - first)[:, -each:] >= lags)
+        return k, t + max(decisions - each, 0)
+
+    def change(self, where: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+        """[N, o] change of the moving entries by the decisions at `where`."""
+        assert self.made is not None
+        return (self.made.next_obs - self.made.obs)[where][:, self.moving]
+
+    def known(
+        self, where: tuple[np.ndarray, np.ndarray], obs: int = 0, actions: int = 0
+    ) -> np.ndarray:
+        """[N, p] the newest observations and `actions` actions before the decisions at `where`.
+
+        obs: how many further observations, each one decision older.
+        """
+        assert self.made is not None
+        k, t = where
+        seen = [self.made.obs[k, t - i][:, self.moving] for i in range(obs + 1)]
+        done = [self.made.action[k, t - i] for i in range(actions)]
+        return np.concatenate(seen + done, axis=1)
+
+
+def residual(z: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """[N, q] of y [N, q] predicted from z [N, p], each by decisions of other times."""
+    phi = _features(z)
+    fold = np.arange(len(y)) * FOLDS // len(y) % 2
+    left = np.empty_like(y, float)
+    for part in (0, 1):
+        own, other = fold == part, fold != part
+        a, b = phi[other], y[other].astype(float)
+        weights = np.linalg.solve(a.T @ a + RIDGE * len(a) * np.eye(a.shape[1]), a.T @ b)
+        left[own] = y[own] - phi[own] @ weights
+    return left
+
+
+def explained(z: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """[q] share of the variance of y [N, q] that z [N, p] predicts; 0 if its mean does better."""
+    left = (residual(z, y) ** 2).mean(0) / np.maximum(y.var(0), np.finfo(float).tiny)
+    return np.maximum(1 - left, 0)
+
+
+def _features(z: np.ndarray) -> np.ndarray:
+    z = np.asarray(z, float)
+    z = (z - z.mean(0)) / np.maximum(z.std(0), np.finfo(np.float32).eps)
+    phi = [np.ones((len(z), 1)), z]
+    if curved(z):
+        i, j = np.triu_indices(z.shape[1])
+        phi.append(z[:, i] * z[:, j])
+    return np.concatenate(phi, axis=1)
+
+
+def curved(z: np.ndarray) -> bool:
+    """Whether z [N, p] are decisions enough for the products of its entries."""
+    n, p = z.shape
+    return n >= PER_FEATURE * (1 + p + p * (p + 1) // 2)
+
+
+def read(path: Path) -> Evidence:
+    """The run in `path`.
+
+    Raises:
+        UsageError: if it holds no run, or a file of it is damaged.
+    """
+    config = run_folder.read(path, "run")
+    with run_folder.blamed(path):
+        prepare(config)
+        run = built(config, "memory")
+        return Evidence(RunFolder(path), config, run, _made(path, config, run))
+
+
+def _made(path: Path, config: Any, run: Run) -> Transition | None:
+    """The decisions in the newest sound checkpoint [K, T, ...]."""
+    if not (config.checkpoint_replay and checkpoint.steps(path / "checkpoints")):
+        return None
+    try:
+        memory: Any = restore(path, run, "memory")[1].memory
+    except CheckpointError:
+        return None
+    rows: Any = np.asarray(memory.rows)
+    count = int(np.asarray(memory.count).min())
+    length = rows.shape[1]
+    if count > length:  # the ring is full: from the oldest on
+        rows = np.roll(rows, -(count % length), axis=1)
+    rows = rows[:, : min(count, length)].swapaxes(1, 2)
+    rows = rows.reshape(-1, *rows.shape[2:])
+    return jax.tree.map(np.asarray, unpack(rows, run.agent.spec))

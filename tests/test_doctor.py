@@ -1,0 +1,177 @@
+"""The doctor of runs: it names what was done to a world, and finds nothing in a sound one."""
+
+import json
+from dataclasses import replace
+from functools import partial
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from tiny import call, only_line, run
+
+from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl.cli import command
+from hybrid_rl.doctor import __main__ as doctor
+from hybrid_rl.doctor import learned, observed
+from hybrid_rl.doctor.evidence import Evidence, read
+from hybrid_rl.types import Spec, Transition
+
+DT, STEPS, EPISODES = 0.1, 50, 30
+OBSERVED = ("constant", "clipped", "noise", "action", "rare", "hidden")
+
+
+def oscillator(delay=0, lag=1.0, dt=DT, steps=STEPS, seed=0):
+    """(x, v) [E, T+1, 2] and random actions [E, T, 1] of x'' = -x - 0.4 x' + 3 u."""
+    rng = np.random.default_rng(seed)
+    x = np.empty((EPISODES * STEPS // steps, steps + 1, 2))
+    action = rng.uniform(-1, 1, (*x[:, :-1, :1].shape[:2], 1))
+    x[:, 0], motor = rng.normal(size=(len(x), 2)), np.zeros(len(x))
+    for t in range(steps):
+        asked = action[:, t - delay, 0] if t >= delay else np.zeros(len(x))
+        motor = motor + (asked - motor) / lag
+        now = x[:, t]
+        for _ in range(20):
+            v = now[:, 1] + dt / 20 * (3 * motor - now[:, 0] - 0.4 * now[:, 1])
+            now = np.stack((now[:, 0] + dt / 20 * v, v), axis=1)
+        x[:, t + 1] = now
+    return x, action
+
+
+def evidence(seen, action, reward=None, terminated=False):
+    """What the memory of a learner shows that made these episodes [E, T+1, o] in turn."""
+    ends = np.zeros(action.shape[:2])
+    ends[:, -1] = 1
+    reward = -(seen[:, 1:] ** 2).sum(-1) if reward is None else reward
+    none = np.zeros_like(ends)
+    flags = (ends, none) if terminated else (none, ends)
+    each = (seen[:, :-1], action, reward, *flags, seen[:, 1:])
+    made = Transition(*(a.reshape(1, -1, *a.shape[2:]) for a in each))
+    agent = SimpleNamespace(spec=Spec(seen.shape[-1], 1, DT))
+    return Evidence(SimpleNamespace(rows=[], summary={}), None, SimpleNamespace(agent=agent), made)
+
+
+def found(given):
+    """Names of the checks of what is observed that have a line."""
+    return {name for name in OBSERVED if getattr(observed, name)(given)}
+
+
+def test_a_sound_world_gets_no_line():
+    given = evidence(*oscillator())
+    assert found(given) == set()
+    assert [check(given) for check in (learned.ends, learned.short, learned.reward)] == [None] * 3
+
+
+@pytest.mark.parametrize("delay", [1, 2, 4])
+def test_a_delay_is_counted(delay):
+    given = evidence(*oscillator(delay=delay))
+    assert f"an action acts {delay} decision" in observed.action(given)
+    assert found(given) == {"action"}
+
+
+def test_a_slow_motor_and_one_that_is_off_have_different_lines():
+    assert "older actions act more" in observed.action(evidence(*oscillator(lag=20.0)))
+    none_arrives = oscillator(delay=STEPS)
+    assert "no action changed" in observed.action(evidence(*none_arrives))
+
+
+def test_limits_and_sensors_that_are_off_are_named_with_their_entries():
+    x, action = oscillator()
+    line = observed.clipped(evidence(np.clip(x, [-9, -0.5], [9, 0.5]), action))
+    assert line.startswith("obs 1 stood at its limit, -0.5 or 0.5, in ")
+    flag = np.sign(x[..., :1])
+    assert observed.clipped(evidence(np.concatenate((x, flag), -1), action)) is None
+    off = np.concatenate((x, np.full_like(flag, 3.0)), -1)
+    assert observed.constant(evidence(off, action)).startswith("obs 2 never changed")
+
+
+def test_noise_is_measured():
+    x, action = oscillator()
+    x = x + np.random.default_rng(2).normal(size=x.shape) * [0.0, 0.4]
+    line = observed.noise(evidence(x, action))
+    assert line.startswith("obs 1 moves and moves back: noise of about 0.")
+    assert float(line.split("about ")[1].split()[0]) == pytest.approx(0.4, rel=0.25)
+
+
+def test_a_velocity_that_is_missing_is_missed():
+    x, action = oscillator()
+    few = evidence(x[:3, :, :1] ** 3, action[:3])
+    assert observed.hidden(few) is None  # a plane does not fit, which proves nothing
+    assert "not observed" in observed.hidden(evidence(x[..., :1], action))
+
+
+def test_decisions_that_are_too_rare_are_noticed():
+    assert "decide more often" in observed.rare(evidence(*oscillator(dt=1.5)))
+
+
+def test_ends_and_lengths():
+    x, action = oscillator()
+    line = learned.ends(evidence(x, action, terminated=True))
+    assert line.startswith(
+        f"{EPISODES - 1} of {EPISODES - 1} terminations came at decision {STEPS}"
+    )
+    assert "within 2 decisions" in learned.ends(evidence(*oscillator(steps=2), terminated=True))
+    line = learned.short(evidence(*oscillator(steps=5)))
+    assert line.endswith("episode.steps=50")
+
+
+def test_a_reward_that_is_constant_or_hides_is_noticed():
+    x, action = oscillator()
+    given = partial(evidence, x, action)
+    assert "nothing to learn" in learned.reward(given(np.full(action.shape[:2], -1.0)))
+    offset = 100 + 0.1 * np.random.default_rng(0).normal(size=action.shape[:2])
+    assert "subtract" in learned.reward(given(offset))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A tiny run of a method with a model."""
+    folder = tmp_path_factory.mktemp("doctor") / "run"
+    run(folder, "task=pendulum", "algo=nn_mppi", "total_steps=120", "random_steps=3")
+    return folder
+
+
+main = partial(call, partial(command.guarded, doctor.main))
+
+
+def test_the_command_reads_a_run(folder, capsys):
+    """Its model has hardly learned, and three random decisions are few."""
+    assert main(f"run={folder}") == 0
+    lines = dict(line.split("  ", 1) for line in capsys.readouterr().out.splitlines())
+    assert "random_steps=3" in lines["random decisions"]
+    assert set(lines) <= set(doctor.CHECKS)
+    assert doctor.examine(folder).keys() == lines.keys()
+
+
+def test_learners_that_diverged_come_first(folder):
+    given, end = read(folder), {"seed": 4, "step": 70, "quantity": "world/reward"}
+    rows = [*given.folder.rows, {"step": 70, "seed": 4, "wall_s": 1.0, "diverged": "world/reward"}]
+    for shown in ({"rows": [], "summary": {"diverged": [end]}}, {"rows": rows, "summary": {}}):
+        line = learned.diverged(replace(given, folder=SimpleNamespace(**shown)))
+        assert line.startswith("world/reward is not finite from step 70 on, seed 4: the world")
+    assert next(iter(doctor.CHECKS)) == "numbers"
+
+
+def test_a_value_beyond_all_rewards_is_noticed(tmp_path):
+    run(tmp_path, "task=pendulum", "algo=sac", "total_steps=60")
+    given = read(tmp_path)
+    row = {"sac/q": 1.0, "sac/alpha": 0.01}
+    assert (
+        learned.critic(replace(given, folder=SimpleNamespace(rows=[row | {"sac/q": -5.0}]))) is None
+    )
+    line = learned.critic(replace(given, folder=SimpleNamespace(rows=[row | {"sac/q": 70.0}])))
+    assert line.startswith("the critic's value 70 (sac/q) is above ")
+
+
+def test_what_is_no_run_is_one_line(tmp_path, capfd):
+    assert main(f"run={tmp_path}") == 2
+    assert "no run folder there" in only_line(capfd)
+    assert main("run=") == 2
+    assert "run: not given" in only_line(capfd)
+
+
+def test_a_run_without_memory_is_examined_by_its_rows(folder, tmp_path):
+    for name in ("config.yaml", "metrics.jsonl", "summary.json"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    assert set(doctor.examine(tmp_path)) == {"random decisions"}
+    assert json.loads((tmp_path / "summary.json").read_text())["finished"]
+    assert RunFolder(tmp_path).rows
