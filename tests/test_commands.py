@@ -259,7 +259,7 @@ def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
         "import jax; from pathlib import Path\n"
         "from hybrid_rl import config; from hybrid_rl.run.jax_settings import prepare\n"
         "given = config.load(['physics=mjx', 'compile_cache=null'])\n"
-        "config.build(given); prepare(given); jax.devices()\n"
+        "prepare(given); config.build(given); jax.devices()\n"
         "names = [path.read_text() for path in Path('/proc/self/task').glob('*/comm')]\n"
         "print(sum('XLAEigen' in name for name in names))"
     )
