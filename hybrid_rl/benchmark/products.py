@@ -49,14 +49,14 @@ def alone(name: str, found: Counter[Product], work: float) -> Contestant:
     factors = [(jnp.ones(p.left), jnp.full(p.right, 1e-3)) for p in found]
 
     def run(factors: Any) -> Any:
-        def once(product: Product, count: int, left: jax.Array, right: jax.Array) -> jax.Array:
+        def one(product: Product, count: int, left: jax.Array, right: jax.Array) -> jax.Array:
             def again(_: int, left: jax.Array) -> jax.Array:  # none can be left out or moved
                 result = jax.lax.dot_general(left, right, product.axes)
                 return left.at[(0,) * left.ndim].set(result[(0,) * result.ndim])
 
             return jax.lax.fori_loop(0, REPEATS * count, again, left)
 
-        return [once(*item, *pair) for item, pair in zip(found.items(), factors, strict=True)]
+        return [one(*item, *pair) for item, pair in zip(found.items(), factors, strict=True)]
 
     program = jax.jit(run).lower(factors).compile()
     return Contestant(name, lambda: jax.block_until_ready(program(factors)), REPEATS * work)
