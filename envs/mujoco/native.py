@@ -13,7 +13,7 @@ Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 import os
 from collections.abc import Callable
 from functools import cache, partial
-from math import prod
+from math import isfinite, prod
 from typing import NamedTuple
 
 import jax
@@ -28,13 +28,14 @@ _ALL = mujoco.mjtStage.mjSTAGE_ACC.value  # also forces
 
 
 class _Pool(NamedTuple):
-    """N simulations of one model, and views of their memory."""
+    """N simulations of one model, and views [N, ...] float64 of their memory."""
 
     batch: Batch
-    inputs: np.ndarray  # [N, D] float64: qpos, qvel, act, warmstart, ctrl
-    sensors: np.ndarray  # [N, nsensordata] float64
-    late: np.ndarray  # [nsensordata] bool: sensors of accelerations
-    reads: list[np.ndarray]  # each [N, ...] float64: fields of MjData
+    inputs: np.ndarray  # qpos, qvel, act, warmstart, ctrl
+    moved: np.ndarray  # inputs without ctrl
+    outputs: list[np.ndarray]  # what follows them in y: sensors, then reads; none is empty
+    late: np.ndarray  # columns of y with sensors of accelerations
+    stage: int  # up to which MuJoCo evaluates the new state
 
 
 def cores() -> int:
@@ -59,43 +60,46 @@ def _pool(asset: str, worlds: int, threads: int, reads: tuple[str, ...]) -> _Poo
     model = mjcf.load(asset)
     shared = max(cores() // jax.local_device_count(), 1)
     batch = Batch(model, worlds, min(worlds, threads or shared))
-    sizes = (model.nq, model.nv, model.na, model.nv, model.nu)
-    first = 1  # column 0 is the time
-    inputs = batch.state[:, first : first + sum(sizes)]
     if model.nhistory:
         raise ValueError(f"{asset}: actuators or sensors with a delay are not supported")
-    sensors = batch.bind("sensordata")
-    bound = [batch.bind(name) for name in reads]
-    return _Pool(batch, inputs, sensors, mjcf.of_acceleration(asset), bound)
+    first, moved = 1, model.nq + 2 * model.nv + model.na  # column 0 is the time
+    inputs = batch.state[:, first : first + moved + model.nu]
+    late = mjcf.of_acceleration(asset)
+    fields = ("sensordata", *reads) if model.nsensordata else reads
+    outputs = [batch.bind(name).reshape(worlds, -1) for name in fields]
+    stage = _ALL if reads else 0 if late.all() else _MOVED
+    return _Pool(batch, inputs, inputs[:, :moved], outputs, moved + np.flatnonzero(late), stage)
 
 
 def _advance(
     asset: str, threads: int, n: int, reads: tuple[str, ...], x: np.ndarray, y: np.ndarray
 ) -> None:
-    """Write the result of `n` physics steps from x [N, D] into y [N, D']."""
+    """Write the result of `n` physics steps from x [N, D] into y [N, D'].
+
+    A half-cheetah steps in 5 us, so what is the same at every call is prepared in `_pool`.
+    """
     idle = _idle(asset, len(x), threads, reads)
     try:
         pool = idle.pop()
     except IndexError:
         pool = _pool(asset, len(x), threads, reads)
-    outputs = [pool.sensors, *(field.reshape(len(x), -1) for field in pool.reads)]
-    moved = y.shape[1] - sum(output.shape[1] for output in outputs)
-    stage = _ALL if reads else 0 if pool.late.all() else _MOVED
-    finite = np.isfinite(x.sum(1))
-    ids = None if finite.all() else np.flatnonzero(finite)
+    finite = None if isfinite(x.sum()) else np.isfinite(x.sum(1))
+    ids = None if finite is None else np.flatnonzero(finite)
     pool.inputs[:] = x
     if n:
-        pool.batch.step(ids, n, stage)
+        pool.batch.step(ids, n, pool.stage)
     else:
-        pool.batch.forward(ids, stage)
-    y[:, :moved] = pool.inputs[:, :moved]
-    y[:, moved:] = np.concatenate(outputs, 1)
-    late = np.flatnonzero(pool.late)
-    idle.append(pool)
+        pool.batch.forward(ids, pool.stage)
+    end = pool.moved.shape[1]
+    y[:, :end] = pool.moved
+    for output in pool.outputs:
+        start, end = end, end + output.shape[1]
+        y[:, start:end] = output
     if not (n or reads):
-        y[:, moved + late] = 0.0
-    if ids is not None:
+        y[:, pool.late] = 0.0
+    if finite is not None:
         y[~finite] = np.nan
+    idle.append(pool)
 
 
 @cache

@@ -13,6 +13,7 @@ import ctypes
 import traceback
 from collections.abc import Callable
 from ctypes import POINTER, c_char_p, c_int, c_int64, c_size_t, c_uint32, c_void_p
+from functools import lru_cache
 from math import prod
 
 import jax
@@ -95,8 +96,13 @@ _HANDLERS = []  # never freed: XLA holds their addresses
 def _view(buffers: _Buffers) -> np.ndarray:
     """A view [N, D] of the first buffer of `buffers`, which is float32."""
     buffer = buffers.items[0].contents
-    shape = buffer.dims[: buffer.rank]
-    flat = (ctypes.c_float * prod(shape)).from_address(buffer.data)
+    return _array(buffer.data, *buffer.dims[: buffer.rank])
+
+
+@lru_cache(1024)
+def _array(address: int, *shape: int) -> np.ndarray:
+    """The float32 memory at `address`, as [N, D]; a loop passes the same few addresses."""
+    flat = (ctypes.c_float * prod(shape)).from_address(address)
     return np.ctypeslib.as_array(flat).reshape(-1, shape[-1])
 
 

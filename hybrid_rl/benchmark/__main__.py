@@ -9,7 +9,7 @@ physics   physics steps a second by task, implementation and number of worlds, a
 plan      model steps a second of the planner, by learners, K and T
 act       decisions a second of a controller alone, by number of robots, and real time
 updates   gradient steps a second of each learner, by number of them, and Brax's SAC
-shares    where a decision's time goes
+shares    where a decision's time goes: the loop with parts left out, and the products of each
 loop      decisions a second of the whole training loop, by settings, learners and precision, and
           beside them those of a GPU
 compile   seconds from start to the first decision, with an empty cache and a filled one
@@ -27,7 +27,7 @@ import json
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import config
+from hybrid_rl import composition, config
 from hybrid_rl.benchmark.parts import PARTS, TASKS, Table
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, number, output, read, several, whole
@@ -39,7 +39,7 @@ EXPERIMENT = "thesis/fig_3_2_halfcheetah"
 SETTINGS = ("default", "light", "fast", "thesis")
 LEARNERS = ("plan", "act", "updates", "shares", "loop")
 OF = {"tasks": ("physics",), "worlds": ("physics",), "plans": ("plan",), "learners": LEARNERS}
-OF |= {"settings": ("loop",)}
+OF |= {"settings": ("shares", "loop")}
 PLANNED = (
     "planner",
     "objective",
@@ -69,9 +69,11 @@ ARGUMENTS = (
     Argument("worlds", None, "numbers of them, of part physics"),
     Argument("learners", None, f"numbers of them, of parts {', '.join(LEARNERS)}"),
     Argument("plans", None, "KxT, such as 20x10,64x20, of part plan"),
-    Argument("settings", [], f"of part loop, of {', '.join(SETTINGS)}", several(*SETTINGS)),
+    Argument(
+        "settings", [], f"of parts shares and loop, of {', '.join(SETTINGS)}", several(*SETTINGS)
+    ),
     Argument("precision", ["auto"], "of networks; several of part loop", several(*PRECISIONS)),
-    Argument("seconds", 3.0, "of a row of part loop in each round", number(0.0)),
+    Argument("seconds", 3.0, "of a row of parts shares and loop, in each round", number(0.0)),
     Argument("rounds", 5, "of which medians are taken", whole()),
     Argument("out", "benchmark.json", "the numbers; a picture in the same folder"),
 )
@@ -86,7 +88,7 @@ def _check(settings: dict[str, Any]) -> None:
             value = ",".join(value) if isinstance(value, list) else value
             line = f"{name}={value}: parts={','.join(settings['parts'])} does not use it"
             raise UsageError(f"{line}; {', '.join(parts)} would")
-    several(*command.options("task"))("tasks", settings["tasks"] or TASKS)
+    several(*composition.options("task"))("tasks", settings["tasks"] or TASKS)
 
 
 def main() -> None:

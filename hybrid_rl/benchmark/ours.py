@@ -13,6 +13,8 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl import config
+from hybrid_rl.benchmark.products import alone as products_alone
+from hybrid_rl.benchmark.products import operations, products
 from hybrid_rl.benchmark.race import Contestant
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -20,6 +22,7 @@ from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Batch, EnvState, Params, Spec
 
 TRIED = 5  # decisions that say how long one takes
+MOST = 2000  # decisions of each learner in a turn
 LEARNING = 200_000  # decisions into a run, where every part is at work
 
 
@@ -72,13 +75,28 @@ def loop(
     return contestant, made.compile_s
 
 
-def shares(agent: Agent, learners: int, decisions: int) -> list[Contestant]:
-    """The whole loop, then the world alone, then the world with one of the learners."""
-    still = replace(agent, controller=Still(agent.spec.act), learners={})
+def shares(agent: Agent, learners: int, seconds: float) -> tuple[list[Contestant], dict[str, int]]:
+    """The loop whole and with parts left out, the products of each alone; their operations.
+
+    The world alone comes second, and is in each of the parts after it. Operations are those of the
+    matrix products in a decision of one learner.
+    """
+    names = tuple(agent.learners)  # those that make no updates still give their parameters
+    still = replace(agent, controller=Still(agent.spec.act), frozen=names)
     parts = {"whole loop": agent, "world and memory": still}
-    for name, learner in agent.learners.items():
-        parts[f"world and {name} learner"] = replace(still, learners={name: learner})
-    return [loop(name, part, learners, decisions)[0] for name, part in parts.items()]
+    for name in names:
+        others = tuple(other for other in names if other != name)
+        parts[f"world and {name} learner"] = replace(still, frozen=others)
+    parts["world and controller"] = replace(agent, frozen=names)
+    loops, alone, counts = [], [], {}
+    for name, part in parts.items():
+        loops.append(loop(name, part, learners, MOST, seconds)[0])
+        one = jax.eval_shape(part.init, jax.random.key(0))
+        found = products(part.step, one, jnp.int32(LEARNING))
+        counts[name] = operations(found)
+        if found:
+            alone.append(products_alone(f"{name}, products alone", found, learners))
+    return loops + alone, counts
 
 
 def world(task: str, physics: str) -> Episode:

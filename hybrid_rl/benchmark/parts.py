@@ -21,7 +21,6 @@ from hybrid_rl.networks import precision
 from hybrid_rl.run.jax_settings import CACHE
 
 TASKS = "halfcheetah,hopper,cartpole"
-MOST = 2000  # decisions of each learner in a row of part loop
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "results" / "loop_speed.json"
 Settings = dict[str, Any]
 Table = dict[str, Any]
@@ -103,14 +102,16 @@ def updates(settings: Settings, rounds: int) -> Iterator[Table]:
 
 
 def shares(settings: Settings, rounds: int) -> Iterator[Table]:
-    """The whole loop with parts left out, and what the chip can do."""
+    """The whole loop with parts left out, their products alone, and what the chip can do."""
     from hybrid_rl.benchmark import ours
 
-    agent, decisions = _agent(settings), 500
     most = 64  # enough to see; more is the business of `loop`
-    for count in (n for n in _counts(settings, "learners") if n <= most):
-        what = f"{settings['algo']}, {_many(count, 'learner')}"
-        yield _race("shares", what, "decisions/s", ours.shares(agent, count, decisions), rounds)
+    for size in settings["settings"] or ["default"]:
+        agent = _agent(settings, size=size)
+        for count in (n for n in _counts(settings, "learners") if n <= most):
+            what = f"{settings['algo']}, {size}, {_many(count, 'learner')}"
+            field, operations = ours.shares(agent, count, settings["seconds"])
+            yield _race("shares", what, "decisions/s", field, rounds) | {"operations": operations}
     yield _race("shares", "float32", "operations/s", [ours.product()], rounds)
 
 
@@ -126,7 +127,7 @@ def loop(settings: Settings, rounds: int) -> Iterator[Table]:
                 for asked in settings["precision"]:
                     with precision.using(asked):
                         name = f"{implementation}, {precision.chosen()}"
-                        made = ours.loop(name, agent, count, MOST, settings["seconds"])
+                        made = ours.loop(name, agent, count, ours.MOST, settings["seconds"])
                     field.append(made[0])
                     print(f"  {name}: compiled in {made[1]:,.0f} s", flush=True)
             what = f"{settings['algo']}, {size}, {_many(count, 'learner')}"

@@ -54,6 +54,7 @@ STEP = """(s, a, physics) => {{
 def write(out: Path) -> None:
     """Write `out`, a script that sets window.ROBOTS."""
     robots = ",\n".join(f'"{name}": {robot(name)}' for name in NAMES)
+    out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(f"window.ROBOTS = {{\n{robots}\n}};\n", encoding="utf-8")
 
 

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import imageio.v3 as iio
 import jax
+import jax.numpy as jnp
 import pytest
 from matplotlib.figure import Figure
 from tiny import call
 
 from hybrid_rl.benchmark import __main__ as benchmark
-from hybrid_rl.benchmark import others, ours, parts, picture
+from hybrid_rl.benchmark import others, ours, parts, picture, products
 from hybrid_rl.benchmark.picture import draw, redraw
 from hybrid_rl.benchmark.race import Contestant, race
 from hybrid_rl.cli import command
@@ -70,6 +71,24 @@ def test_loops_are_timed_by_precision_beside_the_committed_ones(tmp_path, capsys
     assert table["what"] == what
     assert [row["name"] for row in table["rows"]] == ["native, float32", "native, bf16"]
     assert capsys.readouterr().out.count("0.000 of 1,000,000,000 (a GPU, native, tf32)") == 2
+
+
+def test_products_are_counted_by_loops_and_the_costlier_branch():
+    """Three layers of 4 x 5 on 2 rows with their gradient, and one product of a choice."""
+    x, w, square = jnp.ones((2, 4)), jnp.ones((4, 5)), jnp.ones((7, 7))
+
+    def loss(w):
+        return jax.lax.fori_loop(0, 3, lambda i, total: total + (x @ (w + i)).sum(), 0.0)
+
+    def choice(w, square):
+        branches = lambda: square[:1] @ square, lambda: (square @ square)[:1]
+        return jax.grad(loss)(w), jax.lax.cond(w[0, 0] > 0, *branches)
+
+    found = products.products(choice, w, square)
+    assert products.operations(found) == 3 * 2 * (2 * 2 * 4 * 5) + 2 * 7**3
+    contestant = products.alone("alone", found, 1)
+    contestant.go()
+    assert contestant.work == products.REPEATS
 
 
 def test_committed_loops_have_rows():
@@ -153,7 +172,7 @@ def test_pictures_fit_a_screen_and_bars_begin_at_zero(tmp_path):
         ("parts=physic", "parts=physic: unknown; choose of physics, plan"),
         ("parts=loop precision=low", "precision=low: unknown; choose of auto, bf16, tf32, float32"),
         ("matmul_precision=default", "matmul_precision=default is precision=tf32"),
-        ("parts=act settings=fast", "settings=fast: parts=act does not use it; loop would"),
+        ("parts=act settings=fast", "settings=fast: parts=act does not use it; shares, loop would"),
         ("rounds=0", "rounds=0: must be a whole number, 1 or more"),
         ("out=table.txt", "out=table.txt: must end in .json"),
         ("algo=sac parts=plan", "plan: sac has no planner by samples"),
