@@ -129,6 +129,7 @@ def test_the_fast_site_has_the_same_checks_and_runs_no_notebook(mode, runs, monk
     monkeypatch.setattr(subprocess, "run", lambda line, cwd: lines.append(line) or done)
     for step in ("copy", "methods", "reference"):
         monkeypatch.setattr(docs, step, lambda: None)
+    monkeypatch.setattr(docs.robots, "write", lambda file: None)
     monkeypatch.setattr(docs, "HTML", ROOT / "none")
     monkeypatch.setattr(sys, "argv", ["docs.py", *mode])
     docs.main()
