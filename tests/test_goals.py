@@ -14,6 +14,8 @@ from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.goals import retargeted
 from hybrid_rl.trained import load, read
 
+pytestmark = pytest.mark.turns(2)
+
 AT = ["reward=aim", "reward.quantity=position", "reward.target=0.5"]
 SMALL = ["planner.horizon=3", "planner.tail=2", "planner.samples=6", "planner.refined=2"]
 

@@ -20,7 +20,7 @@ from hybrid_rl.networks import MLP, normalised, precision
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.types import Params, Spec
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 
 @pytest.fixture(autouse=True)

@@ -26,6 +26,7 @@ from hybrid_rl.view.history import History
 from hybrid_rl.view.player import Choice, Player
 from hybrid_rl.view.subject import Source, learner, sliders, with_goals
 
+pytestmark = pytest.mark.turns(2)
 BLANK = {each.name: each.default for each in view.ARGUMENTS}
 PATIENCE = 60.0  # [s]
 
