@@ -1,4 +1,4 @@
-"""What a run folder shows of itself: rows, settings, and the decisions in its replay memory.
+"""What the checks read of a run: rows, settings, and the decisions in its replay memory.
 
 Decisions are K sequences of T, one for each learner and environment, oldest first. Changes of the
 observation, y = o' - o, are predicted from what was known at the decision by

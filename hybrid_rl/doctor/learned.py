@@ -196,7 +196,7 @@ def random(run: Evidence) -> str | None:
 
 
 def critic(run: Evidence) -> str | None:
-    """A value above what the best reward for ever, and the largest entropy, would pay."""
+    """A critic whose values are larger than any possible return, with entropy."""
     rows = [row for row in run.folder.rows if row.get("sac/q") is not None]
     learner: Any = run.run.agent.learners.get("policy")
     if run.made is None or not rows or getattr(learner.critic, "scale", True):
@@ -207,7 +207,7 @@ def critic(run: Evidence) -> str | None:
     if last["sac/q"] <= most:
         return None
     return (
-        f"the critic's value {last['sac/q']:.4g} (sac/q) is above {most:.4g}, the best reward paid "
-        "for ever: it runs away; policy_learner.discount=0.98, critic.layer_norm=true, or fewer "
+        f"the critic's value {last['sac/q']:.4g} (sac/q) is above {most:.4g}, the return "
+        "of the best reward at every decision: it diverges; policy_learner.discount=0.98, critic.layer_norm=true, or fewer "
         "policy_learner.updates"
     )
