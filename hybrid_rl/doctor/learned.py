@@ -208,6 +208,6 @@ def critic(run: Evidence) -> str | None:
         return None
     return (
         f"the critic's value {last['sac/q']:.4g} (sac/q) is above {most:.4g}, the return "
-        "of the best reward at every decision: it diverges; policy_learner.discount=0.98, critic.layer_norm=true, or fewer "
-        "policy_learner.updates"
+        "of the best reward at every decision: it diverges; policy_learner.discount=0.98, "
+        "critic.layer_norm=true, or fewer policy_learner.updates"
     )
