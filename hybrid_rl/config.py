@@ -24,7 +24,7 @@ from hybrid_rl.envs.contract import check as check_world
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import FieldError
-from hybrid_rl.overrides import plain, reached, refuse_new_keys, refuse_unused, search_path
+from hybrid_rl.overrides import opened, plain, reached, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.parts import built
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
@@ -62,11 +62,11 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
     Raises:
         UsageError: if an override fits nothing in conf/, or names a key that does not exist or that
-            the method does not use; if the user's own task file is incomplete; for run=DIR.
+            the method does not use; if the user's own task file is incomplete; for run, sweep.
     """
     config = composed(overrides, config_dir)
-    if config.run is not None:
-        raise UsageError(f"run={config.run}: only the command and hybrid_rl.train take it")
+    for key in (key for key in ("run", "sweep") if config[key]):
+        raise UsageError(f"{key}={config[key]}: only the command and hybrid_rl.train take it")
     return resolved(config)
 
 
@@ -77,6 +77,7 @@ def composed(overrides: Sequence[str], config_dir: str | Path | None = None) -> 
     renamed.check(overrides)
     check_choices(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
+    overrides = opened(overrides)
     try:
         if GlobalHydra.instance().is_initialized():
             return _composed(overrides, more)
@@ -105,11 +106,7 @@ def resolved(config: DictConfig) -> DictConfig:
     What the run does not read is left out; all that the user may override is in it.
     """
     values: Any = OmegaConf.to_container(config, resolve=True)
-    if values["task"] in (
-        "gymnasium",
-        "playground",
-        "robot",
-    ):  # their environments are different tasks
+    if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
     made: Any = OmegaConf.create(_of(values, reached(plain(config), READ)))

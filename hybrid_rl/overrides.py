@@ -52,6 +52,16 @@ def quoted(value: str) -> str:
     return QuotedString(value, Quote.double).with_quotes()
 
 
+def is_swept(text: str) -> bool:
+    """Whether an override is sweep.KEY=[A,B], of learners in one program."""
+    return text.lstrip("+").startswith("sweep.")
+
+
+def opened(texts: Iterable[str]) -> list[str]:
+    """The overrides as Hydra takes them, to which sweep.KEY is a new key."""
+    return [f"+{text}" if text.startswith("sweep.") else text for text in texts]
+
+
 def key(override: Override) -> str:
     """The key of the configuration that an override changes."""
     return override.package or override.key_or_group
@@ -219,6 +229,7 @@ def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
     more: overrides of Hydra's own keys, of which the search path matters here.
     """
     more = [text for text in more if text.startswith("hydra.searchpath=")]
+    overrides = [text for text in overrides if not is_swept(text)]
     if not any(text.startswith("+") for text in overrides):
         return
     known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
@@ -238,7 +249,8 @@ def refuse_unused(
     """
     if any(config.resume is not None for config in composed):
         return
-    each = [unused(config, parse(overrides), roots) for config in composed]
+    typed = parse(text for text in overrides if not is_swept(text))
+    each = [unused(config, typed, roots) for config in composed]
     for path in each[0]:
         if all(path in lost for lost in each):
             instead = next(filter(None, (lost[path] for lost in each)), "")

@@ -37,7 +37,7 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import assembled, curve, divergence, inherited, launch, loggers
+from hybrid_rl.run import assembled, curve, divergence, launch, loggers, together
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
@@ -149,9 +149,11 @@ def train(
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
-        if not isinstance(method, DictConfig):
-            method, given = inherited.load(method), overrides.given(method)
-        result = Result(launch.train(method, given, interrupt.answered, output))
+        if isinstance(method, DictConfig):
+            members = [together.Member(method, {})]
+        else:
+            members, given = together.load(method), overrides.given(method)
+        result = Result(launch.train(members, given, interrupt.answered, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
     if output.on_row is not None and output.on_row.problem is not None:
@@ -162,9 +164,10 @@ def train(
 def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds. on_row: as of `train`."""
     typed = overrides.of_job(HydraConfig.get())
-    config = inherited.resolved(config, typed)
+    members = together.expanded(config, typed)
+    config = members[0].config
     output = launch.Output(None if on_row is None else loggers.Function(on_row))
-    summary = launch.train(config, overrides.given(typed), interrupt.answered, output)
+    summary = launch.train(members, overrides.given(typed), interrupt.answered, output)
     if output.on_row is not None and output.on_row.problem is not None:
         raise output.on_row.problem
     if summary["signal"] is None:

@@ -32,19 +32,21 @@ def shared() -> Iterator[None]:
     trace, compiled, evaluator = Loop.trace, Loop.compile, Evaluator.__init__
 
     def traced(self: Loop, state: Any) -> Any:
-        of = self.agent, len(self.seeds), self.stride, precision.chosen()
+        of = self.agent, self.axis, len(self.seeds), self.stride, precision.chosen()
         return kept(lambda: trace(self, state), "trace", *of)
 
     def program(self: Loop, state: Any, given: Any = None) -> Any:
         given = self.trace(state) if given is None else given
         return kept(lambda: compiled(self, state, given), "program", given)
 
-    def evaluation(self: Evaluator, loop: Loop, controller: Any, params: Any, keys: Any) -> None:
+    def evaluation(
+        self: Evaluator, loop: Loop, controller: Any, params: Any, keys: Any, mode: str
+    ) -> None:
         def make() -> dict[str, Any]:
-            evaluator(self, loop, controller, params, keys)
+            evaluator(self, loop, controller, params, keys, mode)
             return vars(self)
 
-        of = loop.agent.episode, controller, keys.shape, precision.chosen()
+        of = loop.agent.episode, controller, loop.axis, keys.shape, precision.chosen()
         vars(self).update(kept(make, "evaluation", *of))
 
     with pytest.MonkeyPatch.context() as patch:

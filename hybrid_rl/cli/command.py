@@ -31,6 +31,7 @@ FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-cp", "--config-path", "-cn", "--config-name"), 1),
     **dict.fromkeys(("-i", "--info"), 1),
 }
+KEYS = (*configuration.READ, "settings", "experiment", "sweep")  # in the help
 NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
 USAGE = """
 
@@ -77,7 +78,7 @@ def hydra_main(job: Callable[..., Any]) -> None:
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
         _check_form(sys.argv[1:])
-        sys.argv[1:] = inherited.chosen(sys.argv[1:])
+        sys.argv[1:] = overrides.opened(inherited.chosen(sys.argv[1:]))
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except Exception as error:
         report(error)
@@ -98,7 +99,7 @@ def usage(module: Any) -> str:
     """What --help of a command with Hydra's overrides prints."""
     text = (CONF / "train.yaml").read_text(encoding="utf-8")
     lines = re.findall(r"^(?:  - )?(\w+): (\S.*?)(?: +# (.*))?$", text, re.MULTILINE)
-    scalars = [line for line in lines if line[0] in (*configuration.READ, "settings", "experiment")]
+    scalars = [line for line in lines if line[0] in KEYS]
     width = max(len(f"{key}={value}") for key, value, _ in scalars)
     keys = "\n".join(f"  {f'{key}={value}':{width}}  {about}" for key, value, about in scalars)
     return USAGE.format(doc=inspect.getdoc(module), keys=keys).strip()

@@ -11,11 +11,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.run.rows import of_world
-from hybrid_rl.run.store import Store
+from hybrid_rl.run.shelf import Shelf
+from hybrid_rl.run.store import End
 from hybrid_rl.training.loop import Loop
-
-# {"seed", "step", "quantity"} of a learner that diverged; "world": why it is the world's fault
-End = dict[str, Any]
 
 
 class Diverged:
@@ -25,8 +23,8 @@ class Diverged:
     gives it the state of its last sound checkpoint, or its initial state.
     """
 
-    def __init__(self, loop: Loop, store: Store) -> None:
-        self.loop, self.store = loop, store
+    def __init__(self, loop: Loop, shelf: Shelf) -> None:
+        self.loop, self.shelf = loop, shelf
         self.ends: dict[int, End] = {}  # by the learner's number
         self._sound: dict[int, Any] = {}  # the state that replaces its own
 
@@ -42,10 +40,10 @@ class Diverged:
 
     def add(
         self, failures: Mapping[int, tuple[int, str]], state: Any = None, now: int = 0
-    ) -> list[End]:
+    ) -> dict[int, End]:
         """The new ends; failures: learner -> (step, quantity); state: [S, ...], at step `now`."""
         new = {
-            s: {"seed": self.loop.seeds[s], "step": step, "quantity": quantity}
+            s: {"seed": self.loop.seeds[s], "step": step, "quantity": quantity, **self._of(s)}
             for s, (step, quantity) in sorted(failures.items())
             if s not in self.ends
         }
@@ -55,7 +53,13 @@ class Diverged:
             elif end["quantity"].startswith("eval/") and s not in unsound(state.learners, now):
                 end["world"] = "all that was learned is finite: see the world's rewards"
         self.ends |= new
-        return list(new.values())
+        return new
+
+    def _of(self, s: int) -> dict[str, str]:
+        """The name of the numbers of learner s, if there are others."""
+        axis = self.loop.axis
+        name = axis.names[s * axis.count // len(self.loop.seeds)]
+        return {"of": name} if name else {}
 
     def _decision(self, s: int, end: End, state: Any, now: int) -> str:
         """What the world of learner s returned at `end`, if the memory still holds it."""
@@ -74,15 +78,11 @@ class Diverged:
         what = f"at obs {obs}, action {action} gives reward {reward}, obs {after}"
         return " ".join(f"a fault of the world: {name} {what}".split())
 
-    def resume(self, ends: Sequence[End]) -> None:
-        """Restore the ends from a checkpoint."""
-        self.ends = {self.loop.seeds.index(end["seed"]): end for end in ends}
-
     def repaired(self, state: Any) -> Any:
         """`state`, whose buffers are reused, with sound values for learners that have ended."""
         for s in self.ends:
             if s not in self._sound:
-                self._sound[s] = self.store.learner(s)
+                self._sound[s] = self.shelf.learner(s)
             state = self.loop.with_learner(state, s, self._sound[s])
         return state
 
@@ -123,5 +123,6 @@ def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
 
 
 def _words(end: End) -> str:
-    line = f"seed {end['seed']}, step {end['step']}: {end['quantity']} is not finite"
+    who = f"seed {end['seed']}" + (f" of {end['of']}" if "of" in end else "")
+    line = f"{who}, step {end['step']}: {end['quantity']} is not finite"
     return f"{line}, {end['world']}" if "world" in end else line

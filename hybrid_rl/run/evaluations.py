@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 from time import perf_counter
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -34,7 +35,7 @@ class Evaluations:
         self._evaluators = {
             mode: HostEvaluator(loop.agent.episode, controller, params, self.keys)
             if isinstance(loop, HostLoop)
-            else Evaluator(loop, controller, params, self.keys)
+            else Evaluator(loop, controller, params, self.keys, mode)
             for mode, controller in controllers.items()
         }
 
@@ -52,28 +53,42 @@ class Evaluations:
 class Evaluator:
     """Episodes of every learner of `loop` under `controller`, in calls of a few seconds at most.
 
-    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode.
+    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode; mode: of the
+    controller, whose numbers the loop's axis has.
     """
 
-    def __init__(self, loop: Loop, controller: Controller, params: Params, keys: Array) -> None:
-        self.steps = loop.agent.episode.steps
-        first = partial(begin, loop.agent.episode, controller)
-        more = partial(advance, loop.agent.episode, controller)
+    def __init__(
+        self, loop: Loop, controller: Controller, params: Params, keys: Array, mode: str = "full"
+    ) -> None:
+        self.steps, self.numbers = loop.agent.episode.steps, loop.numbers
+        first, more = (partial(_one, f, loop, controller, mode) for f in (begin, advance))
         program = loop.shard(jax.vmap(first), SEEDS, SEEDS)
-        self._begin = program.lower(keys).compile()
-        takes = SEEDS, SEEDS, REPLICATED
-        program = loop.shard(jax.vmap(more, (0, 0, None)), takes, SEEDS, donate_argnums=1)
-        self._advance = program.lower(params, self._begin(keys), jnp.int32(0)).compile()
+        self._begin = program.lower(self.numbers, keys).compile()
+        takes, carry = (SEEDS, SEEDS, SEEDS, REPLICATED), self._begin(self.numbers, keys)
+        program = loop.shard(jax.vmap(more, (0, 0, 0, None)), takes, SEEDS, donate_argnums=2)
+        self._advance = program.lower(self.numbers, params, carry, jnp.int32(0)).compile()
 
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[], bool]
     ) -> dict[str, np.ndarray] | None:
         """The `scores` [S, N]; None once `cut` is true."""
-        carry, pace = self._begin(keys), Pace()
+        carry, pace = self._begin(self.numbers, keys), Pace()
         while not np.asarray(carry[0].done).all():
             if cut():
                 return None
             rounds, began = pace.rounds(self.steps), perf_counter()
-            carry = jax.block_until_ready(self._advance(params, carry, jnp.int32(rounds)))
+            carry = jax.block_until_ready(self._advance(self.numbers, params, carry, jnp.int32(rounds)))
             pace.took(rounds, perf_counter() - began)
         return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
+
+
+def _one(
+    f: Callable[..., Any], loop: Loop, controller: Controller, mode: str, numbers: Any, *given: Any
+) -> Any:
+    """`begin` or `advance` of one learner with numbers [] of the loop's axis."""
+    return f(loop.agent.episode, loop.axis.put(controller, mode_path(mode), numbers), *given)
+
+
+def mode_path(mode: str) -> str:
+    """Where an axis has the numbers of the controller of a mode."""
+    return f"controllers.{mode}"

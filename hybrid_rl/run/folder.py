@@ -8,8 +8,6 @@ have, is written once and referenced by a YAML anchor.
 
 import io
 import os
-import re
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import datetime
@@ -17,7 +15,6 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-import yaml
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
@@ -27,11 +24,13 @@ from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, UsageError, WorldError
 from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
+from hybrid_rl.run.anchors import as_yaml
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.reading import json_file, yaml_file
 
 FIRST = "0.2"  # version that writes its number to config.yaml
+SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.together)
 
 
 @contextmanager
@@ -121,63 +120,6 @@ def described(config: DictConfig) -> str:
     values: Any = {key: config[key] for key in order if key not in ("expert", "version")}
     made: Any = OmegaConf.create({"version": __version__} | values | {"resume": None})
     return as_yaml(made)
-
-
-def as_yaml(config: DictConfig) -> str:
-    """`config` as YAML, in which a part that occurs several times is written once."""
-    first: dict[str, Any] = {}  # a part as text -> its first occurrence
-
-    def share(key: str, node: Any) -> Any:
-        if not isinstance(node, dict):
-            return node
-        names = sorted(node, key=lambda name: name != "_target_")  # it comes first
-        node = _Part({name: share(name, node[name]) for name in names})
-        node.key = key
-        return first.setdefault(str(node), node) if "_target_" in node else node
-
-    values = share("", OmegaConf.to_container(config))
-    return yaml.dump(values, Dumper=_Dumper, sort_keys=False, allow_unicode=True)
-
-
-class _Part(dict):
-    """A mapping that remembers its key."""
-
-    key: str
-
-
-class _Dumper(yaml.SafeDumper):
-    """Names an anchor by the key of the part that it marks: model, model_2, ..."""
-
-    def __init__(self, *arguments: Any, **settings: Any) -> None:
-        super().__init__(*arguments, **settings)
-        self.anchored: Counter[str] = Counter()  # key -> number of its anchors
-
-    def generate_anchor(self, node: Any) -> str:
-        key = re.sub(r"\W", "_", node.key)
-        self.anchored[key] += 1
-        return key if self.anchored[key] == 1 else f"{key}_{self.anchored[key]}"
-
-    def part(self, data: _Part) -> yaml.Node:
-        node: Any = self.represent_dict(data)
-        node.key = data.key
-        return node
-
-    def sequence(self, data: list[Any]) -> yaml.Node:
-        flow = not any(isinstance(value, (dict, list)) for value in data)
-        return self.represent_sequence("tag:yaml.org,2002:seq", data, flow_style=flow)
-
-    def word(self, data: str) -> yaml.Node:
-        """Quote what reads as a number in YAML 1.2, such as 1e-3."""
-        try:
-            float(data)
-        except ValueError:
-            return self.represent_str(data)
-        return self.represent_scalar("tag:yaml.org,2002:str", data, style="'")
-
-
-_Dumper.add_representer(_Part, _Dumper.part)
-_Dumper.add_representer(list, _Dumper.sequence)
-_Dumper.add_representer(str, _Dumper.word)
 
 
 def read(folder: Path, key: str) -> DictConfig:
@@ -270,6 +212,18 @@ def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 
 
+def members(folder: Path) -> dict[Path, str]:
+    """The runs of the sweep in `folder`, and their values in words; {} if it holds none."""
+    if not (folder / SWEEP).exists():
+        return {}
+    columns = json_file(folder / SWEEP)
+    if not all(isinstance(column, list) for column in columns.values()):
+        raise UsageError(f"{folder / SWEEP}: is not what training writes")
+    each = zip(*columns.values(), strict=False)
+    words = (" ".join(f"{k}={v}" for k, v in zip(columns, row, strict=True)) for row in each)
+    return {folder / str(number): name for number, name in enumerate(words)}
+
+
 def parsed(folder: Path, key: str = "runs") -> DictConfig:
     """What config.yaml of the run in `folder` holds, which the argument `key` named.
 
@@ -281,6 +235,9 @@ def parsed(folder: Path, key: str = "runs") -> DictConfig:
     """
     path = folder / "config.yaml"
     if not path.exists():
+        if runs := members(folder):
+            each = ", ".join(f"{run} ({name})" for run, name in runs.items())
+            raise UsageError(f"{key}={folder}: holds a sweep; give one of its runs: {each}")
         raise UsageError(f"{key}={folder}: no run folder there (no config.yaml in it)")
     config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))
     if not isinstance(config, DictConfig):

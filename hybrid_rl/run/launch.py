@@ -1,8 +1,7 @@
-"""A run from its configuration to its summary: a new one, or one that is resumed."""
+"""A run from its configuration to its summary, new or resumed; or those of a sweep, together."""
 
-from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -15,17 +14,18 @@ from hybrid_rl.checks import check, countable, whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.networks import precision
-from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, provenance
+from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, together
+from hybrid_rl.run import start as starting
 from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.job import Job, Output, written
 from hybrid_rl.run.lock import locked
-from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import Progress, Silent
-from hybrid_rl.run.records import changes, flat, summary_of
+from hybrid_rl.run.records import changes, summary_of
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
-from hybrid_rl.run.start import Start, built
-from hybrid_rl.training.loops import loop_of
+from hybrid_rl.run.start import Start
+from hybrid_rl.run.together import Member
 
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have
@@ -38,123 +38,135 @@ SLOWER = "precision=bf16: slower than float32 on a CPU (0.5 to 0.7 of its speed)
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 
 
-@dataclass(frozen=True)
-class Output:
-    """Where a run reports, besides its folder."""
-
-    on_row: loggers.Function | None = None  # gets every row
-    shown: bool = True  # on the console
-
-
 CONSOLE = Output()
 
 
 def train(
-    config: DictConfig, given: Mapping[str, str], handled: Handler, output: Output = CONSOLE
+    members: Sequence[Member], given: Mapping[str, str], handled: Handler, output: Output = CONSOLE
 ) -> dict[str, Any]:
-    """Run `config` to its end, or to a signal; returns what summary.json holds.
+    """Run `members`, one or those of a sweep, to their end, or to a signal.
+
+    Returns what summary.json holds; of a sweep that of all its runs, and each of them.
 
     given: the overrides of the user, key -> value; of a resumed run, whose settings come from its
     folder, only total_steps and precision may differ. handled: `handled(f)` is a context in which
     the first signal calls f(number).
 
     Raises:
-        UsageError: if the configuration makes no run.
+        UsageError: if a configuration makes no run, or one program cannot train all of them.
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
+    config = members[0].config
     if config.get("distributed"):
         check(config)
         prepare(config)
         config = distributed.share(config)
+        members = [Member(config, {})]
         given = {key: value for key, value in given.items() if key != "distributed"}
     if config.resume is not None:
         return _resume(config, given, handled, output)
-    check(config)
+    for each in members:
+        check(each.config)
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    run, start = built(config)
-    return begin(run, handled, output, start)
+    made = [starting.built(each.config) for each in members]
+    runs = [run for run, _ in made]
+    if len(runs) == 1:
+        return begin(runs[0], handled, output, made[0][1])
+    axis, start = together.axis_of(members, runs), starting.joined([each for _, each in made])
+    size = _fits(runs)
+    loggers.check(config.get("logger"))
+    with together.fresh(members) as folders:
+        each = _run(Job(runs, folders, axis), size, handled, output, start)
+    return together.summary(folders[0].parent, each)
 
 
 def begin(
     run: Run, handled: Handler, output: Output = CONSOLE, start: Start | None = None
 ) -> dict[str, Any]:
     """The same for a run that is built, in a new folder; start: what another run gave it."""
-    size = _fits(run)
+    size = _fits([run])
     loggers.check(run.config.get("logger"))
     with folder.fresh(run.config) as run_dir:
-        return _run(run, run_dir, size, handled, output, start)
+        return _run(Job([run], [run_dir]), size, handled, output, start)[0]
 
 
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
     """The same from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
     with locked(folder.writable(run_dir, "run_dir"), "run_dir"):
-        return _run(run, run_dir, _fits(run), handled, output)
+        return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
 
 
 def _resume(
     config: DictConfig, given: Mapping[str, str], handled: Handler, output: Output
 ) -> dict[str, Any]:
-    """The same for the run in the folder `config.resume`."""
-    run_dir = Path(str(config.resume))
-    if done := _done(_settings(config, given), run_dir):
+    """The same for the run, or the runs of a sweep, in the folder `config.resume`."""
+    parent = Path(str(config.resume))
+    names = folder.members(parent) or {parent: ""}
+    swept, folders = parent not in names, list(names)
+
+    def settings(run_dir: Path) -> DictConfig:
+        own = config.copy()
+        own.resume = str(run_dir)
+        return _settings(own, given)
+
+    done = [_done(settings(each), each) for each in folders]
+    if ends := [each for each in done if each is not None and None not in done]:
         if output.shown:
-            line = f"finished already at {done['total_steps']:,}; raise total_steps to go on"
-            print(f"{run_dir}: {line}")
-        return done | {"signal": None}
-    with locked(folder.writable(run_dir, "resume"), "resume"):
-        config = _settings(config, given)  # again, as another process may have continued the run
-        with folder.blamed(run_dir):
-            check(config)
-            prepare(config)
-            run = configuration.build(config)
-        _refuse_edits(config, run_dir)
-        return _run(run, run_dir, _fits(run), handled, output)
+            line = f"finished already at {ends[0]['total_steps']:,}; raise total_steps to go on"
+            print(f"{parent}: {line}")
+        return (together.summary(parent, ends) if swept else ends[0]) | {"signal": None}
+    with ExitStack() as stack:
+        members, runs = [], []
+        for run_dir in folders:
+            stack.enter_context(locked(folder.writable(run_dir, "resume"), "resume"))
+            own = settings(run_dir)  # again, as another process may have continued the run
+            with folder.blamed(run_dir):
+                check(own)
+                prepare(own)
+                runs.append(configuration.build(own))
+            _refuse_edits(own, run_dir)
+            members.append(Member(own, {names[run_dir]: 0} if swept else {}))
+        axis = together.axis_of(members, runs)
+        each = _run(Job(runs, folders, axis), _fits(runs), handled, output)
+        return together.summary(parent, each) if swept else each[0]
 
 
-def _fits(run: Run) -> str:
+def _fits(runs: Sequence[Run]) -> str:
     """A line about the replay memory; raise UsageError if it, or the evaluations, do not fit."""
+    run, learners = runs[0], len(runs) * len(runs[0].seeds)
     number, modes = run.config.eval_episodes, run.controllers.values()
-    memory.episodes("eval_episodes", number, len(run.seeds), run.agent.episode, modes)
-    return memory.replay(run)
+    memory.episodes("eval_episodes", number, learners, run.agent.episode, modes)
+    return memory.replay(run, learners)
 
 
 def _run(
-    run: Run,
-    run_dir: Path,
-    size: str,
-    handled: Handler,
-    output: Output,
-    start: Start | None = None,
-) -> dict[str, Any]:
-    """Run a session in `run_dir`; size: a line about the replay memory; start: as of `begin`."""
-    config = run.config
+    job: Job, size: str, handled: Handler, output: Output, start: Start | None = None
+) -> list[dict[str, Any]]:
+    """Run a session; size: a line about the replay memory; start: as of `begin`."""
+    run, config = job.runs[0], job.runs[0].config
     label = f"{config.task} {config.algo}"
-    names = loggers.check(config.get("logger"))
-    settings: Any = OmegaConf.to_container(config)
-    copies = loggers.made(names, run_dir, run.seeds, settings)
-    if output.on_row is not None:
-        copies.append(output.on_row)
-    with (
-        integrity.naming(run_dir),
-        RunLog(run_dir, run.seeds, copies) as log,
-        _progress(run, label, output.shown) as progress,
-    ):
-        notes = [f"{label}: run folder {run_dir}", size, *run.notes]
+    with ExitStack() as stack:
+        logs = job.logs(output, stack)
+        progress = stack.enter_context(_progress(run, label, output.shown))
+        each = zip(job.folders, job.axis.names, strict=True)
+        notes = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in each]
+        notes += [size, *run.notes]
         if precision.chosen() == "bf16" and jax.default_backend() == "cpu":
             notes.append(SLOWER)
         progress.note("\n".join(notes))
-        loop = loop_of(run.agent, run.seeds, -(-config.log_every // config.num_envs), run_dir)
+        loop = job.loop()
+        shelf = job.shelf(loop, logs)
         duration = Duration(jax.default_backend() == "cpu", instead(config))
-        plan = _schedule(config), log, progress, duration
-        session = Session(loop, run.controllers, *plan, _written(config))
+        session = Session(loop, run.controllers, _schedule(config), shelf, progress, duration)
         if config.resume is None:
             session.begin(start)
         else:
-            with folder.blamed(run_dir):
+            with folder.blamed(job.folders[0]):
                 session.resume()
-        folder.write(run_dir, config)  # also of a resumed run, which may be longer now
+        for own, run_dir in zip(job.runs, job.folders, strict=True):
+            folder.write(run_dir, own.config)  # also of a resumed run, which may be longer now
         session.compile()
         if output.on_row is not None:
             output.on_row.ask = session.ask
@@ -162,13 +174,11 @@ def _run(
             try:
                 session.run()
             except DivergenceError:
-                log.summary(_summary(config, session))
+                job.summaries(session)
                 raise
             finally:
                 loop.close()
-            summary = _summary(config, session)
-            log.summary(summary)
-        return summary
+            return job.summaries(session)
 
 
 def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
@@ -204,15 +214,9 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
     return old
 
 
-def _written(config: DictConfig) -> dict[str, Any]:
-    """What config.yaml holds, by full keys."""
-    values: Any = OmegaConf.to_container(config)
-    return flat({key: value for key, value in values.items() if key not in ("expert", "version")})
-
-
 def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
-    now = _written(config)
+    now = written(config)
     then = checkpoint.meta(run_dir / "checkpoints").get("settings") or {
         **now
     }  # of an older version
@@ -253,29 +257,3 @@ def _schedule(config: DictConfig) -> Schedule:
     values: dict[str, Any] = {name: config[name] for name in Schedule.__dataclass_fields__}
     values["eval_modes"] = tuple(m for m in config.eval_modes if m in config.controllers)
     return Schedule(**values)
-
-
-def _summary(config: DictConfig, session: Session) -> dict[str, Any]:
-    """What summary.json holds."""
-    values: Any = OmegaConf.to_container(config)
-    return {
-        "task": config.task,
-        "algo": config.algo,
-        "seeds": list(session.loop.seeds),
-        "total_steps": session.step,
-        "finished": session.finished,
-        "final_return": session.final_returns(),
-        "final_eval": session.final_evaluations(),
-        "diverged": list(session.diverged.ends.values()),
-        "wall_s": session.wall_s,
-        "compile_s": session.loop.compile_s,
-        "env_steps_per_s": session.record.learning.rate,
-        "physics": configuration.physics(config),
-        "device": provenance.device(),
-        "precision": precision.chosen(),
-        "versions": provenance.versions(),
-        "git_commit": provenance.git_commit(),
-        "run_dir": str(session.log.run_dir),
-        **{key: values[key] for key in ("run", "begun", "freeze") if values.get(key)},
-        "signal": session.stop or None,
-    }

@@ -239,6 +239,10 @@ class Function(Logger):
         self.ask: Callable[[int], None] = lambda number: None
         self.problem: Exception | None = None
 
+    def of(self, more: Row) -> "Logger":
+        """The logger that adds `more` to each row; itself if there is none."""
+        return _Named(self, more) if more else self
+
     def write(self, row: Row) -> None:
         """Call the function."""
         if self.problem is not None:
@@ -250,6 +254,17 @@ class Function(Logger):
         if ends and not self._asked:
             self._asked = True
             self.ask(0)
+
+
+class _Named(Logger):
+    """Hands rows on with more in them."""
+
+    def __init__(self, logger: Logger, more: Row) -> None:
+        self._logger, self._more = logger, more
+
+    def write(self, row: Row) -> None:
+        """Hand on a row."""
+        self._logger.write(row | self._more)
 
 
 def check(given: Any) -> tuple[str, ...]:

@@ -57,13 +57,13 @@ def episodes(
         )
 
 
-def replay(run: Run) -> str:
-    """A line about the size of the replay memories.
+def replay(run: Run, learners: int) -> str:
+    """A line about the size of the replay memories of so many learners of a run.
 
     Raises:
         UsageError: if the machine has too little.
     """
-    replay, learners = run.agent.replay, len(run.seeds)
+    replay = run.agent.replay
     each = replay.nbytes(run.agent.spec)
     have = available()
     if each * learners > have:

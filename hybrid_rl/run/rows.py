@@ -1,11 +1,11 @@
 """From the metrics of decisions to rows of metrics.jsonl.
 
 `metrics` are arrays [rounds, S], `episode/...` [rounds, S, E]; a round is one decision in each
-of E worlds of each of S learners.
+of E worlds of each of S learners. Rows have the number of a learner here, and its seed in a file.
 """
 
-from collections.abc import Container, Mapping
-from typing import Any
+from collections.abc import Container, Mapping, Sequence
+from typing import Any, Self
 
 import numpy as np
 
@@ -42,6 +42,29 @@ class Gathered:
         """Restore what `pack` returned."""
         self._parts = [dict(zip(names, np.asarray(array), strict=True))]
 
+    def split(self, count: int) -> "list[Gathered]":
+        """`count` of them, each with as many learners; all are kept here, too."""
+        if count == 1:
+            return [self]
+        each = [Gathered() for _ in range(count)]
+        if self._parts:
+            whole = self.take()
+            self._parts = [whole]
+            cut = {name: np.split(m, count, axis=1) for name, m in whole.items()}
+            for i, one in enumerate(each):
+                one._parts = [{name: shares[i] for name, shares in cut.items()}]
+        return each
+
+    @classmethod
+    def joined(cls, each: "Sequence[Gathered]") -> Self:
+        """What was `split`."""
+        made = cls()
+        if all(one._parts for one in each):
+            wholes = [one.take() for one in each]
+            names = wholes[0]
+            made._parts = [{n: np.concatenate([w[n] for w in wholes], axis=1) for n in names}]
+        return made
+
 
 def infinite(metrics: Metrics, start: int, worlds: int) -> dict[int, tuple[int, str]]:
     """Learner -> (step, name) of its earliest infinite entry; the metrics begin after `start`.
@@ -67,9 +90,7 @@ def of_world(name: str) -> bool:
     return name.startswith("world/") and name != ACTION
 
 
-def episodes(
-    metrics: Metrics, seeds: tuple[int, ...], start: int, worlds: int, ended: Mapping[int, int]
-) -> list[Row]:
+def episodes(metrics: Metrics, start: int, worlds: int, ended: Mapping[int, int]) -> list[Row]:
     """A row per episode that ended in the rounds after `start`.
 
     ended: learner -> the step at which it diverged; it has no rows from there on.
@@ -77,7 +98,7 @@ def episodes(
     return [
         {
             "step": step,
-            "seed": seeds[s],
+            "learner": int(s),
             "train/return": metrics["episode/return"][i, s, e],
             "train/length": int(metrics["episode/length"][i, s, e]),
         }
@@ -86,18 +107,16 @@ def episodes(
     ]
 
 
-def means(
-    metrics: Metrics, seeds: tuple[int, ...], end: int, ended: Container[int] = ()
-) -> list[Row]:
-    """A row of means per seed; NaN is left out, and a name with nothing else.
+def means(metrics: Metrics, learners: int, end: int, ended: Container[int] = ()) -> list[Row]:
+    """A row of means per learner; NaN is left out, and a name with nothing else.
 
     ended: learners that diverged, which have no row.
     """
     averages = []
-    for s, seed in enumerate(seeds):
+    for s in range(learners):
         if s in ended:
             continue
-        row: Row = {"step": end, "seed": seed}
+        row: Row = {"step": end, "learner": s}
         for name, values in metrics.items():
             known = values[:, s][~np.isnan(values[:, s])]
             row |= {name: known.mean(dtype=np.float64)} if known.size else {}

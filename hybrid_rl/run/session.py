@@ -22,11 +22,11 @@ from hybrid_rl.run import divergence, memory, provenance, rows
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.duration import Duration
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
-from hybrid_rl.run.log import RunLog
 from hybrid_rl.run.progress import DRAWN, Progress
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
+from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.start import Start
-from hybrid_rl.run.store import Record, Store
+from hybrid_rl.run.store import Record
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
@@ -41,10 +41,9 @@ class Session:
     loop: Loop
     controllers: Mapping[str, Controller]  # mode -> controller without exploration
     schedule: Schedule
-    log: RunLog
+    shelf: Shelf  # its folders
     progress: Progress
     duration: Duration
-    settings: Mapping[str, Any]  # config.yaml by full keys
     state: Any = None  # AgentState [S, ...], once begun
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
@@ -56,12 +55,10 @@ class Session:
     evaluations: Evaluations | None = None  # compiled
 
     def __post_init__(self) -> None:
-        """Create the record, the store, and the list of learners that diverged."""
+        """Create the record, and the list of learners that diverged."""
         seeds = self.loop.seeds
         self.record = Record([[] for _ in seeds], [None for _ in seeds])
-        folder = self.log.run_dir / "checkpoints"
-        self.store = Store(folder, self.loop, self.schedule.checkpoint_replay, self.settings)
-        self.diverged = Diverged(self.loop, self.store)
+        self.diverged = Diverged(self.loop, self.shelf)
 
     @property
     def step(self) -> int:
@@ -93,15 +90,14 @@ class Session:
         Raises:
             CheckpointError: if there is none, or it belongs to another run.
         """
-        self.state, self.gathered, self.record, notes = self.store.restore()
+        self.state, self.gathered, self.record, ends, notes = self.shelf.restore()
         self.progress.step = self.step
         if not self.schedule.checkpoint_replay:
             self.loop.agent = replace(self.loop.agent, first_update=self.step)
             notes += ["no replay memory in checkpoints: it continues, but not bit for bit"]
         self.saved = self.step, self.record.unevaluated
-        self.diverged.resume(self.record.ends)
-        notes += [*self.loop.notes, *self.log.rewind(self.record.metrics_bytes, self.step)]
-        for note in notes:
+        self.diverged.ends = ends
+        for note in (*notes, *self.loop.notes):
             self.progress.note(note)
         self.progress.note(f"continuing from step {self.step:,}")
 
@@ -188,30 +184,34 @@ class Session:
 
     def _record(self, metrics: rows.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""
-        seeds, worlds = self.loop.seeds, self.loop.agent.num_envs
+        worlds = self.loop.agent.num_envs
         infinite = rows.infinite(metrics, start, worlds)
         ended = self._end(infinite)
-        episodes = rows.episodes(metrics, seeds, start, worlds, self.diverged.steps)
+        episodes = rows.episodes(metrics, start, worlds, self.diverged.steps)
         for row in episodes:
             pair = (row["step"], float(row["train/return"]))
-            self.record.returns[seeds.index(row["seed"])].append(pair)
-        self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["seed"])))
+            self.record.returns[row["learner"]].append(pair)
+        self._write(sorted(episodes + ended, key=lambda row: (row["step"], row["learner"])))
         self._continue(bool(infinite))
         self.gathered.add(metrics)
         if self.schedule.row_due(self.step, worlds):
-            means = rows.means(self.gathered.take(), seeds, self.step, self.diverged.ends)
-            perf = {"perf/compile_s": self.loop.compile_s} | self._speed()
+            learners = len(self.loop.seeds)
+            means = rows.means(self.gathered.take(), learners, self.step, self.diverged.ends)
+            perf = {"perf/compile_s": self.loop.compile_s} | self._speed(len(self.shelf.logs))
             self._write([row | perf for row in means])
             self.recent = Speed()
 
-    def _speed(self) -> dict[str, float]:
-        """Decisions of all learners per second since the last row; empty before they learn."""
+    def _speed(self, folders: int = 1) -> dict[str, float]:
+        """Decisions of all learners per second since the last row; empty before they learn.
+
+        folders: so many share them evenly.
+        """
         speed = self.recent.rate
-        return {} if speed is None else {"perf/env_steps_per_s": speed}
+        return {} if speed is None else {"perf/env_steps_per_s": speed / folders}
 
     def _params(self) -> Params:
         """The parameters of all learners [S, ...]."""
-        return jax.vmap(self.loop.agent.params)(self.state)
+        return self.loop.params(self.state)
 
     def _evaluate(self) -> None:
         """The outcomes of every evaluated mode, unless a signal comes."""
@@ -229,9 +229,8 @@ class Session:
         }
         ended = self._end(infinite)
         left = {s: o for s, o in enumerate(outcomes) if s not in self.diverged.ends}
-        seeds = self.loop.seeds
-        rows_left = [{"step": self.step, "seed": seeds[s]} | each for s, each in left.items()]
-        self._write(sorted(rows_left + ended, key=lambda row: row["seed"]))
+        rows_left = [{"step": self.step, "learner": s} | each for s, each in left.items()]
+        self._write(sorted(rows_left + ended, key=lambda row: row["learner"]))
         self._continue(bool(ended))
         result = next(key for key in RETURNS if key in outcomes[0])
         for s, outcome in left.items():
@@ -243,17 +242,18 @@ class Session:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
         new = self.diverged.add(failures, self.state, self.step)
         if left := self.diverged.left:  # else the error names it
-            for end in new:
+            for end in new.values():
                 self.progress.note(divergence.note(end, left))
         return [
-            {"step": end["step"], "seed": end["seed"], "diverged": end["quantity"]} for end in new
+            {"step": end["step"], "learner": s, "diverged": end["quantity"]}
+            for s, end in new.items()
         ]
 
     def _continue(self, repair: bool) -> None:
         """Raise DivergenceError if no learner is left; repair those that have ended."""
         if not self.diverged.left:
             ends = list(self.diverged.ends.values())
-            raise DivergenceError(divergence.line(ends, 0, self.store.newest))
+            raise DivergenceError(divergence.line(ends, 0, self.shelf.newest))
         if repair:
             self.state = self.diverged.repaired(self.state)
 
@@ -261,16 +261,15 @@ class Session:
         """Write a checkpoint."""
         self._write(self._end(divergence.unsound(self.state.learners, self.step)))
         self._continue(True)
-        written, ends = self.log.flush(), list(self.diverged.ends.values())
-        now = replace(self.record, wall_s=self.wall_s, metrics_bytes=written, ends=ends)
+        now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
-            notes = self.store.save(self.state, self.gathered, now)
+            notes = self.shelf.save(self.state, self.gathered, now, self.diverged.ends)
         for note in notes:
             self.progress.note(note)
         self.saved = self.step, self.record.unevaluated
 
     def _write(self, new: list[rows.Row]) -> None:
-        self.log.write([{**row, "wall_s": self.wall_s} for row in new])
+        self.shelf.write(new, self.wall_s)
 
     def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:
         newest = [

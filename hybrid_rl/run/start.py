@@ -5,6 +5,7 @@ memory of decisions is kept only as far as it is true in the new run, and imagin
 where nothing has changed.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -41,6 +42,20 @@ class Start:
         """The first state [S, ...] of the run with it."""
         memory = state.memory if self.memory is None else self.memory
         return state.replace(learners=self.learners, memory=memory)
+
+
+def joined(starts: Sequence[Start | None]) -> Start | None:
+    """What the runs of a sweep begin with, all from the same run; None: nothing."""
+    known = [start for start in starts if start is not None]
+    if not known:
+        return None
+    have = [start.memory for start in known]
+    each = [start.learners for start in known]
+    return Start(_stacked(each), None if have[0] is None else _stacked(have), known[0].line)
+
+
+def _stacked(each: Sequence[Any]) -> Any:
+    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *each)
 
 
 def built(config: DictConfig) -> tuple[Run, Start | None]:

@@ -14,19 +14,23 @@ from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.loop import Loop
 
+# {"seed", "step", "quantity"} of a learner that diverged; "world": why it is the world's fault;
+# "of": its numbers, where a program has several sets of them
+End = dict[str, Any]
+
 
 @dataclass
 class Record:
     """What a run has done so far; a checkpoint holds it whole."""
 
-    returns: list[list[tuple[int, float]]]  # per seed: (step, return)
-    final_eval: list[float | None]  # per seed: the latest
+    returns: list[list[tuple[int, float]]]  # per learner: (step, return)
+    final_eval: list[float | None]  # per learner: the latest
     step: int = 0  # decisions of each learner
     wall_s: float = 0.0  # [s] in earlier sessions; of a checkpoint: until then
     metrics_bytes: int = 0  # of a checkpoint: the size of metrics.jsonl then
     learning: Speed = field(default_factory=Speed)  # over all sessions
     unevaluated: bool = False  # an evaluation is due at `step`
-    ends: list[dict[str, Any]] = field(default_factory=list)  # of learners that diverged
+    ends: list[End] = field(default_factory=list)  # of learners that diverged
 
 
 @dataclass
@@ -65,17 +69,17 @@ class Store:
         self.noted.update(stuck)
         return [f"{path}: cannot be deleted, and is left there" for path in stuck]
 
-    def restore(self) -> tuple[Any, Gathered, Record, list[str]]:
+    def restore(self, step: int | None = None) -> tuple[Any, Gathered, Record, list[str]]:
         """(state, metrics since the last row, record, notes) of the newest sound checkpoint.
 
-        The replay memory is empty if checkpoints do not hold it.
+        The replay memory is empty if checkpoints do not hold it. step: of another checkpoint.
 
         Raises:
             CheckpointError: if there is none, or it belongs to another run.
         """
         self.known = set(checkpoint.steps(self.folder))
         like = self._like().replace(memory=None)
-        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, part=True)
+        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step, part=True)
         memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
         gathered, packed = Gathered(), meta.get("gathered", {})
         if packed.get("names"):

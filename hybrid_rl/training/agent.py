@@ -29,6 +29,7 @@ class AgentState:
     memory: Memory
     learners: dict[str, Any]
     key: Array  # []
+    numbers: dict[str, Array] = struct.field(default_factory=dict)  # [] of a learner's axis
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,11 @@
 """Many learners in one compiled program: `vmap` over seeds around a loop over decisions.
 
-The learners are sharded over the devices of the host and do not communicate.
+The learners are sharded over the devices of the host and do not communicate. With an axis of K sets
+of numbers there are those of all seeds for each set, one after another.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
 from typing import Any
@@ -16,6 +17,8 @@ from jax import Array
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from hybrid_rl.training.agent import Agent, AgentState, trace_once
+from hybrid_rl.training.axis import Axis
+from hybrid_rl.types import Params
 
 # On a CPU, YNNPACK, XLA's default, is slower than Eigen in matrix products and than XLA's own loops
 # in the sums of layer norms, so it gets convolutions only, of which there are none.
@@ -29,16 +32,17 @@ REPLICATED = PartitionSpec()
 
 @dataclass
 class Loop:
-    """Trains one learner per seed, at most `stride` rounds per call, in one compiled program.
+    """Trains a learner for each of the `seeds`, at most `stride` rounds per call, in one compiled program.
 
     A round is one decision in each of an agent's environments. The number of rounds of a call is an
     argument of the program, so that a remainder does not need another compilation.
     """
 
     agent: Agent
-    seeds: tuple[int, ...]
+    seeds: tuple[int, ...]  # [S] of all learners, K times the same with an axis
     stride: int
     compile_s: float = 0.0  # [s] spent compiling so far
+    axis: Axis = field(default_factory=Axis)  # numbers of "agent"
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -84,13 +88,38 @@ class Loop:
         )
         return put(state, learner)
 
+    @property
+    def numbers(self) -> dict[str, Array]:
+        """Those of each learner on the axis, [S] each."""
+        each = len(self.seeds) // self.axis.count
+        return {
+            path: jnp.repeat(jnp.array(values, jnp.float32), each)
+            for path, values in self.axis.numbers.items()
+        }
+
     def init(self) -> AgentState:
         """The stacked states [S, ...] before the first decision.
 
         They are placed as those of a checkpoint are, so that a resumed run has the same program.
         """
         keys = jnp.stack([jax.random.key(seed) for seed in self.seeds])
-        return self.on_devices(self.shard(jax.vmap(self.agent.init), SEEDS, SEEDS)(keys))
+
+        def first(key: Array, numbers: dict[str, Array]) -> AgentState:
+            return self._of(numbers).init(key).replace(numbers=numbers)
+
+        return self.on_devices(self.shard(jax.vmap(first), SEEDS, SEEDS)(keys, self.numbers))
+
+    def params(self, state: AgentState) -> Params:
+        """The parameters [S, ...] of all learners."""
+        return jax.vmap(lambda one: self._of(one.numbers).params(one))(state)
+
+    def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
+        """A round of one learner, as `Agent.step`."""
+        return self._of(state.numbers).step(state, step)
+
+    def _of(self, numbers: dict[str, Array]) -> Agent:
+        """The agent with numbers [] of the axis."""
+        return self.axis.put(self.agent, "agent", numbers)
 
     def trace(self, state: AgentState) -> Any:
         """The trace of the program, for `compile`."""
@@ -129,7 +158,7 @@ class Loop:
         self, state: AgentState, start: Array, rounds: Array
     ) -> tuple[AgentState, dict[str, Array]]:
         """The state after `rounds` rounds, and their metrics [:rounds] of [stride, S, ...]."""
-        step = trace_once(jax.vmap(self.agent.step, in_axes=(0, None)))
+        step = trace_once(jax.vmap(self.step, in_axes=(0, None)))
         shapes = jax.eval_shape(step, state, start)[1]
         rows = jax.tree.map(lambda m: jnp.zeros((self.stride, *m.shape), m.dtype), shapes)
 

@@ -6,20 +6,31 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.host_loop import HostLoop
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.robot_loop import RobotLoop
 
 
-def loop_of(agent: Agent, seeds: tuple[int, ...], stride: int, folder: Path = Path()) -> Loop:
+def loop_of(
+    agent: Agent,
+    seeds: tuple[int, ...],
+    stride: int,
+    folder: Path = Path(),
+    axis: Axis | None = None,
+) -> Loop:
     """On the device; on the host where its environment is there; or on a robot.
 
-    folder: of the run, in which the files of a robot are.
+    folder: of the run, in which the files of a robot are. axis: of `Loop`.
 
     Raises:
-        UsageError: for a world that the caller steps.
+        UsageError: for a world that the caller steps, or an axis without a world in JAX.
     """
     env = agent.episode.env
+    if axis is not None and axis.numbers:
+        if isinstance(env, Robot | Outside | External):
+            raise UsageError("sweep: is for worlds in JAX; use -m, with one job after another")
+        return Loop(agent, seeds, stride, axis=axis)
     if isinstance(env, Robot):
         files = folder / "robot"
         files.mkdir(exist_ok=True)

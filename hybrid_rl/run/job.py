@@ -1,0 +1,112 @@
+"""What a program trains, and where: a run in its folder, or those of a sweep in theirs."""
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from omegaconf import DictConfig, OmegaConf
+
+from hybrid_rl import config as configuration
+from hybrid_rl.config import Run
+from hybrid_rl.networks import precision
+from hybrid_rl.run import integrity, loggers, provenance
+from hybrid_rl.run.log import RunLog
+from hybrid_rl.run.records import flat
+from hybrid_rl.run.session import Session
+from hybrid_rl.run.shelf import Shelf
+from hybrid_rl.run.store import Store
+from hybrid_rl.training.axis import Axis
+from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.loops import loop_of
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where a run reports, besides its folder."""
+
+    on_row: loggers.Function | None = None  # gets every row
+    shown: bool = True  # on the console
+
+
+@dataclass(frozen=True)
+class Job:
+    """K runs, their folders, and the numbers in which they differ."""
+
+    runs: Sequence[Run]
+    folders: Sequence[Path]
+    axis: Axis = field(default_factory=Axis)
+
+    def loop(self) -> Loop:
+        """That of all learners."""
+        run = self.runs[0]
+        stride = -(-run.config.log_every // run.config.num_envs)
+        seeds = run.seeds * len(self.runs)
+        return loop_of(run.agent, seeds, stride, self.folders[0], self.axis)
+
+    def logs(self, output: Output, stack: ExitStack) -> list[RunLog]:
+        """Their records, open until the end of `stack`."""
+        logs = []
+        for run, run_dir in zip(self.runs, self.folders, strict=True):
+            settings: Any = OmegaConf.to_container(run.config)
+            names = loggers.check(run.config.get("logger"))
+            copies = loggers.made(names, run_dir, run.seeds, settings)
+            if output.on_row is not None:
+                more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
+                copies.append(output.on_row.of(more))
+            stack.enter_context(integrity.naming(run_dir))
+            logs.append(stack.enter_context(RunLog(run_dir, run.seeds, copies)))
+        return logs
+
+    def shelf(self, loop: Loop, logs: Sequence[RunLog]) -> Shelf:
+        """The records and the checkpoints."""
+        stores = []
+        for run, run_dir in zip(self.runs, self.folders, strict=True):
+            own = loop if len(self.runs) == 1 else Loop(run.agent, run.seeds, loop.stride)
+            replay, path = run.config.checkpoint_replay, run_dir / "checkpoints"
+            stores.append(Store(path, own, replay, written(run.config)))
+        return Shelf(loop, logs, stores)
+
+    def summaries(self, session: Session) -> list[dict[str, Any]]:
+        """What summary.json of each run holds; it is written."""
+        shelf, each = session.shelf, []
+        for run, log, share in zip(self.runs, shelf.logs, shelf.shares(), strict=True):
+            each.append(_summary(run.config, session, log.run_dir, share))
+            log.summary(each[-1])
+        return each
+
+
+def _summary(
+    config: DictConfig, session: Session, run_dir: Path, share: slice
+) -> dict[str, Any]:
+    """That of the learners in `share`."""
+    values: Any = OmegaConf.to_container(config)
+    ends, rate = session.diverged.ends, session.record.learning.rate
+    return {
+        "task": config.task,
+        "algo": config.algo,
+        "seeds": list(session.loop.seeds[share]),
+        "total_steps": session.step,
+        "finished": session.finished,
+        "final_return": session.final_returns()[share],
+        "final_eval": session.final_evaluations()[share],
+        "diverged": [end for s, end in ends.items() if share.start <= s < share.stop],
+        "wall_s": session.wall_s,
+        "compile_s": session.loop.compile_s,
+        "env_steps_per_s": None if rate is None else rate / len(session.shelf.logs),
+        "physics": configuration.physics(config),
+        "device": provenance.device(),
+        "precision": precision.chosen(),
+        "versions": provenance.versions(),
+        "git_commit": provenance.git_commit(),
+        "run_dir": str(run_dir),
+        **{key: values[key] for key in ("run", "begun", "freeze") if values.get(key)},
+        "signal": session.stop or None,
+    }
+
+
+def written(config: DictConfig) -> dict[str, Any]:
+    """What config.yaml holds, by full keys."""
+    values: Any = OmegaConf.to_container(config)
+    return flat({key: value for key, value in values.items() if key not in ("expert", "version")})
