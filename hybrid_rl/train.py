@@ -2,6 +2,7 @@
 
     python -m hybrid_rl.train task=pendulum algo=sac total_steps=5000
     python -m hybrid_rl.train -m algo=sac,nn_mppi,hybrid_stochastic num_seeds=5
+    python -m hybrid_rl.train task=pendulum num_seeds=5 'sweep.policy_learner.discount=[0.98,0.99]'
     python -m hybrid_rl.train resume=DIR total_steps=10000
     python -m hybrid_rl.train run=DIR reward=speed reward.target=2 total_steps=5000
 
@@ -37,7 +38,7 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import assembled, curve, divergence, launch, loggers, together
+from hybrid_rl.run import assembled, curve, divergence, folder, launch, loggers, together
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
@@ -172,7 +173,11 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
         raise output.on_row.problem
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
-    say(f"{_result(summary)} ({summary['wall_s']:.0f} s, {summary['run_dir']})")
+    swept = folder.members(Path(summary["run_dir"])).values()
+    for each, values in zip(summary.get("runs", ()), swept, strict=True):
+        say(f"{folder.words(values)}: {_result(each)} ({each['run_dir']})")
+    what = f"{len(summary['runs'])} runs" if "runs" in summary else _result(summary)
+    say(f"{what} ({summary['wall_s']:.0f} s, {summary['run_dir']})")
     if summary["signal"] is not None:
         resume = shlex.quote(f"resume={overrides.quoted(summary['run_dir'])}")
         say(f"continue: python -m hybrid_rl.train {resume}")
@@ -193,10 +198,10 @@ def _curve(run_dir: Path) -> None:
     from hybrid_rl.figures import save
 
     try:
-        (line,) = learning_curves.curves(run_dir, EVALUATION)
+        lines = learning_curves.curves(run_dir, EVALUATION)
     except UsageError:  # there are none
         return
-    known = np.isfinite(line.iqm)
+    known = np.isfinite(lines[0].iqm)
     if known.sum() < CURVE:
         return
     drawn = run_dir / "curve.png"
@@ -208,7 +213,8 @@ def _curve(run_dir: Path) -> None:
     except OSError as error:
         say(f"{drawn}: not written ({error.strerror or error})")
     title = f"{curves_picture.LABELS[EVALUATION]} ({drawn})"
-    say(curve.drawn(line.x[known], line.iqm[known], title, "decisions"))
+    one = curve.drawn(lines[0].x[known], lines[0].iqm[known], title, "decisions")
+    say(one if len(lines) == 1 else title)
 
 
 def _result(summary: Mapping[str, Any]) -> str:

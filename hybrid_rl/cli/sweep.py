@@ -26,7 +26,7 @@ from hybrid_rl.cli.submitted import Result, require_slurm, watched
 from hybrid_rl.composition import check_task
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
-from hybrid_rl.run import inherited
+from hybrid_rl.run import together
 from hybrid_rl.run.folder import made
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.start import built
@@ -148,16 +148,24 @@ class Sweeper(BasicSweeper):
                 config.physics = "native"
             try:
                 with command.as_typed(overrides):
-                    whole = inherited.resolved(config, overrides)
-                    if whole.resume is None:
-                        check(whole)
-                        prepare(whole)  # first: a check of the user's world initialises JAX
-                        built(whole)
+                    _check(together.expanded(config, overrides))
             except UsageError as error:
                 label = f"{self.task.called} {number}: {self.task.labels[number]}"
                 label = label.removesuffix(": ")
                 raise UsageError(f"{error} ({label})") from error
         return configs
+
+
+def _check(members: Sequence[together.Member]) -> None:
+    """Raise UsageError if a job cannot run, alone or with those that share its program."""
+    runs = []
+    for each in members:
+        if each.config.resume is None:
+            check(each.config)
+            prepare(each.config)  # first: a check of the user's world initialises JAX
+            runs.append(built(each.config)[0])
+    if len(runs) > 1:
+        together.axis_of(members, runs)
 
 
 def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> list[list[str]]:

@@ -77,7 +77,9 @@ class Evaluator:
             if cut():
                 return None
             rounds, began = pace.rounds(self.steps), perf_counter()
-            carry = jax.block_until_ready(self._advance(self.numbers, params, carry, jnp.int32(rounds)))
+            carry = jax.block_until_ready(
+                self._advance(self.numbers, params, carry, jnp.int32(rounds))
+            )
             pace.took(rounds, perf_counter() - began)
         return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
 

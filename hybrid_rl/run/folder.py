@@ -8,9 +8,10 @@ have, is written once and referenced by a YAML anchor.
 
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
@@ -212,16 +213,25 @@ def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
         raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
 
 
-def members(folder: Path) -> dict[Path, str]:
-    """The runs of the sweep in `folder`, and their values in words; {} if it holds none."""
+def members(folder: Path) -> dict[Path, dict[str, float]]:
+    """The runs of the sweep in `folder`, and the values of each by key; {} if it holds none.
+
+    Raises:
+        UsageError: if sweep.json is not what training writes.
+    """
     if not (folder / SWEEP).exists():
         return {}
     columns = json_file(folder / SWEEP)
-    if not all(isinstance(column, list) for column in columns.values()):
+    lists = [column if isinstance(column, list) else [] for column in columns.values()]
+    if any(type(x) not in (int, float) for x in chain(*lists)) or len(set(map(len, lists))) != 1:
         raise UsageError(f"{folder / SWEEP}: is not what training writes")
-    each = zip(*columns.values(), strict=False)
-    words = (" ".join(f"{k}={v}" for k, v in zip(columns, row, strict=True)) for row in each)
-    return {folder / str(number): name for number, name in enumerate(words)}
+    rows = (dict(zip(columns, row, strict=True)) for row in zip(*lists, strict=True))
+    return {folder / str(number): row for number, row in enumerate(rows)}
+
+
+def words(values: Mapping[str, float]) -> str:
+    """What sets a run of a sweep apart, as typed; empty if nothing does."""
+    return " ".join(f"{key}={value}" for key, value in values.items())
 
 
 def parsed(folder: Path, key: str = "runs") -> DictConfig:
@@ -236,7 +246,7 @@ def parsed(folder: Path, key: str = "runs") -> DictConfig:
     path = folder / "config.yaml"
     if not path.exists():
         if runs := members(folder):
-            each = ", ".join(f"{run} ({name})" for run, name in runs.items())
+            each = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
             raise UsageError(f"{key}={folder}: holds a sweep; give one of its runs: {each}")
         raise UsageError(f"{key}={folder}: no run folder there (no config.yaml in it)")
     config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))

@@ -77,9 +77,7 @@ class Job:
         return each
 
 
-def _summary(
-    config: DictConfig, session: Session, run_dir: Path, share: slice
-) -> dict[str, Any]:
+def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
     """That of the learners in `share`."""
     values: Any = OmegaConf.to_container(config)
     ends, rate = session.diverged.ends, session.record.learning.rate

@@ -103,8 +103,8 @@ def _resume(
 ) -> dict[str, Any]:
     """The same for the run, or the runs of a sweep, in the folder `config.resume`."""
     parent = Path(str(config.resume))
-    names = folder.members(parent) or {parent: ""}
-    swept, folders = parent not in names, list(names)
+    values = folder.members(parent) or {parent: {}}
+    swept, folders = parent not in values, list(values)
 
     def settings(run_dir: Path) -> DictConfig:
         own = config.copy()
@@ -127,7 +127,7 @@ def _resume(
                 prepare(own)
                 runs.append(configuration.build(own))
             _refuse_edits(own, run_dir)
-            members.append(Member(own, {names[run_dir]: 0} if swept else {}))
+            members.append(Member(own, values[run_dir]))
         axis = together.axis_of(members, runs)
         each = _run(Job(runs, folders, axis), _fits(runs), handled, output)
         return together.summary(parent, each) if swept else each[0]

@@ -12,7 +12,6 @@ from time import monotonic, perf_counter
 from types import MappingProxyType
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 

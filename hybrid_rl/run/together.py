@@ -42,11 +42,6 @@ class Member:
     config: DictConfig
     values: Values
 
-    @property
-    def name(self) -> str:
-        """The values in words; empty if there are none."""
-        return " ".join(f"{key}={value}" for key, value in self.values.items())
-
 
 def load(texts: Sequence[str]) -> list[Member]:
     """The runs of these overrides; errors as `inherited.load` and `expanded`."""
@@ -64,7 +59,8 @@ def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         UsageError: for a key that does not exist or is not used, or values that are no numbers.
     """
     texts, raw = [text for text in texts if not overrides.is_swept(text)], plain(config)
-    lists = flat(raw.get("sweep") or {})
+    lists, config = flat(raw.pop("sweep") or {}), config.copy()
+    config.sweep = {}
     for key, values in lists.items():
         _check_values(config, raw, key, values)
     if lists and config.get("distributed"):
@@ -78,9 +74,17 @@ def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         own = config.copy()
         for key, value in chosen.items():
             OmegaConf.update(own, source(raw, key), value)
-        overrides.refuse_unused([own], typed, configuration.READ)
+        _refuse_unused(own, typed)
         members.append(Member(inherited.resolved(own, [*texts, *typed]), chosen))
     return members
+
+
+def _refuse_unused(config: DictConfig, typed: Sequence[str]) -> None:
+    """Raise UsageError for a key below `sweep` that the method does not use."""
+    try:
+        overrides.refuse_unused([config], typed, configuration.READ)
+    except UsageError as error:
+        raise UsageError(f"sweep.{error}") from error
 
 
 def _check_values(config: DictConfig, raw: dict[str, Any], key: str, values: Any) -> None:
@@ -103,12 +107,17 @@ def axis_of(members: Sequence[Member], runs: Sequence[Run]) -> Axis:
     """
     trees = [{"agent": run.agent, "controllers": run.controllers} for run in runs]
     try:
-        axis = Axis.of(trees, tuple(member.name for member in members))
+        axis = Axis.of(trees, tuple(folder.words(each.values) for each in members))
     except DifferError as error:
         raise _refused(members, error.path) from error
     for path in axis.numbers:
         if path.startswith("agent.episode."):
             raise _refused(members, path, "all learners have the same world")
+    for key in members[0].values:
+        rest = members[0].values.items() - {(key, members[0].values[key])}
+        same = [tree for tree, m in zip(trees, members, strict=True) if rest <= m.values.items()]
+        if len(same) > 1 and not Axis.of(same).numbers:
+            raise _refused(members, key, "it is no number of a learner or a controller")
     if axis.numbers:
         _check_traced(axis, members, runs[0])
     return axis

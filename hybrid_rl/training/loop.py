@@ -32,7 +32,7 @@ REPLICATED = PartitionSpec()
 
 @dataclass
 class Loop:
-    """Trains a learner for each of the `seeds`, at most `stride` rounds per call, in one compiled program.
+    """Trains a learner per entry of `seeds`, at most `stride` rounds a call, in one program.
 
     A round is one decision in each of an agent's environments. The number of rounds of a call is an
     argument of the program, so that a remainder does not need another compilation.
