@@ -15,7 +15,8 @@ model that the run has learned; nothing is trained. planner=NAME is another plan
 With constraint=NAME, of conf/constraint, the world counts the decisions that violate it, and the
 planner keeps it; the return stays as it is.
 
-Without exploration, with the learners as they were at the newest checkpoint. From Python,
+Without exploration, with the learners as they were at the newest checkpoint. Of a sweep in one
+program, run=DIR evaluates each run, and run=DIR/1 the second one. From Python,
 `hybrid_rl.trained.load` reads a run back, and `evaluate` gives its returns.
 """
 
@@ -43,6 +44,7 @@ from hybrid_rl.goals import chosen
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run import memory
+from hybrid_rl.run.folder import members
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
@@ -107,6 +109,13 @@ def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str,
 def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, CHANGES)
+    runs = [str(run) for run in members(Path(given["run"]))] if given["run"] else []
+    for run in runs or [given["run"]]:
+        _evaluated(given | {"run": run}, changes)
+
+
+def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
+    """Print and write the table of one run or policy."""
     episodes, name = given["episodes"], given["run"] or given["policy"]
     trained, changes = chosen(given, changes)
     if given["precision"]:

@@ -22,7 +22,7 @@ from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBase
 from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
-from hybrid_rl.errors import MisfitError, UsageError, WorldError
+from hybrid_rl.errors import MisfitError, UsageError, WorldError, shown
 from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.anchors import as_yaml
@@ -231,7 +231,7 @@ def members(folder: Path) -> dict[Path, dict[str, float]]:
 
 def words(values: Mapping[str, float]) -> str:
     """What sets a run of a sweep apart, as typed; empty if nothing does."""
-    return " ".join(f"{key}={value}" for key, value in values.items())
+    return shown(" ".join(f"{key}={value}" for key, value in values.items()))
 
 
 def parsed(folder: Path, key: str = "runs") -> DictConfig:
