@@ -150,11 +150,8 @@ def train(
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
-        if isinstance(method, DictConfig):
-            members = [together.Member(method, {})]
-        else:
-            members, given = together.load(method), overrides.given(method)
-        result = Result(launch.train(members, given, interrupt.answered, output))
+        given = given if isinstance(method, DictConfig) else overrides.given(method)
+        result = Result(launch.train(together.load(method), given, interrupt.answered, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
     if output.on_row is not None and output.on_row.problem is not None:

@@ -43,8 +43,10 @@ class Member:
     values: Values
 
 
-def load(texts: Sequence[str]) -> list[Member]:
-    """The runs of these overrides; errors as `inherited.load` and `expanded`."""
+def load(texts: Sequence[str] | DictConfig) -> list[Member]:
+    """The runs of these overrides, or of what is resolved; errors as of `inherited`, `expanded`."""
+    if isinstance(texts, DictConfig):
+        return [Member(texts, {})]
     if isinstance(texts, str) or not any(map(overrides.is_swept, texts)):
         return [Member(inherited.load(texts), {})]
     return expanded(configuration.composed(inherited.chosen(texts)), texts)

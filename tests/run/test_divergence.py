@@ -11,6 +11,7 @@ from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.run import divergence, rows
 from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Transition
 
@@ -32,7 +33,7 @@ def diverged(capacity, rewards):
     for reward in rewards:
         memory = replay.add(memory, decision(reward))
     state = SimpleNamespace(memory=jax.tree.map(lambda leaf: leaf[None], memory), learners={})
-    return divergence.Diverged(SimpleNamespace(agent=agent, seeds=(3,)), None), state
+    return divergence.Diverged(SimpleNamespace(agent=agent, seeds=(3,), axis=Axis()), None), state
 
 
 def metrics(**infinite):
@@ -47,7 +48,7 @@ def test_a_reward_that_is_not_finite_is_the_worlds_and_its_decision_is_shown():
     learners, state = diverged(100, [-1, -2, NAN, -4, -5])
     failures = rows.infinite(metrics(sac_q=2, world_reward=2), 0, WORLDS)
     assert failures == {0: (6, "world/reward")}
-    ends = learners.add(failures, state, 10)
+    ends = [*learners.add(failures, state, 10).values()]
     assert divergence.line(ends, 0, None) == (
         "seed 3, step 6: world/reward is not finite, a fault of the world: "
         "hybrid_rl.envs.analytic.pendulum.Pendulum at obs [ 0.5 , 0.25, -1. ], action [0.75] gives "
@@ -60,7 +61,7 @@ def test_a_reward_that_is_not_finite_is_the_worlds_and_its_decision_is_shown():
 
 def test_a_decision_that_the_memory_forgot_is_not_shown():
     learners, state = diverged(4, [NAN, -2, -3, -4, -5])
-    (end,) = learners.add({0: (2, "world/reward")}, state, 10)
+    end = learners.add({0: (2, "world/reward")}, state, 10)[0]
     assert end["world"] == "a fault of the world hybrid_rl.envs.analytic.pendulum.Pendulum"
 
 
@@ -69,7 +70,7 @@ def test_a_decision_that_the_memory_forgot_is_not_shown():
 )
 def test_what_was_learned_is_to_blame_where_it_failed_first_or_acted(bad):
     learners, state = diverged(100, [-1] * 5)
-    ends = learners.add(rows.infinite(metrics(**bad), 0, WORLDS), state, 10)
+    ends = [*learners.add(rows.infinite(metrics(**bad), 0, WORLDS), state, 10).values()]
     assert divergence.line(ends, 0, None) == (
         f"seed 3, step {ends[0]['step']}: {ends[0]['quantity']} is not finite; there is no "
         "checkpoint: begin again with a lower learning rate"
