@@ -14,10 +14,11 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from omegaconf import DictConfig
 
-from hybrid_rl import config, figures
+from hybrid_rl import figures
 from hybrid_rl.cli.arguments import HELP, Argument
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run import together
 
 ROOT = Path(__file__).resolve().parents[1]
 LIBRARY = [  # pages; those of the atlas are copied from other pages
@@ -106,7 +107,7 @@ def compose(pages: list[str]) -> None:
 @cache
 def composed(job: tuple[str, ...]) -> DictConfig:
     """The configuration of a job."""
-    return config.load(job)
+    return together.load([*job])[0].config
 
 
 def check_arguments(page: str) -> None:

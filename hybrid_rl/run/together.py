@@ -30,6 +30,7 @@ from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.records import flat
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.rollout import advance, begin
 
 Values = Mapping[str, float]  # key -> value
@@ -129,7 +130,7 @@ def _check_traced(axis: Axis, members: Sequence[Member], run: Run) -> None:
     """Raise UsageError if a number decides what the program is; nothing is compiled."""
 
     def trace(axis: Axis) -> None:
-        loop = Loop(run.agent, run.seeds * axis.count, 1, axis=axis)
+        loop = loop_of(run.agent, run.seeds * axis.count, 1, axis=axis)
         state = jax.eval_shape(loop.init)
         one = jax.tree.map(lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), state)
         jax.eval_shape(loop.step, one, jnp.int32(0))
@@ -138,6 +139,8 @@ def _check_traced(axis: Axis, members: Sequence[Member], run: Run) -> None:
 
     try:
         trace(axis)
+    except UsageError:
+        raise
     except Exception:  # whatever a part does with a number that is not known
         for path in axis.numbers:
             try:
