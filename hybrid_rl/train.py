@@ -10,7 +10,8 @@ A run writes to runs/TASK/ALGO/TIME, or to run_dir=DIR. With three evaluations o
 their curve, on the console and in DIR/curve.png. The jobs of a sweep are checked before the first
 one starts; a job that fails does not end the others; jobs that share run_dir=DIR write to DIR/0,
 DIR/1, ... An override that the method does not use is refused; in a sweep, one that none of its
-methods uses.
+methods uses. With sweep.KEY=[A,B,C], of numbers alone, these runs are trained side by side, in one
+compiled program, and write to DIR/0, DIR/1, DIR/2; resume=DIR continues all of them.
 
 From Python `hybrid_rl.train(...)` calls `train` of this module.
 """

@@ -110,7 +110,9 @@ class Tuner(sweep.Sweeper):
         """The overrides that all trials have, and the values of the others by key."""
         space = {}
         for each in parsed:
-            if each.key_or_group in OWN or overrides.is_swept(each.key_or_group):
+            if overrides.is_swept(each.key_or_group):
+                raise UsageError(f"{each.input_line}: not in a study, which chooses values itself")
+            if each.key_or_group in OWN:
                 raise UsageError(f"{each.input_line}: not in a study, which goes on by run_dir=DIR")
             if each.is_interval_sweep() and (names := options(each.key_or_group)):
                 line = f"{each.input_line}: has names, such as {each.key_or_group}="
