@@ -8,7 +8,7 @@ sweep.json: key -> the value in each of the runs. Its learners are those of all 
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from math import isfinite
@@ -154,8 +154,7 @@ def _episode(loop: Loop, controller: Any, path: str, state: Any) -> Any:
     """A decision of an evaluation."""
     controller = loop.axis.put(controller, path, state.numbers)
     carry = begin(loop.agent.episode, controller, state.key[None])
-    params = replace(loop, axis=Axis()).agent.params(state)
-    return advance(loop.agent.episode, controller, params, carry, jnp.int32(1))
+    return advance(loop.agent.episode, controller, loop.agent.params(state), carry, jnp.int32(1))
 
 
 def _refused(members: Sequence[Member], path: str, why: str = "") -> UsageError:
