@@ -35,7 +35,7 @@ CASES = [
 ]
 
 
-FROM_OTHERS = {"gymnasium", "playground", "robot"}  # tests of their own
+FROM_OTHERS = {"gymnasium", "playground", "robot", "online"}  # tests of their own
 OWN_TEST = {"sawyer_probe"}  # test_sawyer_probe.py
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "tasks.md"
 
