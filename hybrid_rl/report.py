@@ -280,7 +280,7 @@ def main() -> None:
     out = output("out", given["out"] or default, (".html", ".json"))
     if out.suffix == ".json":
         write_text(out, entry(runs))
-        print(f"{out}: write the link to code and command; then make pages")
+        print(f"{out}: now the link, and in the name what is no default, by hand; then make pages")
         return
     try:
         text = page(runs, given["video"] == "auto")
