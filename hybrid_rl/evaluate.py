@@ -46,6 +46,7 @@ from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run import memory
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.integrity import write_text
+from hybrid_rl.run.progress import say
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
 from hybrid_rl.training.host_loop import HostEvaluator
@@ -122,6 +123,7 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
         precision.choose(given["precision"])
     for note in trained.notes:
         print(note)
+    say(f"compiling, then {episodes} episodes a seed ...")  # of a planner, a minute
     values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
     values |= {"changes": changes, "precision": precision.chosen()}
     where = "".join(f", {key}={value}" for key, value in changes.items())

@@ -45,6 +45,7 @@ from hybrid_rl.cli.arguments import (
     whole,
 )
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.progress import say
 
 ARGUMENTS = (
     Argument("run", "", "folder of a trained run"),
@@ -260,6 +261,7 @@ def main() -> None:
     if trained is not None and isinstance(trained.episode.env, External):
         _outside(trained, given, out)
         return
+    say("compiling an episode ...")  # of a planner, a minute
     world, by, shown = _shown(given, changes, out, trained)
     if given["at"]:
         last = len(shown.poses) - 1

@@ -2,11 +2,13 @@
 
     python -m hybrid_rl.report run=runs/hopper/sac/TIME
     python -m hybrid_rl.report run="runs/hopper/*/*" out=hopper.html
+    python -m hybrid_rl.report run="runs/*/sac/*" out=docs/results/community/mine.json
 
 The page is one file without a script, and needs no network. Its curves are those of `figures`:
 interquartile means over seeds with 95% bootstrap bands. Of several runs it lists the settings in
 which they differ. `evaluate` adds its tables. The video is DIR/video.mp4 of each run; for a single
-run without one, up to 200 decisions are drawn.
+run without one, up to 200 decisions are drawn. out=FILE.json writes instead what a method has at
+the end of its runs, a line for docs/results/community.md (hybrid_rl.analysis.entry).
 """
 
 if __name__ == "__main__":
@@ -29,6 +31,7 @@ import numpy as np
 from hybrid_rl import __version__
 from hybrid_rl.analysis import report_panels
 from hybrid_rl.analysis.curves import Curve, area, plural, spread
+from hybrid_rl.analysis.entry import entry
 from hybrid_rl.analysis.html_table import table
 from hybrid_rl.analysis.results import RunFolder, differences, find
 from hybrid_rl.cli import command
@@ -41,7 +44,7 @@ from hybrid_rl.run.reading import text as text_of
 
 ARGUMENTS = (
     Argument("run", "", 'run folders, with commas, or "GLOB"', needed="run=DIR, a run folder"),
-    Argument("out", "", "the page; empty: DIR/report.html, of several runs report.html"),
+    Argument("out", "", "page or .json; empty: DIR/report.html, of several runs report.html"),
     Argument("video", "auto", "auto: as above; none", one_of("auto", "none")),
 )
 MACHINE = ("device", "physics", "precision", "git_commit")  # keys of summary.json
@@ -274,7 +277,11 @@ def main() -> None:
     given, _ = read(__doc__, ARGUMENTS)
     runs = _folders(given["run"])
     default = f"{runs[0].path}/report.html" if len(runs) == 1 else "report.html"
-    out = output("out", given["out"] or default, (".html",))
+    out = output("out", given["out"] or default, (".html", ".json"))
+    if out.suffix == ".json":
+        write_text(out, entry(runs))
+        print(f"{out}: now the link, and in the name what is no default, by hand; then make pages")
+        return
     try:
         text = page(runs, given["video"] == "auto")
     except UsageError as error:

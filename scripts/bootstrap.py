@@ -83,7 +83,7 @@ def main() -> None:
         fcntl.flock(guard, fcntl.LOCK_EX)
         if STAMP.exists() and STAMP.stat().st_mtime >= newest:
             return
-        print("Setting up .venv from requirements.lock: 500 MB, a minute or two ...", flush=True)
+        print("Setting up .venv from requirements.lock: 1.8 GB, a minute or two ...", flush=True)
         install()
 
 

@@ -53,10 +53,13 @@ def test_hidden_layers_have_the_precision_and_outputs_float32(name, hidden, of_p
     assert {leaf.dtype for leaf in jax.tree.leaves((params, gradient))} == {jnp.dtype("float32")}
 
 
-def test_on_a_cpu_auto_is_float32():
+@pytest.mark.parametrize(("name", "on_gpu"), [("auto", "tf32"), ("mixed", "bf16")])
+def test_auto_and_mixed_follow_the_device(name, on_gpu, monkeypatch):
     net, x = MLP((8,), 3), jnp.ones(5)
-    precision.choose("auto")
+    precision.choose(name)
     assert products(lambda: net.init(jax.random.key(0), x))[1] == {"HIGHEST"}
+    monkeypatch.setattr(precision.jax, "default_backend", lambda: "gpu")
+    assert precision.chosen() == on_gpu
 
 
 def test_residual_networks_stay_in_float32():

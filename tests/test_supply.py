@@ -1,15 +1,27 @@
 """What the project takes from others: pinned, checked by hashes, and named with its licence."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
+from packaging.requirements import Requirement
 
+from hybrid_rl import __version__
 from scripts import bootstrap
 
 ROOT = Path(__file__).resolve().parents[1]
 ASSETS = ROOT / "envs" / "assets"
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+RECIPE = yaml.safe_load((ROOT / "recipe" / "recipe.yaml").read_text(encoding="utf-8"))
+CONDA = {  # name on PyPI -> on conda-forge, where they differ
+    "mujoco": "mujoco-python",
+    "flatbuffers": "python-flatbuffers",
+    "matplotlib": "matplotlib-base",
+    "tensorboardX": "tensorboardx",
+}
+OF_EXTRAS = {"imageio[pyav]": "av"}  # conda has no extras: what one brings
 
 
 @pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.stem)
@@ -52,3 +64,31 @@ def test_the_set_up_checks_the_hash_of_all_that_it_installs(tmp_path, monkeypatc
 def test_every_model_is_named_with_its_source():
     text = (ASSETS / "NOTICES.md").read_text(encoding="utf-8")
     assert sorted(re.findall(r"`(\w+\.xml)`", text)) == sorted(p.name for p in ASSETS.glob("*.xml"))
+
+
+def by_name(lines):
+    """Name -> versions, of requirements as both packagers write them."""
+    each = [Requirement(line) for line in lines]
+    return {one.name: one.specifier for one in each}
+
+
+def test_the_conda_recipe_requires_what_the_project_does():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    wanted = [f"python {project['requires-python']}"]
+    for one in map(Requirement, project["dependencies"]):
+        wanted.append(f"{CONDA.get(one.name, one.name)} {one.specifier}")
+        wanted += [OF_EXTRAS[f"{one.name}[{extra}]"] for extra in sorted(one.extras)]
+    least = RECIPE["context"]["python_min"]
+    given = [line.replace("${{ python_min }}", least) for line in RECIPE["requirements"]["run"]]
+    assert by_name(given) == by_name(wanted)
+
+
+def test_version_recipe_changelog_and_citation_agree():
+    """A release is in the changelog and in the citation; between two, the newest one is."""
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    newest, date = re.findall(r"^## \[([\d.]+)\] - (\S+)$", changes, re.M)[0]
+    assert citation["version"] == newest
+    assert str(citation["date-released"]) == date
+    assert RECIPE["context"]["version"] == __version__
+    assert __version__ == newest or (".dev" in __version__ and "\n## [Unreleased]\n" in changes)

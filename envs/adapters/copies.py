@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
-from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
+from gymnasium.vector import AsyncVectorEnv, AutoresetMode
 from jax import Array
 
 from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
@@ -45,12 +45,18 @@ class Copies:
     @cached_property
     def _vector(self) -> Any:
         one = partial(self.env.one, self.render_mode)
-        options: dict[str, Any] = {"autoreset_mode": AutoresetMode.DISABLED}
         if not self.env.processes:
-            return SyncVectorEnv([one for _ in self.seeds], **options)
+            return InTurn([one() for _ in self.seeds])
         gymnasium.logger.min_level = SILENT  # it warns of what is raised, too
         makers = [partial(Located, one) for _ in self.seeds]
-        return AsyncVectorEnv(makers, context="spawn", **options)
+        return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.DISABLED)
+
+    @cached_property
+    def _bounds(self) -> tuple[np.ndarray, np.ndarray, tuple[int, ...], Any]:
+        """Of actions: the lowest [m], their width [m], and shape and dtype of the space."""
+        space = self.env.known.space
+        low = space.low.ravel()
+        return low, space.high.ravel() - low, space.shape, space.dtype
 
     def reset(self) -> np.ndarray:
         """The first observations [N, o]; the first call seeds the environments."""
@@ -66,10 +72,9 @@ class Copies:
         Raises:
             WorldError: if the environment raises an error, gives NaN, or takes too long.
         """
-        space = self.env.known.space
-        share = (np.clip(np.asarray(u, np.float32), -1, 1) + 1) / 2
-        low, high = space.low.ravel(), space.high.ravel()
-        actions = (low + share * (high - low)).reshape(-1, *space.shape).astype(space.dtype)
+        low, width, shape, kind = self._bounds
+        share = (np.maximum(np.minimum(np.asarray(u, np.float32), 1), -1) + 1) / 2
+        actions = (low + share * width).reshape(-1, *shape).astype(kind)
         reward = np.zeros(len(u), np.float32)
         for i in range(self.repeat):
             obs, now, ended, cut, _ = self._call("step", lambda: self._stepped(actions))
@@ -139,6 +144,41 @@ class Copies:
         """End the environments, and their processes."""
         if "_vector" in vars(self):
             vars(self).pop("_vector").close(**options)
+
+
+class InTurn:
+    """Environments in this process: of Gymnasium's SyncVectorEnv what `Copies` needs.
+
+    That one also copies spaces and gathers infos, which takes as long as a half-cheetah's step.
+    """
+
+    def __init__(self, envs: list[gymnasium.Env]) -> None:
+        self.envs = envs
+        self._obs: list[Any] = [None for _ in envs]
+
+    def reset(self, seed: Any = None, options: Any = None) -> tuple[np.ndarray, dict]:
+        """Observations [N, o]; options: `reset_mask` [N] bool, which begin a new episode."""
+        which = options["reset_mask"] if options else np.ones(len(self.envs), bool)
+        for i in np.flatnonzero(which):
+            self._obs[i] = self.envs[i].reset(seed=seed[i] if seed else None)[0]
+        return np.array(self._obs, np.float32), {}
+
+    def step(self, actions: np.ndarray) -> tuple:
+        """Observations [N, o], rewards [N], terminated [N], truncated [N], no infos."""
+        rewards = np.empty(len(actions), np.float32)
+        ended, cut = np.empty(len(actions), bool), np.empty(len(actions), bool)
+        for i, env in enumerate(self.envs):
+            self._obs[i], rewards[i], ended[i], cut[i], _ = env.step(actions[i])
+        return np.array(self._obs, np.float32), rewards, ended, cut, {}
+
+    def render(self) -> list[Any]:
+        """A picture of each."""
+        return [env.render() for env in self.envs]
+
+    def close(self) -> None:
+        """End them."""
+        for env in self.envs:
+            env.close()
 
 
 class Located(gymnasium.Wrapper):

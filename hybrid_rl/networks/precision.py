@@ -5,7 +5,8 @@
     bf16     also the hidden layers of a multilayer perceptron in bfloat16: products, layer norm and
              activations of 7 bits. Weights, their gradients' steps, the last layer and all that
              follows it are float32, so checkpoints do not depend on it.
-    auto     AUTO of the device, or float32
+    mixed    bf16 on a GPU, float32 on a CPU
+    auto     tf32 on a GPU, float32 on a CPU
 
 A program has the precision in which it was traced: `choose` sets it for a run, `using` for a block.
 """
@@ -16,8 +17,8 @@ import jax
 import jax.numpy as jnp
 from jax.lax import Precision
 
-AUTO = {"gpu": "tf32"}  # kind of device -> precision
-PRECISIONS = ("auto", "bf16", "tf32", "float32")
+OF_DEVICE = {"auto": {"gpu": "tf32"}, "mixed": {"gpu": "bf16"}}  # by kind of device, else float32
+PRECISIONS = ("auto", "mixed", "bf16", "tf32", "float32")
 _CHOSEN = jax.make_user_context("auto")  # a part of JAX's keys of traced programs
 
 using = _CHOSEN  # with using("float32"): ...
@@ -31,7 +32,7 @@ def choose(name: str) -> None:
 def chosen() -> str:
     """bf16, tf32 or float32."""
     name = _CHOSEN.value
-    return AUTO.get(jax.default_backend(), "float32") if name == "auto" else name
+    return OF_DEVICE[name].get(jax.default_backend(), "float32") if name in OF_DEVICE else name
 
 
 def of_products() -> Precision:

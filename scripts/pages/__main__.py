@@ -12,7 +12,7 @@ from scripts.pages import atlas, marks
 
 ROOT = Path(__file__).resolve().parents[2]
 ATLAS = ROOT / "docs" / "atlas.md"
-MARK = r"<!-- (= |table\n|machines|claims|rows|printed|ours|doctor|leaves)"
+MARK = r"<!-- (= |table\n|machines|claims|rows|printed|ours|doctor|leaves|community)"
 
 
 def pages() -> list[Path]:

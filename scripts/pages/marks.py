@@ -23,7 +23,7 @@ Before a table that is written whole: <!-- machines --> for machines.yaml, and f
 atlas.yaml <!-- claims Chapter 3 --> or <!-- claims Figure 3-3, Figure 3-5 -->; for printed.yaml
 <!-- rows Chapter 3 -->, <!-- printed Chapter 3 --> and <!-- ours Chapter 3 -->; for what
 the doctor prints <!-- doctor broken --> or <!-- doctor sound -->; for which_method.yaml
-<!-- leaves -->
+<!-- leaves -->; for the files of the folder community <!-- community -->
 
 A text or a cell may show the first of the expression's numbers only. They are written with the
 decimals that stand there.
@@ -34,7 +34,7 @@ from typing import Any
 
 import yaml
 
-from scripts.pages import atlas, examined, leaves, machines, printed
+from scripts.pages import atlas, community, examined, leaves, machines, printed
 from scripts.pages.values import evaluated
 
 NUMBER = re.compile(r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\.\d)")
@@ -45,6 +45,7 @@ CLAIMS = re.compile(r"(<!-- claims (.+) -->\n)((?:\|.*\n)+)")
 PRINTED = re.compile(r"(<!-- (rows|printed|ours) (.+) -->\n)((?:\|.*\n)+)")
 DOCTOR = re.compile(r"(<!-- doctor (broken|sound) -->\n)((?:\|.*\n)+)")
 LEAVES = re.compile(r"(<!-- leaves -->\n)((?:\|.*\n)+)")
+COMMUNITY = re.compile(r"(<!-- community -->\n)((?:\|.*\n)+)")
 CELL = re.compile(r"(?<=\|)[^|\n]+")
 
 
@@ -66,6 +67,7 @@ def written(page: str) -> str:
     page = PRINTED.sub(lambda m: m[1] + printed.table(m[2], m[3]), page)
     page = DOCTOR.sub(lambda m: m[1] + examined.table(m[2]), page)
     page = LEAVES.sub(lambda m: m[1] + leaves.table(), page)
+    page = COMMUNITY.sub(lambda m: m[1] + community.table(), page)
     page = INLINE.sub(lambda m: m[1] + m[2] + m[3] + filled(m[4], m[2]) + m[5], page)
     return TABLE.sub(lambda m: m[1] + m[2] + m[3] + table(m[4], yaml.safe_load(m[2])), page)
 

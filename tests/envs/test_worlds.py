@@ -1,6 +1,7 @@
 """Properties of every environment in every implementation."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import jax
 import mujoco
@@ -24,12 +25,28 @@ from worlds import (
     task_of,
 )
 
+from hybrid_rl.composition import options
+
 pytestmark = pytest.mark.xdist_group("worlds")  # both read `rollout`
 
 CASES = [
     *((t, i) for t in SIMULATED for i in IMPLEMENTATIONS),
     *((t, "analytic") for t in ANALYTIC),
 ]
+
+
+FROM_OTHERS = {"gymnasium", "playground", "robot", "online"}  # tests of their own
+OWN_TEST = {"sawyer_probe"}  # test_sawyer_probe.py
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "tasks.md"
+
+
+def test_every_task_is_tested_here_and_has_its_row_on_the_page():
+    tasks = set(options("task")) - FROM_OTHERS
+    assert tasks == TASKS.keys() | OWN_TEST
+    table = PAGE.read_text(encoding="utf-8").partition("|---|---|---|\n")[2].partition("\n\n")[0]
+    assert tasks == {
+        name for row in table.splitlines() for name in row.split("|")[1].split("`")[1::2]
+    }
 
 
 @pytest.fixture(params=CASES, ids="-".join)

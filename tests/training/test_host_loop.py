@@ -1,7 +1,7 @@
 """Environments on the host: the same numbers as in one program, and what a memory then holds."""
 
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Any, ClassVar
 
 import gymnasium
@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import small
 from gymnasium.spaces import Box, Dict, Discrete
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 from hybrid_rl import config
 from hybrid_rl.data.replay import unpack
@@ -172,6 +173,23 @@ def test_an_end_for_both_reasons_is_an_end_by_the_task():
     copies._vector.envs[0].episode = 0
     last = copies.step(np.zeros((1, 1)))
     assert (last.terminated[0], last.truncated[0]) == (True, False)
+
+
+def test_copies_step_as_in_gymnasiums_vector():
+    """Bit by bit, where only the second episode is cut; of Pendulum-v1, whose starts are drawn."""
+    copies = External(id="Pendulum-v1").copies([1, 2], 3)
+    one = partial(gymnasium.make, "Pendulum-v1", max_episode_steps=-1)
+    vector = SyncVectorEnv([one, one], autoreset_mode=AutoresetMode.DISABLED)
+    obs, _ = vector.reset(seed=[1, 2])
+    np.testing.assert_array_equal(copies.reset(), obs)
+    copies.decisions[1] = 1
+    for u in np.float32(np.random.default_rng(0).integers(-4, 5, (4, 2, 1)) / 4):
+        got, (obs, reward, *_) = copies.step(u), vector.step(2 * u)
+        np.testing.assert_array_equal(got.obs, obs)
+        np.testing.assert_array_equal(got.reward, reward.astype(np.float32))
+        if got.truncated.any():
+            obs, _ = vector.reset(options={"reset_mask": got.truncated.copy()})
+        np.testing.assert_array_equal(got.following, obs)
 
 
 class Odd(gymnasium.Env):
