@@ -29,9 +29,12 @@ SMALL = "settings=light total_steps=3000 random_steps=500 eval_every=1500 eval_e
 SMALL = f"{SMALL} log_every=100"
 BROKEN = {  # name -> what differs from a sound run of the pendulum
     "clipped observation": "algo=sac env.limit=1",
-    "wrong sign of the reward": "algo=sac env.sign=-1",
-    "wrong sign, success measured": "algo=sac env.sign=-1 env.measured=true",
+    "wrong sign of the reward": "algo=sac env.paid=-1",
+    "wrong sign, success measured": "algo=sac env.paid=-1 env.measured=true",
     "episode too short": "algo=sac episode.steps=8",
+    "time limit before the reward": "algo=sac episode.steps=20",
+    "reward too large": "algo=sac env.paid=1e4",
+    "reward too small": "algo=sac env.paid=1e-4",
     "action too slow": "algo=sac env.lag=20",
     "decisions too rare": "algo=sac episode.action_repeat=20",
     "model that cannot see what moves": "algo=nn_mppi env.kept=[0,1]",

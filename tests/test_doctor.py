@@ -12,7 +12,7 @@ from tiny import call, only_line, run
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.doctor import __main__ as doctor
-from hybrid_rl.doctor import learned, observed
+from hybrid_rl.doctor import learned, observed, task
 from hybrid_rl.doctor.evidence import Evidence, read
 from hybrid_rl.types import Spec, Transition
 
@@ -58,7 +58,7 @@ def found(given):
 def test_a_sound_world_gets_no_line():
     given = evidence(*oscillator())
     assert found(given) == set()
-    assert [check(given) for check in (learned.ends, learned.short, learned.reward)] == [None] * 3
+    assert [check(given) for check in (task.ends, task._fixed, task.reward)] == [None] * 3
 
 
 @pytest.mark.parametrize("delay", [1, 2, 4])
@@ -105,21 +105,21 @@ def test_decisions_that_are_too_rare_are_noticed():
 
 def test_ends_and_lengths():
     x, action = oscillator()
-    line = learned.ends(evidence(x, action, terminated=True))
+    line = task.ends(evidence(x, action, terminated=True))
     assert line.startswith(
         f"{EPISODES - 1} of {EPISODES - 1} terminations came at decision {STEPS}"
     )
-    assert "within 2 decisions" in learned.ends(evidence(*oscillator(steps=2), terminated=True))
-    line = learned.short(evidence(*oscillator(steps=5)))
+    assert "within 2 decisions" in task.ends(evidence(*oscillator(steps=2), terminated=True))
+    line = task._fixed(evidence(*oscillator(steps=5)))
     assert line.endswith("episode.steps=50")
 
 
 def test_a_reward_that_is_constant_or_hides_is_noticed():
     x, action = oscillator()
     given = partial(evidence, x, action)
-    assert "nothing to learn" in learned.reward(given(np.full(action.shape[:2], -1.0)))
+    assert "nothing to learn" in task.reward(given(np.full(action.shape[:2], -1.0)))
     offset = 100 + 0.1 * np.random.default_rng(0).normal(size=action.shape[:2])
-    assert "subtract" in learned.reward(given(offset))
+    assert "subtract" in task.reward(given(offset))
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ from pathlib import Path
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.cli.arguments import read as arguments
-from hybrid_rl.doctor import learned, observed
+from hybrid_rl.doctor import learned, observed, task
 from hybrid_rl.doctor.evidence import Evidence, read
 
 ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
@@ -33,10 +33,11 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of docs/
     "action": observed.action,
     "hidden state": observed.hidden,
     "model": learned.forecast,
-    "ends": learned.ends,
-    "episode": learned.short,
-    "reward": learned.reward,
-    "reward's sign": learned.sign,
+    "ends": task.ends,
+    "episode": task.short,
+    "reward": task.reward,
+    "reward's sign": task.sign,
+    "reward's scale": learned.scale,
     "random decisions": learned.random,
     "critic": learned.critic,
 }
