@@ -4,8 +4,8 @@
 
 A line for each fault: what was seen, what it means, what to try. They come in the order in which
 they are to be mended, as the later may follow from the first. It reads metrics.jsonl,
-summary.json, and replay memory and model of the newest checkpoint; if the task measures success,
-it also runs a few episodes of random actions. Nothing is written. docs/not_learning.md has the
+summary.json, and replay memory and networks of the newest checkpoint, and runs new episodes of the
+policy and of random actions. Nothing is written. docs/not_learning.md has the
 checks, and how often they were right.
 """
 
