@@ -9,7 +9,7 @@ import numpy as np
 
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.doctor.evidence import STILL, Evidence
-from hybrid_rl.doctor.limits import ENOUGH, INFLATED, OUTWEIGHED, UNSEEN
+from hybrid_rl.doctor.limits import ENOUGH, INFLATED, OUTWEIGHED, SUMMED, UNSEEN
 from hybrid_rl.run.rows import of_world
 
 
@@ -129,12 +129,12 @@ def critic(run: Evidence) -> str | None:
 def scale(run: Evidence) -> str | None:
     """Rewards beyond what the critic has reached, or below what the entropy pays.
 
-    An untrained critic's values are about 1. After training they hold sums of rewards, so they
-    are larger than one, of root mean square; Adam moves them by about its rate in an update.
+    An untrained critic's values are about 1. The target follows them by tau in an update, so that
+    after n updates they hold sums of about n tau rewards, if Adam has moved the weights that far.
     """
     learner: Any = run.run.agent.learners.get("policy")
-    rows = [row for row in run.folder.rows if row.get("sac/alpha") is not None]
-    if run.made is None or run.params is None or not rows or learner is None:
+    rows = [row for row in run.folder.rows if {"sac/alpha", "sac/q"} <= row.keys()]
+    if run.made is None or run.params is None or not rows:  # or rewards are scaled already
         return None
     act, std = run.run.agent.spec.act, float(run.made.reward.std())
     most = rows[-1]["sac/alpha"] * act * log(2)  # the entropy of uniform actions on [-1, 1]
@@ -144,7 +144,8 @@ def scale(run: Evidence) -> str | None:
             f"(sac/alpha): the policy stays random; multiply the reward by {_round(most / std)}, "
             "or policy_learner.alpha=" + f"{rows[-1]['sac/alpha'] * std / most:.1g}"
         )
-    if "sac/q" not in rows[-1]:  # a critic of scaled rewards
+    updates = (rows[-1]["step"] - run.run.agent.random_steps) * learner.updates
+    if updates * learner.tau < SUMMED:
         return None
     where = run.at(0)
     values = learner.critic.value(run.params.critic, run.made.obs[where], run.made.action[where])

@@ -23,5 +23,6 @@ START = 0.5  # share of an episode's last observation that its first one predict
 INFLATED = 2.0  # variance of a linear model's prediction over that with many random decisions
 BOTH = 10  # episodes at least that have what is compared: success and failure, start and end
 PAID = 0.5  # a policy's higher reward after the time limit, over the reward's standard deviation
+SUMMED = 2.0  # rewards in a value, before it must be larger than one of them
 OUTWEIGHED = 10.0  # entropy that a decision is paid, over the reward's standard deviation
 OFFSET = 100.0  # a reward's mean over its standard deviation

@@ -80,9 +80,9 @@ def _source(
     q, v: [N] the position in these states, and the speed of the same number.
     """
     sine, cosine = np.nonzero(_same(np.arctan2(obs[:, :, None], obs[:, None]), q[:, None, None]))
-    place, speed = (np.flatnonzero(_same(obs, each[:, None])) for each in (q, v))
-    if len(place):
-        return lambda x, start: x[:, place[0]]
+    itself, speed = (np.flatnonzero(_same(obs, each[:, None])) for each in (q, v))
+    if len(itself):
+        return lambda x, start: x[:, itself[0]]
     if len(sine):
         return lambda x, start: start + _turn(jnp.arctan2(x[:, sine[0]], x[:, cosine[0]]) - start)
     if len(speed):
