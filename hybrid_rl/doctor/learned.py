@@ -45,7 +45,9 @@ def forecast(run: Evidence) -> str | None:
     if not is_identity(learner.model, run.params.model, run.run.agent.spec.obs):
         return None
     where = run.at(0)
-    own = tuple(each[where] for each in (run.made.obs, run.made.action, run.made.next_obs))
+    own = tuple(
+        np.asarray(each[where]) for each in (run.made.obs, run.made.action, run.made.next_obs)
+    )
     tried = [each for each in (run.by_chance, run.by_policy) if each is not None]
     new = [each.rows(run.run.agent.episode.steps) for each in tried]
     rows = _within(own[0], tuple(map(np.concatenate, zip(*new, strict=True)))) if new else own
