@@ -115,6 +115,21 @@ def test_a_robot_runs_is_pulled_and_does_not_fall(page):
     assert {url.split(":")[0] for url in page.requests} <= {"file", "data", "about"}
 
 
+def test_a_robot_that_falls_often_stays_in_the_picture(page):
+    """The camera's height follows from the robot's, however it came there."""
+    page.run("robots.show('hopper')")
+    seen = page.run("""(() => {
+        robots.pause(true);
+        const { picture, after: [x, z, ...joints] } = robots;
+        for (let fall = 0; fall < 10; fall++)
+            for (const height of [0, -0.3, -0.6, -0.9, -1.1, 0])
+                picture.pose([x, z + height, ...joints]);
+        const { x: left, y: top } = picture.window(picture.root);
+        const box = picture.canvas.getBoundingClientRect();
+        return [(left - box.left) / box.width, (top - box.top) / box.height]; })()""")
+    assert np.all((np.array(seen) > 0.2) & (np.array(seen) < 0.8))
+
+
 def test_without_webassembly_the_picture_stays(site, browser):
     script = browser("Page.addScriptToEvaluateOnNewDocument", source="delete window.WebAssembly")
     browser.open((site / "index.html").as_uri() + "#without")

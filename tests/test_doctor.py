@@ -12,8 +12,9 @@ from tiny import call, only_line, run
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.doctor import __main__ as doctor
-from hybrid_rl.doctor import learned, observed
+from hybrid_rl.doctor import learned, observed, task
 from hybrid_rl.doctor.evidence import Evidence, read
+from hybrid_rl.doctor.tried import Tried
 from hybrid_rl.types import Spec, Transition
 
 DT, STEPS, EPISODES = 0.1, 50, 30
@@ -58,7 +59,7 @@ def found(given):
 def test_a_sound_world_gets_no_line():
     given = evidence(*oscillator())
     assert found(given) == set()
-    assert [check(given) for check in (learned.ends, learned.short, learned.reward)] == [None] * 3
+    assert [check(given) for check in (task.ends, task._fixed, task.reward)] == [None] * 3
 
 
 @pytest.mark.parametrize("delay", [1, 2, 4])
@@ -105,21 +106,53 @@ def test_decisions_that_are_too_rare_are_noticed():
 
 def test_ends_and_lengths():
     x, action = oscillator()
-    line = learned.ends(evidence(x, action, terminated=True))
+    line = task.ends(evidence(x, action, terminated=True))
     assert line.startswith(
         f"{EPISODES - 1} of {EPISODES - 1} terminations came at decision {STEPS}"
     )
-    assert "within 2 decisions" in learned.ends(evidence(*oscillator(steps=2), terminated=True))
-    line = learned.short(evidence(*oscillator(steps=5)))
+    assert "within 2 decisions" in task.ends(evidence(*oscillator(steps=2), terminated=True))
+    line = task._fixed(evidence(*oscillator(steps=5)))
     assert line.endswith("episode.steps=50")
 
 
 def test_a_reward_that_is_constant_or_hides_is_noticed():
     x, action = oscillator()
     given = partial(evidence, x, action)
-    assert "nothing to learn" in learned.reward(given(np.full(action.shape[:2], -1.0)))
+    assert "nothing to learn" in task.reward(given(np.full(action.shape[:2], -1.0)))
     offset = 100 + 0.1 * np.random.default_rng(0).normal(size=action.shape[:2])
-    assert "subtract" in learned.reward(given(offset))
+    assert "subtract" in task.reward(given(offset))
+
+
+def test_fast_velocities_beside_slow_positions_are_no_fault():
+    x, action = oscillator()
+    fast = np.random.default_rng(1).normal(size=(*x.shape[:2], 3))
+    assert observed.rare(evidence(np.concatenate((x, fast), -1), action)) is None
+    assert "decide more often" in observed.rare(evidence(fast, action))
+
+
+def test_a_policy_that_is_paid_after_the_limit_is_cut():
+    """In 32 episodes of four limits, of 20 decisions each."""
+    paid = np.random.default_rng(0).normal(size=(32, 80))
+    agent = SimpleNamespace(episode=SimpleNamespace(steps=20))
+    for later, line in ((0.0, None), (-9.0, None), (9.0, "episode.steps=80")):
+        reward = paid + later * (np.arange(80) >= 40)
+        tried = Tried(None, None, reward, np.ones_like(reward, bool), None)
+        found = task._cut(SimpleNamespace(by_policy=tried, run=SimpleNamespace(agent=agent)))
+        assert found is None if line is None else found.endswith(line)
+
+
+def test_a_model_is_judged_beside_no_change_and_collisions_count_once():
+    rng = np.random.default_rng(0)
+    obs, change = rng.normal(size=(2, 500, 2))
+    action = np.zeros((500, 1))
+    rows = obs, action, obs + change * [1, 0]
+    np.testing.assert_allclose(learned._unseen(lambda obs, action: obs, rows), [1, 0])
+    assert learned._unseen(lambda *_: rows[2], rows).max() == 0
+    struck = rows[2] + 1e3 * (np.arange(500) == 7)[:, None]
+    assert learned._unseen(lambda *_: rows[2], (obs, action, struck))[0] > 0.5 / 500
+    inside = learned._within(obs[:50], rows)
+    assert 0 < len(inside[0]) < 500
+    assert (abs(inside[0]) <= abs(obs[:50]).max(0)).all()
 
 
 @pytest.fixture(scope="module")
@@ -160,6 +193,11 @@ def test_a_value_beyond_all_rewards_is_noticed(tmp_path):
     )
     line = learned.critic(replace(given, folder=SimpleNamespace(rows=[row | {"sac/q": 70.0}])))
     assert line.startswith("the critic's value 70 (sac/q) is above ")
+    for factor, line in ((1e6, "divide the reward by 1e"), (1e-6, "multiply the reward by 1e")):
+        rows = SimpleNamespace(rows=[row | {"step": 9_000}], path=given.path)
+        made = given.made._replace(reward=given.made.reward * factor)
+        assert line in learned.scale(replace(given, made=made, folder=rows))
+    assert learned.scale(given) is None  # after 60 decisions values are no sums yet
 
 
 def test_what_is_no_run_is_one_line(tmp_path, capfd):

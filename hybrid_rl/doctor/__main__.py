@@ -4,8 +4,8 @@
 
 A line for each fault: what was seen, what it means, what to try. They come in the order in which
 they are to be mended, as the later may follow from the first. It reads metrics.jsonl,
-summary.json, and replay memory and model of the newest checkpoint; if the task measures success,
-it also runs a few episodes of random actions. Nothing is written. docs/not_learning.md has the
+summary.json, and replay memory and networks of the newest checkpoint, and runs new episodes of the
+policy and of random actions. Nothing is written. docs/not_learning.md has the
 checks, and how often they were right.
 """
 
@@ -20,7 +20,7 @@ from pathlib import Path
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.cli.arguments import read as arguments
-from hybrid_rl.doctor import learned, observed
+from hybrid_rl.doctor import learned, observed, task
 from hybrid_rl.doctor.evidence import Evidence, read
 
 ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
@@ -33,10 +33,11 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of docs/
     "action": observed.action,
     "hidden state": observed.hidden,
     "model": learned.forecast,
-    "ends": learned.ends,
-    "episode": learned.short,
-    "reward": learned.reward,
-    "reward's sign": learned.sign,
+    "ends": task.ends,
+    "episode": task.short,
+    "reward": task.reward,
+    "reward's sign": task.sign,
+    "reward's scale": learned.scale,
     "random decisions": learned.random,
     "critic": learned.critic,
 }

@@ -17,17 +17,20 @@ from typing import Any
 import jax
 import numpy as np
 
+from hybrid_rl.analysis.held_out import RandomActions
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
+from hybrid_rl.doctor.tried import Tried, episodes
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.trained import built, restore
-from hybrid_rl.types import Transition
+from hybrid_rl.trained import built, load, restore
+from hybrid_rl.types import Params, Transition
 
 FOLDS = 100  # stretches of time, of which every second one is predicted by the others
+LONGER = 4  # time limits that an episode of the policy lasts
 MOST = 12_000  # decisions of a regression, the newest ones
 PER_FEATURE = 10  # decisions at least for each feature of a regression
 RIDGE = 1e-4  # of features with variance 1, per decision
@@ -62,6 +65,34 @@ class Evidence:
         obs = self.made.obs.reshape(-1, self.made.obs.shape[-1])
         return np.flatnonzero(obs.std(0) > STILL * (1 + abs(obs).max(0)))
 
+    @cached_property
+    def _shown(self) -> np.ndarray:
+        """[K, T, p] the moving entries, and sine and cosine of those that span a whole turn."""
+        assert self.made is not None
+        obs = self.made.obs[..., self.moving]
+        wide = obs[..., np.ptp(obs, axis=(0, 1)) > 2 * np.pi]  # they may be angles
+        return np.concatenate((obs, np.sin(wide), np.cos(wide)), axis=-1)
+
+    @cached_property
+    def params(self) -> Params | None:
+        """What the first learner has learned; None: nothing yet, without a checkpoint."""
+        if not checkpoint.steps(self.path / "checkpoints"):
+            return None
+        return load(self.path).learner(mode=next(iter(self.run.controllers)), world=True)[1]
+
+    @cached_property
+    def by_chance(self) -> Tried | None:
+        """New episodes of random actions."""
+        return episodes(self.run.agent.episode, RandomActions(), Params())
+
+    @cached_property
+    def by_policy(self) -> Tried | None:
+        """New episodes of the policy, which go on after the time limit; None: it has none."""
+        policy = self.run.controllers.get("policy")
+        if policy is None or self.params is None:
+            return None
+        return episodes(self.run.agent.episode, policy, self.params, LONGER)
+
     def at(self, lags: int) -> tuple[np.ndarray, np.ndarray]:
         """(k, t) of the newest decisions that have `lags` others before them in their episode."""
         learners, decisions = self.begins.shape
@@ -85,7 +116,7 @@ class Evidence:
         """
         assert self.made is not None
         k, t = where
-        seen = [self.made.obs[k, t - i][:, self.moving] for i in range(obs + 1)]
+        seen = [self._shown[k, t - i] for i in range(obs + 1)]
         done = [self.made.action[k, t - i] for i in range(actions)]
         return np.concatenate(seen + done, axis=1)
 

@@ -1,36 +1,16 @@
-"""Checks of the task as it is set, and of what has been learned."""
+"""Checks of what has been learned, and of what learning needs."""
 
-from collections import Counter
 from functools import partial
-from math import log
+from math import log, log10
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.analysis.held_out import RandomActions
 from hybrid_rl.core.lifting import is_identity
-from hybrid_rl.doctor.evidence import Evidence, explained
-from hybrid_rl.doctor.limits import (
-    ENOUGH,
-    EPISODES,
-    ERRORS,
-    FEWEST,
-    FIRST,
-    INFLATED,
-    OFFSET,
-    SAME,
-    START,
-    UNSEEN,
-)
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.doctor.evidence import STILL, Evidence
+from hybrid_rl.doctor.limits import ENOUGH, INFLATED, OUTWEIGHED, SUMMED, UNSEEN
 from hybrid_rl.run.rows import of_world
-from hybrid_rl.trained import load
-from hybrid_rl.training.rollout import rollout_with_actions
-from hybrid_rl.types import Params
-
-START_KEY = 2_000_000  # of episodes, which no evaluation uses
 
 
 def diverged(run: Evidence) -> str | None:
@@ -53,126 +33,61 @@ def diverged(run: Evidence) -> str | None:
 
 
 def forecast(run: Evidence) -> str | None:
-    """A learned model that is hardly better than "nothing changes"."""
+    """A learned model that is hardly better than "nothing changes", on new episodes.
+
+    They are of random actions, and of the policy until its time limit, where observations are
+    within the limits of those that it has learned from: beyond them a model promises nothing.
+    Where the world cannot be run here, the decisions of the run stand for them.
+    """
     learner: Any = run.run.agent.learners.get("model")
-    if run.made is None or learner is None or len(run.at(0)[0]) < ENOUGH:
+    if learner is None or run.params is None or run.made is None:
+        return None
+    if not is_identity(learner.model, run.params.model, run.run.agent.spec.obs):
         return None
     where = run.at(0)
-    obs, act, after = (
-        jnp.asarray(each[where]) for each in (run.made.obs, run.made.action, run.made.next_obs)
+    own = tuple(
+        np.asarray(each[where]) for each in (run.made.obs, run.made.action, run.made.next_obs)
     )
-    params = jax.tree.map(lambda leaf: leaf[0], load(run.path).params.model)
-    if not is_identity(learner.model, params, run.run.agent.spec.obs):
+    tried = [each for each in (run.by_chance, run.by_policy) if each is not None]
+    new = [each.rows(run.run.agent.episode.steps) for each in tried]
+    rows = _within(own[0], tuple(map(np.concatenate, zip(*new, strict=True)))) if new else own
+    if min(len(rows[0]), len(own[0])) < ENOUGH:
         return None
-    step = jax.jit(jax.vmap(learner.model.step, (None, 0, 0)))
-    wrong = np.asarray(((step(params, obs, act) - after) ** 2).mean(0))[run.moving]
-    share = wrong / np.asarray(((after - obs) ** 2).mean(0))[run.moving]
-    at = np.flatnonzero(share > UNSEEN)
-    if not len(at):
+    step = jax.jit(jax.vmap(partial(learner.model.step, run.params.model)))
+    share, kept = _unseen(step, rows), _unseen(step, own)
+    worst = int(np.argmax(share))
+    if not share[worst] > UNSEEN:
         return None
-    worst = at[np.argmax(share[at])]
+    cure = (
+        "it does not see what moves; add velocities to the observation, or give it more decisions "
+        "or model_learner.updates"
+    )
+    if kept[worst] < UNSEEN:
+        cure = "these are too few for it; more random_steps or decisions, or a smaller model"
     return (
-        f"the learned model's error in obs {run.moving[worst]} is {np.sqrt(share[worst]):.0%} of "
-        '"nothing changes", on its own decisions: it does not see what moves; add velocities to '
-        "the observation, or give it more decisions or model_learner.updates"
+        f"the learned model's error in obs {worst} is {np.sqrt(share[worst]):.0%} of "
+        f'"nothing changes" on new decisions, {np.sqrt(kept[worst]):.0%} on its own: {cure}'
     )
 
 
-def ends(run: Evidence) -> str | None:
-    """Terminations at one and the same decision, or at the first one."""
-    if run.made is None:
-        return None
-    k, t = np.nonzero(run.made.terminated)
-    lengths = [each for each in _lengths(run, k, t) if each]
-    if len(lengths) < 3:
-        return None
-    length, number = Counter(lengths).most_common(1)[0]
-    if np.median(lengths) <= FIRST:
-        return (
-            f"{len(lengths):,} episodes were terminated within {FIRST} decisions: the end is true "
-            "at the start; see `terminated` in reset and step"
-        )
-    if number > SAME * len(lengths) and length == max(lengths):
-        return (
-            f"{number:,} of {len(lengths):,} terminations came at decision {length}: a time limit "
-            "that is returned as `terminated`, and the learner takes what follows for worth 0; "
-            "leave it to episode.steps, or return it as `truncated`"
-        )
-    return None
+def _within(known: np.ndarray, rows: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
+    """Those of `rows` whose obs [n, o] are within the limits of `known` [N, o]."""
+    inside = ((rows[0] >= known.min(0)) & (rows[0] <= known.max(0))).all(1)
+    return tuple(each[inside] for each in rows)
 
 
-def _lengths(run: Evidence, k: np.ndarray, t: np.ndarray) -> list[int]:
-    """Decisions of each episode that ended with (k, t); 0 if its beginning may not be in memory."""
-    first = [np.flatnonzero(run.begins[i, : j + 1])[-1] for i, j in zip(k, t, strict=True)]
-    return [int(j - start + 1) if start else 0 for j, start in zip(t, first, strict=True)]
+def _unseen(step: Any, rows: tuple[np.ndarray, ...]) -> np.ndarray:
+    """[o] the squared error of `step` over that of "nothing changes"; 0 where nothing does.
 
-
-def short(run: Evidence) -> str | None:
-    """Episodes whose last observation follows from the first one."""
-    if run.made is None:
-        return None
-    k, t = np.nonzero(run.made.truncated)
-    lengths = np.array(_lengths(run, k, t), int)
-    whole = lengths > 0
-    k, t, lengths = k[whole], t[whole], lengths[whole]
-    if len(k) < ENOUGH or run.made.terminated.sum() > len(k):
-        return None
-    begin = np.asarray(run.made.obs)[k, t - lengths + 1][:, run.moving]
-    end = np.asarray(run.made.next_obs)[k, t][:, run.moving]
-    moved = (end - begin).std(0) > 0
-    if not moved.any():
-        return None
-    fixed = float(np.median(explained(begin, end)[moved]))
-    if fixed < START:
-        return None
-    return (
-        f"the start of an episode fixes {fixed:.0%} of its end, {int(np.median(lengths))} "
-        "decisions later: it is over before the policy has a say; episode.steps="
-        f"{10 * int(np.median(lengths))}"
-    )
-
-
-def reward(run: Evidence) -> str | None:
-    """A reward that never changes, or hides in an offset."""
-    if run.made is None or run.made.reward.size < ENOUGH:
-        return None
-    mean, std = float(run.made.reward.mean()), float(run.made.reward.std())
-    if std <= np.finfo(np.float32).eps * abs(mean):
-        return f"the reward was {mean:.4g} in every decision: there is nothing to learn from"
-    if abs(mean) > OFFSET * std:
-        return (
-            f"the reward is {mean:.4g} and varies by {std:.2g} only: the critic learns the offset "
-            "first; subtract it"
-        )
-    return None
-
-
-def sign(run: Evidence) -> str | None:
-    """A reward that is lower where the task succeeds, in new episodes of random actions.
-
-    From the differences d of an episode's mean reward with and without success: mean(d) and its
-    standard error.
+    In no decision either counts for more than the mean squared change, or a few collisions, which
+    no model tells well, would count for more than all others.
     """
-    episode = run.run.agent.episode
-    if isinstance(episode.env, External) or not any("world/success" in r for r in run.folder.rows):
-        return None
-    keys = jax.random.split(jax.random.key(START_KEY), EPISODES)
-    controller: Any = RandomActions()
-    go = partial(rollout_with_actions, episode, controller, Params())
-    states = jax.jit(jax.vmap(lambda key: go(key, episode.steps)[1]))(keys)
-    good, paid = (np.asarray(each)[:, 1:] for each in (states.metrics["success"], states.reward))
-    good = good > 0
-    both = good.any(1) & ~good.all(1)
-    if both.sum() < FEWEST:
-        return None
-    pairs = zip(paid[both], good[both], strict=True)
-    more = np.array([reward[on].mean() - reward[~on].mean() for reward, on in pairs])
-    if more.mean() > -ERRORS * more.std(ddof=1) / np.sqrt(len(more)):
-        return None
-    return (
-        f"random actions were paid {-more.mean():.3g} a decision less where they succeeded "
-        f"(`success`, {both.sum()} episodes): is the sign of the reward wrong?"
-    )
+    obs, action, after = rows
+    wrong, change = (np.asarray(step(obs, action)) - after) ** 2, (after - obs) ** 2
+    most = change.mean(0)
+    still = most <= (STILL * (1 + abs(obs).max(0))) ** 2
+    share = np.minimum(wrong, most).mean(0) / np.where(still, 1, np.minimum(change, most).mean(0))
+    return np.where(still, 0.0, share)
 
 
 def random(run: Evidence) -> str | None:
@@ -211,3 +126,40 @@ def critic(run: Evidence) -> str | None:
         "of the best reward at every decision: it diverges; policy_learner.discount=0.98, "
         "critic.layer_norm=true, or fewer policy_learner.updates"
     )
+
+
+def scale(run: Evidence) -> str | None:
+    """Rewards beyond what the critic has reached, or below what the entropy pays.
+
+    An untrained critic's values are about 1. The target follows them by tau in an update, so that
+    after n updates they hold sums of about n tau rewards, if Adam has moved the weights that far.
+    """
+    learner: Any = run.run.agent.learners.get("policy")
+    rows = [row for row in run.folder.rows if {"sac/alpha", "sac/q"} <= row.keys()]
+    if run.made is None or run.params is None or not rows:  # or rewards are scaled already
+        return None
+    act, std = run.run.agent.spec.act, float(run.made.reward.std())
+    most = rows[-1]["sac/alpha"] * act * log(2)  # the entropy of uniform actions on [-1, 1]
+    if most > OUTWEIGHED * std > 0:
+        return (
+            f"the reward varies by {std:.2g}, and entropy is paid up to {most:.2g} a decision "
+            f"(sac/alpha): the policy stays random; multiply the reward by {_round(most / std)}, "
+            "or policy_learner.alpha=" + f"{rows[-1]['sac/alpha'] * std / most:.1g}"
+        )
+    updates = (rows[-1]["step"] - run.run.agent.random_steps) * learner.updates
+    if updates * learner.tau < SUMMED:
+        return None
+    where = run.at(0)
+    values = learner.critic.value(run.params.critic, run.made.obs[where], run.made.action[where])
+    value, one = (float(np.sqrt(np.mean(np.square(e)))) for e in (values, run.made.reward[where]))
+    if not (one > 1 and value < one):
+        return None
+    return (
+        f"a reward is about {one:.2g}, and the critic's values, sums of them, are {value:.2g}: it "
+        f"does not come that far; divide the reward by {_round(one)}, or critic.scale=true"
+    )
+
+
+def _round(x: float) -> str:
+    """A power of ten."""
+    return f"1e{round(log10(x))}"

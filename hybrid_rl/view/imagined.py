@@ -1,9 +1,9 @@
 """What a controller imagines, as paths through space.
 
 A path in a model is one of planning states. It can be drawn where the positions follow from the
-observation: of a robot whose observation is (qpos without its first coordinates, qvel), the others
-follow from the imagined velocities; of an analytic world, from its state. Whether an environment is
-of such a kind is tried on states of it. Paths on the world itself have its states.
+observation: of a robot of which each coordinate is observed, itself or as sine and cosine, or at
+least its velocity; of an analytic world, from its state. Whether an environment is of such a kind
+is tried on states of it. Paths on the world itself have its states.
 """
 
 from collections.abc import Callable
@@ -23,7 +23,9 @@ from hybrid_rl.types import EnvState, Params, Path
 
 MOST = 64  # paths that are drawn
 AHEAD = 20  # decisions of a policy
-NEAR = 1e-3  # of positions that a reading gets right
+PLANAR = 3  # degrees of freedom of a torso at least
+NEAR = 1e-4  # of positions that a reading gets right
+TRIED = 20  # decisions of random actions on which it is tried
 
 Reading = Callable[[EnvState, Any], Array]  # state, path x [T+1, ...] -> qpos [T+1, nq]
 
@@ -36,56 +38,88 @@ def reading(episode: Episode) -> Reading | None:
         action = jax.random.uniform(key, (env.spec.act,), minval=-1, maxval=1)
         return (env.step(state, action),) * 2
 
-    first, key = jax.jit(env.reset)(jax.random.key(0)), jax.random.split(jax.random.key(1), 3)
+    first, key = jax.jit(env.reset)(jax.random.key(0)), jax.random.split(jax.random.key(1), TRIED)
     scan = jax.jit(lambda first, key: jax.lax.scan(stepped, first, key)[1])
     states = scan(first, key)
     for make in (_of_robot, _of_data, _of_local):
-        read = make(episode, first)
+        read = make(episode, states)
         if read is None:
             continue
         fits = jax.vmap(lambda state, read=read: read(state, state.obs[None])[0] - pose(state))
         if jax.eval_shape(lambda s: pose(s), first).shape == fits(states).shape[1:] and bool(
-            (jnp.abs(fits(states)) < NEAR).all()
+            (jnp.abs(_turn(fits(states))) < NEAR).all()
         ):
             return read
     return None
 
 
-def _of_robot(episode: Episode, state: EnvState) -> Reading | None:
-    """Of a robot of MuJoCo whose observation is (qpos without the first h coordinates, qvel)."""
-    found, spec = simulated(state), episode.spec
+def _of_robot(episode: Episode, states: EnvState) -> Reading | None:
+    """Of a robot of MuJoCo, each of whose positions is observed, or moves as an observed speed."""
+    found = simulated(states)
     if len(found) != 1:
         return None
-    q, v = found[0].qpos.size, found[0].qvel.size
-    hidden = q + v - spec.obs
-    if not 0 <= hidden <= min(3, v) or not jnp.allclose(state.obs[q - hidden :], found[0].qvel):
+    q, v = (np.asarray(each) for each in (found[0].qpos, found[0].qvel))
+    obs, dt = np.asarray(states.obs), episode.spec.dt
+    each = [_source(obs, q[:, i], v[:, min(i, v.shape[1] - 1)], dt) for i in range(q.shape[1])]
+    known = [source for source in each if source is not None]
+    if len(known) < len(each):
         return None
 
     def read(state: EnvState, x: Array) -> Array:
-        speed = x[:, q - hidden : q]
-        moved = spec.dt * jnp.cumsum((speed[1:] + speed[:-1]) / 2, 0)
-        start = simulated(state)[0].qpos[:hidden]
-        along = start[None] + jnp.concatenate([jnp.zeros((1, hidden)), moved])
-        return jnp.concatenate([along, x[:, : q - hidden]], 1)
+        start = simulated(state)[0].qpos
+        return jnp.stack([of(x, start[i]) for i, of in enumerate(known)], 1)
 
     return read
 
 
-def _of_data(episode: Episode, state: EnvState) -> Reading | None:
+def _source(
+    obs: np.ndarray, q: np.ndarray, v: np.ndarray, dt: float
+) -> Callable[[Array, Array], Array] | None:
+    """A position along a path x [T+1, n] from its start, as it is in states of obs [N, o].
+
+    q, v: [N] the position in these states, and the speed of the same number.
+    """
+    sine, cosine = np.nonzero(_same(np.arctan2(obs[:, :, None], obs[:, None]), q[:, None, None]))
+    itself, speed = (np.flatnonzero(_same(obs, each[:, None])) for each in (q, v))
+    if len(itself):
+        return lambda x, start: x[:, itself[0]]
+    if len(sine):
+        return lambda x, start: start + _turn(jnp.arctan2(x[:, sine[0]], x[:, cosine[0]]) - start)
+    if len(speed):
+        return lambda x, start: start + dt * _integral(x[:, speed[0]])
+    return None
+
+
+def _same(found: np.ndarray, sought: np.ndarray) -> np.ndarray:
+    """Whether numbers [N, ...] are those that are sought, or as angles, in all N states."""
+    return (np.abs(_turn(found - sought)) < NEAR).all(0)
+
+
+def _turn(angle: Any) -> Any:
+    """The same angle within [-pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+def _integral(speed: Array) -> Array:
+    """Its sum along time [T+1] by trapezoids, 0 at first."""
+    return jnp.concatenate([jnp.zeros(1), jnp.cumsum((speed[1:] + speed[:-1]) / 2)])
+
+
+def _of_data(episode: Episode, states: EnvState) -> Reading | None:
     """Of a world whose state is its observation."""
-    data = state.data
-    if not isinstance(data, jax.Array) or data.shape != state.obs.shape:
+    data = states.data
+    if not isinstance(data, jax.Array) or data.shape != states.obs.shape:
         return None
     return _of_state(episode.env, lambda obs: obs)
 
 
-def _of_local(episode: Episode, state: EnvState) -> Reading | None:
+def _of_local(episode: Episode, states: EnvState) -> Reading | None:
     """Of an analytic world whose state is in local coordinates."""
     env: Any = episode.env
-    if not hasattr(env, "to_local") or not isinstance(state.data, jax.Array):
+    if not hasattr(env, "to_local") or not isinstance(states.data, jax.Array):
         return None
-    shape = jax.eval_shape(env.to_local, state.obs).shape
-    return _of_state(env, env.to_local) if shape == state.data.shape else None
+    shape = jax.eval_shape(jax.vmap(env.to_local), states.obs).shape
+    return _of_state(env, env.to_local) if shape == states.data.shape else None
 
 
 def _of_state(env: Any, data: Callable[[Array], Array]) -> Reading:
@@ -132,14 +166,15 @@ def of_policy(episode: Episode, controllers: dict[str, Controller], mode: str) -
 def point_of(model: mujoco.MjModel) -> tuple[int, float]:
     """The body whose path is drawn, and the reach of the point: see `track`.
 
-    It is the middle of a torso that moves freely, else the end of an arm's last body.
+    It is the middle of a torso that moves freely, else the end of the last body of an arm or pole.
     """
     moving = np.flatnonzero(model.body_weldid > 0)
     if not len(moving):
         return 0, 1.0
-    joint = model.body_jntadr[moving[0]]
-    hinged = joint >= 0 and model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_HINGE
-    return (int(moving[-1]), 2.0) if hinged else (int(moving[0]), 1.0)
+    if model.body_dofnum[moving[0]] >= PLANAR:
+        return int(moving[0]), 1.0
+    same = model.body_treeid[moving] == model.body_treeid[moving[0]]  # not a block beside an arm
+    return int(moving[same][-1]), 2.0
 
 
 def track(model: mujoco.MjModel, poses: np.ndarray, body: int, reach: float = 1.0) -> np.ndarray:

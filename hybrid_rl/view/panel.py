@@ -48,6 +48,10 @@ class Panel:
             "mode", tuple(modes), initial_value=wishes.choice.mode, visible=len(modes) > 1
         )
         self._modes.on_update(lambda _: self._choose(mode=self._modes.value))
+        hint = "a quarter of its candidates and steps"
+        quick = wishes.choice.quick
+        self._quick = self._gui.add_checkbox("quick planner", quick, hint=hint, visible=False)
+        self._quick.on_update(lambda _: self._choose(quick=self._quick.value))
         if rewards:
             names = ("of the training", *rewards)
             first = wishes.choice.reward or names[0]
@@ -119,8 +123,10 @@ class Panel:
         handle.on_update(lambda _: moved(one.key, handle.value))
         return handle
 
-    def show(self, modes: Sequence[str], goals: list[Slider], line: str) -> None:
-        """The modes there are, sliders of the goal, and a line about what acts."""
+    def show(self, modes: Sequence[str], planner: bool, goals: list[Slider], line: str) -> None:
+        """The modes there are, whether one plans, sliders of the goal, a line about what acts."""
+        if planner != self._quick.visible:
+            self._quick.visible = planner
         if tuple(modes) != tuple(self._modes.options):
             self._modes.options = tuple(modes)
             self._modes.value = self._wishes.choice.mode

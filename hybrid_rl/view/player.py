@@ -30,6 +30,7 @@ class Choice:
     mode: str
     reward: str = ""  # of conf/reward; "": that of the training
     changes: Mapping[str, str] = field(default_factory=dict)  # env.KEY, episode.KEY -> value
+    quick: bool = False  # whether a planner thinks less
 
 
 @dataclass(frozen=True)
@@ -142,9 +143,9 @@ class Player:
             self.state = jax.tree.unflatten(cast.world.structure, leaves)
 
     def _subject(self, choice: Choice) -> Subject:
-        key = choice.reward, tuple(sorted(choice.changes.items()))
+        key = choice.reward, tuple(sorted(choice.changes.items())), choice.quick
         if key not in self._subjects:
-            self._subjects[key] = self.source.subject(choice.reward, choice.changes)
+            self._subjects[key] = self.source.subject(choice.reward, choice.changes, choice.quick)
         return self._subjects[key]
 
     def _make(self, choice: Choice) -> Cast:
@@ -158,7 +159,7 @@ class Player:
         world = self._made[subject.episode]
         plain = self._subject(replace(choice, changes={}))
         sees = subject.sees_world(choice.mode)
-        who = choice.mode, choice.reward, subject.episode if sees else None
+        who = choice.mode, choice.reward, choice.quick, subject.episode if sees else None
         if who not in self._made:
             acting = subject if sees else plain
             self._made[who] = programs.actor(acting, choice.mode, self.params, numbers)

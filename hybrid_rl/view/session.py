@@ -39,6 +39,7 @@ class Session:
         self._step, self._follower, self._history = step, follower, History()
         self.decisions, self.episodes, self.pushes = 0, 0, 0
         self._ended, self._reported, self._counted, self._rate = "", 0.0, 0, 0.0
+        self._took = 0.0  # [s] that a decision takes
         episode = player.cast.subject.episode
         self._dt, self._stride = episode.spec.dt, ceil(1 / episode.spec.dt / FASTEST)
         self._scene = Scene(server, episode.env, lambda pull: setattr(wishes, "pull", pull))
@@ -58,7 +59,9 @@ class Session:
                 due = time.monotonic()
                 continue
             wishes.steps = max(wishes.steps - 1, 0)
+            began = time.monotonic()
             self._decide()
+            self._took += 0.2 * (time.monotonic() - began - self._took)
             if wishes.paused or self.decisions % self._stride == 0:
                 self._picture()
             due = max(due + self._dt / wishes.speed, time.monotonic())  # never catches up
@@ -121,7 +124,8 @@ class Session:
         self._rate = 0.7 * self._rate + 0.3 * rate
         self._reported, self._counted = now, self.decisions
         player = self.player
-        self._panel.show(player.modes, player.cast.subject.goals, self._line())
+        subject, mode = player.cast.subject, player.cast.choice.mode
+        self._panel.show(player.modes, subject.plans(mode), subject.goals, self._line())
         self._panel.plot(self._history)
 
     def _line(self) -> str:
@@ -129,9 +133,11 @@ class Session:
         player, state = self.player, self.player.state
         choice, asked = player.cast.choice, player.wanted
         trained = "" if self._step is None else f", step {self._step:,}"
+        t = self._dt * int(state.info["decision"])
         lines = [
-            f"**{self._name}**{trained}, mode {choice.mode}",
-            f"{self._dt * int(state.info['decision']):.1f} s, {self._rate:.1f} times real time",
+            f"**{self._name}**{trained}, mode {choice.mode}{', quick' if choice.quick else ''}",
+            f"{t:.1f} s, {self._rate:.2f} times real time",
+            f"computed in {self._took:.3f} s, a decision of {self._dt:.3g} s",
             f"return {float(state.info['return']):,.1f}{self._ended}",
         ]
         if player.compiling:

@@ -6,7 +6,7 @@ without a compilation. Everything else makes other programs.
 
 import copy
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any, get_args
 
@@ -20,6 +20,8 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
 DISTURBED = {"delay": 5.0, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
+EFFORT = ("samples", "elites", "refined", "iterations")  # fields of a planner
+QUICK = 4  # times fewer of them
 SPAN = 5.0  # a slider ends at so many times its value, or at so many
 
 
@@ -42,6 +44,10 @@ class Subject:
     controllers: dict[str, Controller]  # mode -> who acts
     scripted: bool = False
 
+    def plans(self, mode: str) -> bool:
+        """Whether who acts in `mode` is quicker with fewer candidates."""
+        return quicker(self.controllers[mode]) is not self.controllers[mode]
+
     def sees_world(self, mode: str) -> bool:
         """Whether who acts in `mode` gets the state of the world, and not only observations."""
         return self.scripted or getattr(self.controllers[mode], "needs_world", False)
@@ -58,6 +64,14 @@ class Subject:
         found = sliders("episode", self.episode)
         found = [each for each in found if each.key.partition(".")[2] in DISTURBED]
         return sliders("env", self.episode.env) + found
+
+
+def quicker(controller: Controller) -> Controller:
+    """A planner with fewer candidates, and fewer steps of them; the same if it has none."""
+    numbers = {name: getattr(controller, name, None) for name in EFFORT}
+    fewer = {name: -(-n // QUICK) for name, n in numbers.items() if isinstance(n, int)}
+    part: Any = controller
+    return replace(part, **fewer) if fewer else controller
 
 
 def sliders(group: str, part: Any) -> list[Slider]:
@@ -128,8 +142,10 @@ class Source:
         """Whether there is a learned model with which to plan for another reward."""
         return self.trained is not None and self.trained.params.model is not None
 
-    def subject(self, reward: str, changes: Mapping[str, str]) -> Subject:
+    def subject(self, reward: str, changes: Mapping[str, str], quick: bool = False) -> Subject:
         """Who acts, with a reward of conf/reward ("": that of the training) and other changes.
+
+        quick: whether planners think less.
 
         Raises:
             UsageError: for a reward or a value that does not fit.
@@ -144,7 +160,10 @@ class Source:
             words = {key: value for key, value in words.items() if not key.startswith("reward.")}
         given = {**self.given, "reward": reward}
         trained = changed(self.trained, given, {**words, **changes})[0]
-        return Subject(trained.episode, trained.controllers)
+        acting = trained.controllers
+        if quick:
+            acting = {mode: quicker(controller) for mode, controller in acting.items()}
+        return Subject(trained.episode, acting)
 
 
 def learner(trained: Trained | None, seed: int | None) -> Params:

@@ -2,7 +2,7 @@
 
 u' = u + (a - u) / lag          a motor that answers late; u acts, a is what the policy asks for
 o  = clip(o, -limit, limit)[kept]
-r  = sign r;  NaN where |w| > nan_above
+r  = paid r;  NaN where |w| > nan_above
 terminated after `ends` decisions, as a wrapper does that confuses it with `truncated`
 """
 
@@ -25,7 +25,7 @@ class Broken:
 
     limit: float = FAR  # of each entry of the observation
     kept: tuple[int, ...] = (0, 1, 2)  # entries of the observation that the learner sees
-    sign: float = 1.0  # factor on the reward
+    paid: float = 1.0  # factor on the reward
     lag: float = 1.0  # [decisions] time constant of the motor
     ends: int = 0  # decisions until it terminates; 0: never
     nan_above: float = FAR  # [rad/s] speed above which the reward is NaN
@@ -49,7 +49,7 @@ class Broken:
     def _seen(self, now: EnvState, motor: Array, clock: Array) -> EnvState:
         """`now`, a state of the sound pendulum, as the learner is shown it."""
         obs = jnp.clip(now.obs, -self.limit, self.limit)[jnp.array(self.kept)]
-        reward = jnp.where(abs(now.obs[2]) > self.nan_above, jnp.nan, self.sign * now.reward)
+        reward = jnp.where(abs(now.obs[2]) > self.nan_above, jnp.nan, self.paid * now.reward)
         upright = {"success": (now.obs[0] > UP).astype(jnp.float32)} if self.measured else {}
         ended = (clock >= self.ends) if self.ends else jnp.zeros((), bool)
         info = {**now.info, MOTOR: motor, CLOCK: clock}

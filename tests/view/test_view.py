@@ -14,9 +14,11 @@ from hybrid_rl import trained
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.ant import Ant
+from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.envs.quadcopter import Quadcopter
+from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.rewards.aim import Aim
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.view import __main__ as view
@@ -96,7 +98,8 @@ def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
 
 
 @pytest.mark.parametrize(
-    ("env", "fits"), [(HalfCheetah(), 0.05), (Pendulum(), 1e-5), (Quadcopter(), None)]
+    ("env", "fits"),
+    [(HalfCheetah(), 0.05), (Cartpole(), 1e-5), (Pendulum(), 1e-5), (Quadcopter(), None)],
 )
 def test_positions_follow_from_observations(env, fits):
     """Of a true path of 20 decisions; not of a drone, which observes no position."""
@@ -122,6 +125,23 @@ def test_the_path_of_a_pendulum_is_that_of_its_tip():
     away = np.linalg.norm(points[0] - middle, axis=1)
     np.testing.assert_allclose(away, away[0], rtol=1e-3)
     assert away[0] == pytest.approx(2 * np.linalg.norm(model.body_ipos[-1]), rel=1e-3)
+
+
+def test_the_drawn_point_is_of_a_torso_a_pole_or_an_arm():
+    models = [scenery.dressed(scenery.scene_of(env)) for env in (Ant(), Cartpole(), SawyerPush())]
+    drawn = [model.body(imagined.point_of(model)[0]).name for model in models]
+    assert drawn[:2] == ["torso", "pole"]
+    assert drawn[2] not in ("block", "target")
+
+
+def test_a_quick_planner_has_a_quarter_of_the_candidates():
+    given = {**BLANK, "policy": "halfcheetah"}
+    source = Source(given, {}, trained.read("halfcheetah"))
+    whole, quick = (source.subject("speed", {}, quick=each) for each in (False, True))
+    before, after = whole.controllers["full"], quick.controllers["full"]
+    assert (after.samples, after.horizon) == (before.samples // 4, before.horizon)
+    assert quick.plans("full")
+    assert not quick.plans("policy")
 
 
 def test_a_push_is_at_most_the_robots_weight():
@@ -230,8 +250,8 @@ def test_the_page_shows_the_robot_steps_and_is_pushed(window, tmp_path):
         page.size(1280, 800)
         page.open(f"http://{address}/")
         page.wait("document.body.innerText.includes('mode policy')")
-        page.click("Step")
-        until(lambda: session.wishes.paused and not session.wishes.steps)
+        until(lambda: session.wishes.paused or page.click("Step"))  # the panel moves at first
+        until(lambda: not session.wishes.steps)
         before = session.decisions
         page.click("Step")
         until(lambda: session.decisions == before + 1)

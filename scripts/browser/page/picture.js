@@ -5,6 +5,8 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 const CELL = 0.5; // [m] half the period of the ground's pattern
 const GROUND = 12; // [m] radius of the ground around the robot, which fog hides at its rim
+const LEVEL = 0.2; // of the distance to the robot: a rise that hardly moves the camera,
+const SHAKEN = 0.1; // by this share of it
 const SHOWN = 2; // last group of geometries that is drawn, as in MuJoCo's viewer
 
 // A geometry of MuJoCo, whose long axis is z.
@@ -124,6 +126,7 @@ export class Picture {
     this.camera.updateProjectionMatrix();
     this.camera.position.copy(eye);
     const depth = this.root.clone().sub(eye).dot(ahead);
+    Object.assign(this, { rest: this.root.z, lift: 0, band: LEVEL * depth });
     this.controls.target.copy(eye).addScaledVector(ahead, depth);
     this.controls.maxPolarAngle = Math.PI / 2;
     this.controls.update();
@@ -170,7 +173,10 @@ export class Picture {
     }
     const root = new THREE.Vector3(...data.xpos.slice(3, 6));
     const moved = this.follows ? root.clone().sub(this.root) : new THREE.Vector3();
-    if (Math.abs(moved.z) < 1) moved.z *= 0.1; // a jump does not shake the picture, a flight counts
+    if (this.follows) {
+      moved.z = this.lifted(root.z - this.rest) - this.lift;
+      this.lift += moved.z;
+    }
     camera.position.add(moved);
     controls.target.add(moved);
     this.root = root;
@@ -180,6 +186,11 @@ export class Picture {
     sun.target.position.copy(controls.target);
     sun.position.copy(controls.target).add(new THREE.Vector3(-1.5, -2.5, 6));
     camera.updateMatrixWorld();
+  }
+
+  // How far the camera rises with a robot that rose by z: a jump does not shake it, a flight counts.
+  lifted(z) {
+    return z - (1 - SHAKEN) * Math.min(Math.max(z, -this.band), this.band);
   }
 
   // Draw, with a line from a grabbed point to the pointer that pulls it.

@@ -1,0 +1,57 @@
+"""Episodes that the doctor runs itself: decisions that no learner has seen."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import numpy as np
+
+from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import rollout_with_actions
+from hybrid_rl.types import EnvState, Params
+
+START_KEY = 2_000_000  # of episodes, which no evaluation uses
+FEWEST, EPISODES = 16, 64  # of them
+DECISIONS = 64_000  # in all of them, unless that makes too few
+
+
+@dataclass(frozen=True)
+class Tried:
+    """N episodes of T decisions; one that has ended repeats its last state."""
+
+    obs: np.ndarray  # [N, T+1, o]
+    action: np.ndarray  # [N, T, m]
+    reward: np.ndarray  # [N, T]
+    lives: np.ndarray  # [N, T] whether the episode had not ended before this decision
+    success: np.ndarray | None  # [N, T]; None: the task does not measure it
+
+    def rows(self, decisions: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """obs [n, o], action [n, m], next_obs [n, o] of the first `decisions` of each episode."""
+        lives = self.lives[:, :decisions]
+        obs, after = self.obs[:, :decisions], self.obs[:, 1 : decisions + 1]
+        return obs[lives], self.action[:, :decisions][lives], after[lives]
+
+
+def episodes(episode: Episode, controller: Any, params: Params, longer: int = 1) -> Tried | None:
+    """Episodes of a controller, `longer` time limits long; None: no world of JAX."""
+    if isinstance(episode.env, External):
+        return None
+    steps = longer * episode.steps
+    number = min(max(DECISIONS // steps, FEWEST), EPISODES)
+    world = replace(episode, steps=steps)
+
+    def one(key: jax.Array) -> tuple:
+        actions, states = rollout_with_actions(world, controller, params, key, steps)
+        return actions, _seen(states)
+
+    keys = jax.random.split(jax.random.key(START_KEY), number)
+    made = jax.jit(jax.vmap(one))(keys)
+    action, (obs, reward, done, success) = jax.tree.map(np.asarray, made)
+    return Tried(obs, action, reward[:, 1:], ~done[:, :-1], success)
+
+
+def _seen(states: EnvState) -> tuple:
+    success = states.metrics.get("success")
+    after = None if success is None else success[1:]
+    return states.obs, states.reward, states.done, after
