@@ -12,6 +12,7 @@ without a learned model keeps its policy, which knows nothing of the reward.
 `gradient` keeps it, for the new reward or for that of the training.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
@@ -139,15 +140,22 @@ def _priced(config: dict[Any, Any], limit: Any) -> bool:
 def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
-    check_choices(words)
     if config_dir:
         words.append(search_path(config_dir))
     try:
+        check_choices(words)
         with initialize_config_dir(str(CONF), version_base="1.3"):
             found: Any = compose("retarget", words)
     except (HydraException, OmegaConfBaseException) as error:
-        raise UsageError(explain(error)) from error
+        raise UsageError(_as_given(explain(error))) from error
+    except UsageError as error:
+        raise UsageError(_as_given(str(error))) from error
     return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
+
+
+def _as_given(line: str) -> str:
+    """A message in which a planner has the name that it has in a command."""
+    return re.sub(r"^controller(?:@(\w+))?=", lambda found: f"{found[1] or 'planner'}=", line)
 
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:

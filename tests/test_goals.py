@@ -107,7 +107,8 @@ def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
         ("reward=speed reward.target=fast", "reward.target=fast: must be"),
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
         ("planner=gradient planner.tail=-1", "planner.tail=-1: must be a whole number, 0 or more"),
-        ("planner=fast", "controller=fast: unknown; choose one of"),
+        ("planner=fast", "hybrid_rl: planner=fast: unknown; choose one of adjoint"),
+        ("planner=3", "hybrid_rl: planner=3: choose one of adjoint"),
     ],
 )
 def test_a_mistake_is_one_line(trained: Path, words: str, line: str, capfd) -> None:
