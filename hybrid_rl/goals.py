@@ -15,9 +15,12 @@ without a learned model keeps its policy, which knows nothing of the reward.
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf, open_dict
@@ -32,10 +35,13 @@ from hybrid_rl.parts import part_class
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import chosen as named
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.imagined import Imagination
+from hybrid_rl.training.loop import COMPILER_OPTIONS
+from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
-KEYS = (*configuration.PAID, *PLANNERS)  # of conf/retarget.yaml, which a user may change
+KEYS = (*configuration.PAID, *PLANNERS, "imagine")  # of conf/retarget.yaml, which a user may change
 
 
 def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Trained, dict[str, str]]:
@@ -84,19 +90,30 @@ def retargeted(
             raise UsageError(f"{text}: is a key of a reward; give reward=NAME with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
     goal = _fitting(config, _composed(overrides, config_dir))
-    if "planner" not in goal:
-        for lost in (text for text in overrides if text.startswith("planner")):
-            raise UsageError(f"{lost}: there is no learned model to plan with")
+    for lost in overrides:
+        key = lost.split("=")[0].split(".")[0]
+        if key in (*PLANNERS, "imagine") and key not in goal:
+            does = "imagine with" if key == "imagine" else "plan with"
+            raise UsageError(f"{lost}: there is no learned model to {does}")
     kept = {key: value for key, value in config.items() if key not in KEYS}
     changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
-    episode, controllers = configuration.acting(changed)
+    episode, controllers, before = configuration.acting(changed)
     return replace(
         trained,
         episode=episode,
         controllers={**trained.controllers, **controllers},
+        params=trained.params if before is None else _taught(before, episode, trained),
         config=changed,
     )
+
+
+def _taught(before: Imagination, episode: Episode, trained: Trained) -> Params:
+    """The parameters [S, ...] of `trained` after `before`, which takes seconds."""
+    keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
+    options = COMPILER_OPTIONS.get(jax.default_backend())
+    program = jax.jit(jax.vmap(partial(before.learned, episode)), compiler_options=options)
+    return program(trained.params, keys)
 
 
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
@@ -107,6 +124,8 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
         goal.planner.objective = "${objective}"
         alone = "model_objective" if "model_objective" in config else "objective"
         goal.planner_alone.objective = f"${{{alone}}}"
+        if goal.imagine is not None:
+            goal.imagine.learner.reward = "${reward_model}"
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
     if own and _priced(config, goal.constraint):

@@ -176,7 +176,7 @@ def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsy
         ([], "run, policy, task: give one of them"),
         (["run=x", "task=sawyer_push"], "run, policy, task: give one of them"),
         (["run=x", "expert.gain=1"], "expert: is of a task; give it with task=T"),
-        (["task=panda_stack", "reward=speed"], "reward, constraint, planner: a scripted expert"),
+        (["task=panda_stack", "reward=speed"], "planner, imagine: a scripted expert has none"),
         (["task=sawyer_push", "mode=policy"], "mode: a scripted expert has none"),
         (["task=pendulum"], "task=pendulum: has no scripted expert"),
         (["run=x", "out=a.avi"], "out=a.avi: must end in .mp4, .gif, .png"),

@@ -108,6 +108,7 @@ GOAL = (  # of commands that show a trained run in another world or on another g
     Argument("reward", "", "another reward, of conf/reward; empty: that of the training"),
     Argument("constraint", "", "a constraint, of conf/constraint; empty: that of the training"),
     Argument("planner", "", "another, of conf/controller; empty: gradient for those two"),
+    Argument("imagine", "", "policy: it learns the goal in the models, before anything acts"),
 )
 CHANGES = {
     **{name: f"another value of a key of its {name}" for name in ("env", "episode")},
