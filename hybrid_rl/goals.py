@@ -37,7 +37,6 @@ from hybrid_rl.trained import chosen as named
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import COMPILER_OPTIONS
-from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
@@ -99,21 +98,25 @@ def retargeted(
     changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
     episode, controllers, before = configuration.acting(changed)
-    return replace(
+    now = replace(
         trained,
         episode=episode,
         controllers={**trained.controllers, **controllers},
-        params=trained.params if before is None else _taught(before, episode, trained),
         config=changed,
     )
+    return now if before is None else _taught(now, before)
 
 
-def _taught(before: Imagination, episode: Episode, trained: Trained) -> Params:
-    """The parameters [S, ...] of `trained` after `before`, which takes seconds."""
+def _taught(trained: Trained, before: Imagination) -> Trained:
+    """`trained` with the policies that `before` gives, which takes seconds, and a note about it."""
     keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
     options = COMPILER_OPTIONS.get(jax.default_backend())
-    program = jax.jit(jax.vmap(partial(before.learned, episode)), compiler_options=options)
-    return program(trained.params, keys)
+    program = jax.jit(jax.vmap(partial(before.learned, trained.episode)), compiler_options=options)
+    params, new = program(trained.params, keys)
+    old = [str(seed) for seed, gained in zip(trained.seeds, new, strict=True) if not gained]
+    note = f"imagine: {before.updates:,} updates in the models"
+    note += f"; by these no gain, so the old policy acts: seed {', '.join(old)}" if old else ""
+    return replace(trained, params=params, notes=(*trained.notes, note))
 
 
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:

@@ -9,14 +9,19 @@ from jax import Array
 from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.branching import where
 from hybrid_rl.core.lifting import lifted_spec
-from hybrid_rl.fields import Count, Natural, part
-from hybrid_rl.protocols import Model, UniformLearner
+from hybrid_rl.core.members import predicted
+from hybrid_rl.fields import Count, Natural, NotNegative, part
+from hybrid_rl.protocols import Model, Policy, Reward, UniformLearner
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Batch, Params
 
 
 class Continuing(UniformLearner, Protocol):
-    """A learner of policy and critic that can begin with a policy that has learned already."""
+    """A learner of policy and critic in a model, which can begin with a policy that has learned."""
+
+    policy: Policy
+    model: Model
+    reward: Reward
 
     def having(self, state: Any, policy: Any) -> Any:
         """`state` with these parameters of its policy."""
@@ -27,29 +32,36 @@ class Imagination:
     """A policy goes on learning, for another reward, in the models that it comes with.
 
     `learner` makes `updates` from first states of episodes, whose branches the present policy
-    continues in the models (`core.branches`); its critic is new, and learns alone at first.
-    Nothing is decided in the world. Source: model-based policy optimisation (Janner et al. 2019),
-    with a model that no longer learns.
+    continues in the models (`core.branches`); its critic is new, and learns alone at first. Nothing
+    is decided in the world. The policy stays as it was unless the members of the ensemble agree
+    that it gained, in episodes of `decisions` that each of them predicts:
+
+        mean_i [J_i(new) - J_i(old)] > doubt std_i [...]
+
+    Source: model-based policy optimisation (Janner et al. 2019) in models that no longer learn; the
+    doubt is that of `controllers.gradient`.
 
     Raises:
-        ValueError: for counts out of range.
+        ValueError: for counts or a doubt out of range.
     """
 
     learner: Continuing
-    model: Model
-    updates: Count = 1000
+    updates: Count = 800
     critic_first: Natural = 200  # of them, in which the policy stays
     starts: Count = 1024  # first states
+    decisions: Count = 200  # of an episode that compares
+    episodes: Count = 16  # of these
+    doubt: NotNegative = 1.0
 
-    def learned(self, episode: Episode, params: Params, key: Array) -> Params:
-        """`params` with the policy and the critic after the updates. The key is consumed.
+    def learned(self, episode: Episode, params: Params, key: Array) -> tuple[Params, Array]:
+        """`params` with the policy after the updates, if it gained, and whether it did [].
 
-        The policy stays as it was if it does not stay finite.
+        The key is consumed.
         """
         resetting, first, updating = jax.random.split(key, 3)
         obs = jax.vmap(episode.reset)(jax.random.split(resetting, self.starts)).obs
-        states = jax.vmap(self.model.lift, (None, 0))(params.model, obs)
-        spec, size = lifted_spec(self.model, episode.spec), self.learner.batch_size
+        states = jax.vmap(self.learner.model.lift, (None, 0))(params.model, obs)
+        spec, size = lifted_spec(self.learner.model, episode.spec), self.learner.batch_size
         begun = self.learner.having(self.learner.init(first, spec), params.policy)
 
         def update(state: Any, at: tuple[Array, Array]) -> tuple[Any, None]:
@@ -64,9 +76,31 @@ class Imagination:
             return where(number < self.critic_first, frozen, after), None
 
         along = jnp.arange(self.updates), jax.random.split(updating, self.updates)
-        found = params._replace(**self.learner.params(jax.lax.scan(update, begun, along)[0]))
-        sound = [jnp.isfinite(leaf).all() for leaf in jax.tree.leaves(found)]
-        return where(jnp.stack(sound).all(), found, params._replace(critic=found.critic))
+        state = jax.lax.scan(update, begun, along)[0]
+        new = params._replace(policy=self.learner.params(state)["policy"])
+        gains = self.returns(new, states) - self.returns(params, states)
+        surely = gains.mean() > self.doubt * gains.std()  # false where one is not finite
+        return where(surely, new, params), surely
+
+    def returns(self, params: Params, states: Array) -> Array:
+        """The mean return [members] of the policy by each member, from the first of `states`."""
+        learner = self.learner
+
+        def one(x: Array, member: Array) -> Array:
+            def forward(carry: tuple[Array, Array], _: None) -> tuple[tuple[Array, Array], Array]:
+                x, goes_on = carry
+                u = learner.policy.mean(params.policy, x)
+                after = predicted(learner.model, params.model, x, u)[2][member]
+                r, end = learner.reward.outcome(params, x, u, after)
+                return (after, goes_on * jax.nn.sigmoid(-end)), goes_on * r
+
+            return jax.lax.scan(forward, (x, jnp.ones(())), length=self.decisions)[1].sum()
+
+        some = states[: self.episodes]
+        u = jnp.zeros_like(learner.policy.mean(params.policy, some[0]))
+        members = len(predicted(learner.model, params.model, some[0], u)[2])
+        each = jax.vmap(jax.vmap(one, (0, None)), (None, 0))(some, jnp.arange(members))
+        return each.mean(1)
 
 
 def forgotten(learners: Any) -> Any:

@@ -1,4 +1,4 @@
-"""A policy that goes on learning in the models alone, on a point whose model is the world itself."""
+"""A policy that goes on learning in the models alone; the model of a point is its world."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -38,6 +38,10 @@ class Drawn:
         """Nothing."""
         return ()
 
+    def step(self, params: Any, x: Array, u: Array) -> Array:
+        """The next observation [o]."""
+        return WORLD.dynamics(x, u)
+
     def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
         """The next observations [B, o]."""
         return jax.vmap(WORLD.dynamics)(x, u)
@@ -56,7 +60,7 @@ EPISODE = Episode(WORLD, steps=30, reward=Corner())
 MODEL: Any = Drawn()
 LEARNER = ModelBased(
     POLICY,
-    EnsembleQ((16,), layer_norm=True, scale=True),
+    EnsembleQ((16,), normalise=True, scale=True),
     MODEL,
     KnownReward(WORLD, Corner()),
     branch_memory=320,
@@ -69,22 +73,39 @@ LEARNER = ModelBased(
 PARAMS = Params(model=(), policy=POLICY.init(jax.random.key(1), WORLD.spec))
 
 
-def learned(**fields: int) -> Params:
-    part = Imagination(LEARNER, MODEL, starts=64, **fields)
+def learned(**fields: int) -> tuple[Params, Array]:
+    part = Imagination(LEARNER, starts=64, decisions=30, **fields)
     return jax.jit(lambda params: part.learned(EPISODE, params, jax.random.key(0)))(PARAMS)
 
 
 def test_it_gains_in_the_world() -> None:
     """Without a decision there: the mean distance of an episode is less than half of before."""
     act, keys = PolicyController(POLICY, explore=False), evaluation_keys(0, 16)
-    after = learned(updates=600, critic_first=200)
+    after, new = learned(updates=600, critic_first=200)
+    assert new
     before, now = (
         evaluate_episodes(EPISODE, act, params, keys)["return"].mean() for params in (PARAMS, after)
     )
     assert now > before / 2
 
 
+def test_returns_in_the_model_are_those_of_the_world() -> None:
+    """The model is the world, and it has one member."""
+    part = Imagination(LEARNER, decisions=30, episodes=4)
+    starts = jax.vmap(EPISODE.reset)(jax.random.split(jax.random.key(2), 4))
+    rewards = []
+    state = starts
+    for _ in range(30):
+        u = jax.vmap(POLICY.mean, (None, 0))(PARAMS.policy, state.obs)
+        state = jax.vmap(EPISODE.step)(state, u)
+        rewards.append(state.reward)
+    wanted = np.sum(rewards, 0).mean()
+    np.testing.assert_allclose(part.returns(PARAMS, starts.obs), [wanted], rtol=1e-5)
+
+
 def test_at_first_the_critic_learns_alone() -> None:
-    after = learned(updates=20, critic_first=20)
+    """So the policy is the same, which is no gain."""
+    after, new = learned(updates=20, critic_first=20)
+    assert not new
     same = jax.tree.map(np.array_equal, after.policy, PARAMS.policy)
     assert all(jax.tree.leaves(same))
