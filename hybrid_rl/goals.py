@@ -127,7 +127,7 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
         goal.planner.objective = "${objective}"
         alone = "model_objective" if "model_objective" in config else "objective"
         goal.planner_alone.objective = f"${{{alone}}}"
-        if goal.imagine is not None:
+        if goal.get("imagine") is not None:
             goal.imagine.learner.reward = "${reward_model}"
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
