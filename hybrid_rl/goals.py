@@ -1,8 +1,9 @@
-"""A trained run on another reward, with a constraint or another planner; nothing is trained.
+"""A trained run on another reward, with a constraint or another planner.
 
     evaluate run=DIR reward=speed reward.target=5
     evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
     evaluate run=DIR planner=sampling planner.samples=256
+    evaluate run=DIR reward=level imagine=policy
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
 maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
@@ -10,6 +11,9 @@ without a learned model keeps its policy, which knows nothing of the reward.
 
 `constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
 `gradient` keeps it, for the new reward or for that of the training.
+
+Nothing is trained, unless `imagine=policy` lets the policy go on learning in the models, before
+anything acts (training.imagined).
 """
 
 import re
@@ -75,12 +79,12 @@ def retargeted(
 ) -> Trained:
     """`trained` with the goal and the planner that the overrides name.
 
-    overrides: reward=NAME, reward.KEY=VALUE, as of commands; also of constraint and planner.
+    overrides: reward=NAME, reward.KEY=VALUE, as of commands; also of constraint, planner, imagine.
     config_dir: a folder with groups of the user, as for `--config-dir`.
 
     Raises:
         UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
-            planner where no model was learned.
+            planner or imagination where no model was learned.
     """
     if not overrides:
         return trained

@@ -131,7 +131,7 @@ def test_a_policy_without_models_refuses_a_planner(word: str, capfd) -> None:
 def test_what_was_imagined_acts_where_it_gained(trained: Path) -> None:
     """Policies change only there, and models nowhere; the note says where not."""
     short = ["imagine.updates=4", "imagine.doubt=0", "imagine.episodes=2", "imagine.starts=8"]
-    short += ["imagine.learner.steps=1", "imagine.decisions=5"]
+    short += ["imagine.learner.steps=1", "imagine.decisions=5", "imagine.walk=3"]
     was = load(trained)
     for first in (0, 4):
         words = [*AT, "imagine=policy", *short, f"imagine.critic_first={first}"]

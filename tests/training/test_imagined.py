@@ -73,8 +73,8 @@ LEARNER = ModelBased(
 PARAMS = Params(model=(), policy=POLICY.init(jax.random.key(1), WORLD.spec))
 
 
-def learned(**fields: int) -> tuple[Params, Array]:
-    part = Imagination(LEARNER, starts=64, decisions=30, **fields)
+def learned(updates: int, critic_first: int) -> tuple[Params, Array]:
+    part = Imagination(LEARNER, updates, critic_first, starts=64, walk=20, decisions=30)
     return jax.jit(lambda params: part.learned(EPISODE, params, jax.random.key(0)))(PARAMS)
 
 
