@@ -29,6 +29,7 @@ from hybrid_rl.parts import built
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.imagined import Imagination
 
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 READ = (  # the keys that a run reads, and with them all keys that they refer to
@@ -159,16 +160,18 @@ def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Cont
     return *_episode(parts), each
 
 
-def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller]]:
-    """The episodes of `config`, and the controllers without exploration.
+def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
+    """The episodes of `config`, the controllers without exploration, and what learns before them.
 
     Raises:
         UsageError: for a value out of range.
     """
     with _usage(config):
         check_kinds(config)
-        episode, _, controllers = _acting(_on_this_machine(config))
-    return episode, {mode: each.greedy() for mode, each in controllers.items()}
+        parts = _on_this_machine(config)
+        episode, _, controllers = _acting(parts)
+        before = _instantiate(parts.get("imagine"), "imagine")
+    return episode, {mode: each.greedy() for mode, each in controllers.items()}, before
 
 
 def episodes(config: DictConfig) -> Episode:
@@ -243,7 +246,7 @@ def physics(config: DictConfig) -> str | None:
 
 def _on_this_machine(config: DictConfig) -> DictConfig:
     """The sections, in which every copy of the world has its physics resolved."""
-    sections = [key for key in (*SECTIONS, *PAID) if key in config]
+    sections = [key for key in (*SECTIONS, *PAID, "imagine") if key in config]
     parts: Any = OmegaConf.masked_copy(config, sections)
     name = physics(config)
 

@@ -1,8 +1,9 @@
-"""A trained run on another reward, with a constraint or another planner; nothing is trained.
+"""A trained run on another reward, with a constraint or another planner.
 
     evaluate run=DIR reward=speed reward.target=5
     evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
     evaluate run=DIR planner=sampling planner.samples=256
+    evaluate run=DIR reward=level imagine=policy
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
 maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
@@ -10,13 +11,20 @@ without a learned model keeps its policy, which knows nothing of the reward.
 
 `constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
 `gradient` keeps it, for the new reward or for that of the training.
+
+Nothing is trained, unless `imagine=policy` lets the policy go on learning in the models, before
+anything acts (training.imagined).
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf, open_dict
@@ -31,10 +39,12 @@ from hybrid_rl.parts import part_class
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import chosen as named
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.imagined import Imagination
+from hybrid_rl.training.loop import COMPILER_OPTIONS
 
 PLANNERS = ("planner", "planner_alone")
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
-KEYS = (*configuration.PAID, *PLANNERS)  # of conf/retarget.yaml, which a user may change
+KEYS = (*configuration.PAID, *PLANNERS, "imagine")  # of conf/retarget.yaml, which a user may change
 
 
 def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Trained, dict[str, str]]:
@@ -69,12 +79,12 @@ def retargeted(
 ) -> Trained:
     """`trained` with the goal and the planner that the overrides name.
 
-    overrides: reward=NAME, reward.KEY=VALUE, as of commands; also of constraint and planner.
+    overrides: reward=NAME, reward.KEY=VALUE, as of commands; also of constraint, planner, imagine.
     config_dir: a folder with groups of the user, as for `--config-dir`.
 
     Raises:
         UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
-            planner where no model was learned.
+            planner or imagination where no model was learned.
     """
     if not overrides:
         return trained
@@ -83,19 +93,34 @@ def retargeted(
             raise UsageError(f"{text}: is a key of a reward; give reward=NAME with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
     goal = _fitting(config, _composed(overrides, config_dir))
-    if "planner" not in goal:
-        for lost in (text for text in overrides if text.startswith("planner")):
-            raise UsageError(f"{lost}: there is no learned model to plan with")
+    for lost in overrides:
+        key = lost.split("=")[0].split(".")[0]
+        if key in (*PLANNERS, "imagine") and key not in goal:
+            does = "imagine with" if key == "imagine" else "plan with"
+            raise UsageError(f"{lost}: there is no learned model to {does}")
     kept = {key: value for key, value in config.items() if key not in KEYS}
     changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
-    episode, controllers = configuration.acting(changed)
-    return replace(
+    episode, controllers, before = configuration.acting(changed)
+    now = replace(
         trained,
         episode=episode,
         controllers={**trained.controllers, **controllers},
         config=changed,
     )
+    return now if before is None else _taught(now, before)
+
+
+def _taught(trained: Trained, before: Imagination) -> Trained:
+    """`trained` with the policies that `before` gives, which takes seconds, and a note about it."""
+    keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
+    options = COMPILER_OPTIONS.get(jax.default_backend())
+    program = jax.jit(jax.vmap(partial(before.learned, trained.episode)), compiler_options=options)
+    params, new = program(trained.params, keys)
+    old = [str(seed) for seed, gained in zip(trained.seeds, new, strict=True) if not gained]
+    note = f"imagine: {before.updates:,} updates in the models"
+    note += f"; by these no gain, so the old policy acts: seed {', '.join(old)}" if old else ""
+    return replace(trained, params=params, notes=(*trained.notes, note))
 
 
 def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
@@ -106,6 +131,8 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
         goal.planner.objective = "${objective}"
         alone = "model_objective" if "model_objective" in config else "objective"
         goal.planner_alone.objective = f"${{{alone}}}"
+        if goal.get("imagine") is not None:
+            goal.imagine.learner.reward = "${reward_model}"
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
     if own and _priced(config, goal.constraint):
@@ -139,15 +166,22 @@ def _priced(config: dict[Any, Any], limit: Any) -> bool:
 def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictConfig:
     """conf/retarget.yaml with the overrides of a command."""
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
-    check_choices(words)
     if config_dir:
         words.append(search_path(config_dir))
     try:
+        check_choices(words)
         with initialize_config_dir(str(CONF), version_base="1.3"):
             found: Any = compose("retarget", words)
     except (HydraException, OmegaConfBaseException) as error:
-        raise UsageError(explain(error)) from error
+        raise UsageError(_as_given(explain(error))) from error
+    except UsageError as error:
+        raise UsageError(_as_given(str(error))) from error
     return OmegaConf.create({**dict.fromkeys(configuration.PAID), **found})
+
+
+def _as_given(line: str) -> str:
+    """A message in which a planner has the name that it has in a command."""
+    return re.sub(r"^controller(?:@(\w+))?=", lambda found: f"{found[1] or 'planner'}=", line)
 
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:

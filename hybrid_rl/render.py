@@ -34,35 +34,27 @@ import numpy as np
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import (
-    CHANGES,
-    CONFIG_DIR,
-    GOAL,
-    POLICY,
+    ROBOT,
+    ROBOT_CHANGES,
     Argument,
     numbers,
     output,
     read,
+    robot,
     whole,
 )
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.progress import say
 
 ARGUMENTS = (
-    Argument("run", "", "folder of a trained run"),
-    POLICY,
-    Argument("task", "", "instead: a task with a scripted expert"),
-    *GOAL,
-    CONFIG_DIR,
+    *ROBOT,
     Argument("out", "", "the file; empty: DIR/video.mp4 or TASK.mp4"),
-    Argument("mode", "", "of run=DIR: full, policy, planner or training; empty: full"),
-    Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
     Argument("episode", 0, "number of the evaluation's episode, from 0", whole(least=0)),
     Argument("at", [], "decisions after which a .png shows the episode", numbers(whole(least=0))),
     Argument("episode_steps", 0, "decisions at most; 0: the task's limit, see above", whole()),
     Argument("width", 640, "of the picture, in pixels", whole(even=True)),
     Argument("height", 480, "of the picture, in pixels", whole(even=True)),
 )
-GROUPS = {**CHANGES, "expert": "with task=T: a key of its expert"}
 FAR = 0.01  # of an observation in a replayed scene; more is reported
 FASTEST = 60.0  # [1/s] pictures at most; faster worlds skip some
 FIRST = 200  # pictures of a video that the processor draws, unless episode_steps is given
@@ -149,14 +141,15 @@ def _shown(
         from hybrid_rl.demonstrate import scripted
         from hybrid_rl.training.rollout import evaluation_keys
 
-        world, controller, params = scripted(given["task"], changes)
+        other = {"expert": given["expert"]} if given["expert"] else {}
+        world, controller, params = scripted(given["task"], {**other, **changes})
         _check(check_drawable, world.env)
         begun = replace(world, steps=_steps(world, asked, out))
         key = evaluation_keys(seed or 0, number + 1)[-1]
         return world, "scripted expert", film(begun, controller, params, key)
     _check(check_drawable, trained.episode.env)
     steps = _steps(trained.episode, asked, out)
-    shown = episode(trained, given["mode"] or "full", seed, steps, number)
+    shown = episode(trained, given["mode"], seed, steps, number)
     return trained.episode, f"step {trained.step:,}", shown
 
 
@@ -171,7 +164,7 @@ def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
     if given["at"] or (given["width"], given["height"]) != (640, 480):
         raise UsageError("at, width, height: a Gymnasium environment draws itself in its own size")
     seed, world = given["seed"], trained.episode
-    policy = trained.policy(seed, given["mode"] or "full")
+    policy = trained.policy(seed, given["mode"])
     key = evaluation_keys(trained.seeds[0] if seed is None else seed, given["episode"] + 1)[-1]
     seeds = [seed_of(*map(int, jax.random.key_data(key)))]
     copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")
@@ -213,31 +206,10 @@ def _training(
         print(f"the scene differs by up to {shown.apart:.2g} from the recorded observations")
 
 
-def _named(given: dict[str, Any], changes: dict[str, str]) -> str:
-    """The run, policy or task that is drawn.
-
-    Raises:
-        UsageError: unless it is one, with arguments that it can have.
-    """
-    named = [given[name] for name in ("run", "policy", "task") if given[name]]
-    if len(named) != 1:
-        raise UsageError(
-            "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
-            "policy=NAME a trained policy, task=T shows the task's scripted expert"
-        )
-    if not given["task"] and any(key.startswith("expert.") for key in changes):
-        raise UsageError("expert: is of a task; give it with task=T")
-    if given["task"] and (given["reward"] or given["planner"]):
-        raise UsageError("reward, planner: a scripted expert has none; give run=DIR or policy=NAME")
-    if given["task"] and given["mode"]:
-        raise UsageError("mode: a scripted expert has none; give it with run=DIR")
-    return named[0]
-
-
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, GROUPS)
-    named = _named(given, changes)
+    given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
+    named = robot(given, changes)
     from hybrid_rl.analysis.drawing import SUFFIXES, draw_beside
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen

@@ -3,7 +3,8 @@
     python -m scripts.new_goals run=DIR goals="speed 2;speed -2;level" steps=200 out=FILE
 
 Each goal is a reward of conf/reward, with its target if it has one. All rows have the same first
-states and nothing is trained. `still` acts with zeros; `times f` is the policy's action times f.
+states and nothing is trained, but for `imagined`, whose policy goes on learning in the models
+(imagine=policy). `still` acts with zeros; `times f` is the policy's action times f.
 """
 
 import json
@@ -29,9 +30,11 @@ from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.proposals.policy import PolicyProposal
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
+from hybrid_rl.types import Params
 from scripts.seeds import Row, every, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
+IMAGINED = "imagined"
 SIGNALS = {
     "share": "planner/policy_share",
     "insertion": "planner/mode_insertion_gradient",
@@ -136,6 +139,7 @@ def rows(trained: Trained) -> dict[str, Any]:
         "both: strengths": sampling(proposal=scaled, horizon=20, samples=96, execute="best"),
         "both: gradient": both,
         **{name: Watched(both, metric) for name, metric in SIGNALS.items()},
+        **{f"{IMAGINED}: policy": policy, f"{IMAGINED}: both": both},
     }
 
 
@@ -147,16 +151,17 @@ def varied(both: Any, name: str) -> Any:
 
 
 def measured(
-    trained: Trained, goals: dict[str, Any], controller: Any, episodes: int
+    trained: Trained, goals: dict[str, Any], controller: Any, episodes: int, own: bool = False
 ) -> dict[str, np.ndarray]:
     """Means [S] of `controller`, made for the first of the goals, on each of them.
 
-    They are of returns, or of a Watched controller's metric.
+    They are of returns, or of a Watched controller's metric. own: whether the parameters are
+    [S, G, ...], those of each goal.
     """
     known = tuple(goals.values())
 
     def one(params: Any, keys: Array) -> Array:
-        def on(index: Array) -> Array:
+        def on(index: Array, params: Any) -> Array:
             goal = OneOf(known, index)
             episode = replace(trained.episode, reward=goal)
             acts = swapped(controller, known[0], goal)
@@ -167,7 +172,7 @@ def measured(
                 return control[1] / env.info["decision"]
             return scores(env)["return"]
 
-        return jax.vmap(on)(jnp.arange(len(known)))
+        return jax.vmap(on, (0, 0 if own else None))(jnp.arange(len(known)), params)
 
     got = every(trained, episodes, one).mean(-1)
     return dict(zip(goals, got.T, strict=True))
@@ -184,15 +189,25 @@ def main() -> None:
     if given["env"]:
         first, goals = in_another(first, goals, given["env"])
     known = rows(first)
-    wanted = given["rows"].split(";") if given["rows"] else known
+    wanted = given["rows"].split(";") if given["rows"] else list(known)
+    learned = replace(first, params=imagined(run, named)) if IMAGINED in str(wanted) else first
 
     def each() -> Iterator[Row]:
         for name in wanted:
             controller = known.get(name) or varied(first.controllers["full"], name)
-            by_name = dict(zip(named, goals, strict=True))
-            yield name, measured(first, by_name, controller, given["episodes"])
+            by_name, own = dict(zip(named, goals, strict=True)), name.startswith(IMAGINED)
+            acts = learned if own else first
+            yield name, measured(acts, by_name, controller, given["episodes"], own)
 
     write(given["out"], first, {"steps": given["steps"], "goals": named}, each())
+
+
+def imagined(run: Trained, goals: list[str]) -> Params:
+    """The parameters [S, G, ...] whose policies learned each goal in the models."""
+    each = [retargeted(run, [*overrides(name), "imagine=policy"]) for name in goals]
+    for name, taught in zip(goals, each, strict=True):
+        print(f"{name}: {taught.notes[-1]}", flush=True)
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves, 1), *(taught.params for taught in each))
 
 
 def overrides(name: str) -> list[str]:

@@ -30,7 +30,7 @@ def keys_of(path: Path) -> set[str]:
         if isinstance(default, str):
             keys |= keys_of(path.with_name(f"{default}.yaml")) if default != "_self_" else set()
         else:
-            keys |= {str(key).split("@")[-1] for key in default}
+            keys |= {str(key).split("@")[-1].partition(".")[0] for key in default}
     return keys
 
 

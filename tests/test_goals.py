@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import jax
 import numpy as np
 import pytest
 from tiny import call, only_line, run
@@ -107,7 +108,10 @@ def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
         ("reward=speed reward.target=fast", "reward.target=fast: must be"),
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
         ("planner=gradient planner.tail=-1", "planner.tail=-1: must be a whole number, 0 or more"),
-        ("planner=fast", "controller=fast: unknown; choose one of"),
+        ("planner=fast", "hybrid_rl: planner=fast: unknown; choose one of adjoint"),
+        ("planner=3", "hybrid_rl: planner=3: choose one of adjoint"),
+        ("imagine=dreams", "imagine=dreams: unknown; choose one of policy"),
+        ("imagine=policy imagine.updates=0", "imagine.updates=0: must be a whole number, 1"),
     ],
 )
 def test_a_mistake_is_one_line(trained: Path, words: str, line: str, capfd) -> None:
@@ -116,7 +120,25 @@ def test_a_mistake_is_one_line(trained: Path, words: str, line: str, capfd) -> N
     assert line in only_line(capfd)
 
 
-def test_a_policy_without_models_refuses_a_planner(capfd) -> None:
-    given = ("policy=cartpole", "reward=speed", "planner.horizon=3")
+@pytest.mark.parametrize("word", ["planner.horizon=3", "imagine=policy"])
+def test_a_policy_without_models_refuses_a_planner(word: str, capfd) -> None:
+    given = ("policy=cartpole", "reward=speed", word)
     assert call(lambda: command.guarded(evaluate.main), *given) == 2
-    assert "planner.horizon=3: there is no learned model to plan with" in only_line(capfd)
+    does = "imagine" if word.startswith("imagine") else "plan"
+    assert f"{word}: there is no learned model to {does} with" in only_line(capfd)
+
+
+def test_what_was_imagined_acts_where_it_gained(trained: Path) -> None:
+    """Policies change only there, and models nowhere; the note says where not."""
+    short = ["imagine.updates=4", "imagine.doubt=0", "imagine.episodes=2", "imagine.starts=8"]
+    short += ["imagine.learner.steps=1", "imagine.decisions=5", "imagine.walk=3"]
+    was = load(trained)
+    for first in (0, 4):
+        words = [*AT, "imagine=policy", *short, f"imagine.critic_first={first}"]
+        now = retargeted(was, words)
+        apart = jax.tree.map(lambda a, b: (a != b).any(), was.params.policy, now.params.policy)
+        old = "by these no gain" in now.notes[-1]
+        assert old == (not any(jax.tree.leaves(apart)))
+    assert old
+    same = jax.tree.map(np.array_equal, was.params.model, now.params.model)
+    assert all(jax.tree.leaves(same))

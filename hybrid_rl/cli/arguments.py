@@ -108,12 +108,47 @@ GOAL = (  # of commands that show a trained run in another world or on another g
     Argument("reward", "", "another reward, of conf/reward; empty: that of the training"),
     Argument("constraint", "", "a constraint, of conf/constraint; empty: that of the training"),
     Argument("planner", "", "another, of conf/controller; empty: gradient for those two"),
+    Argument("imagine", "", "policy: it learns the goal in the models, before anything acts"),
 )
 CHANGES = {
     **{name: f"another value of a key of its {name}" for name in ("env", "episode")},
     **{each.name: f"a key of the {each.name} that acts" for each in GOAL},
 }
 CONFIG_DIR = Argument("config_dir", "", "folder with configuration groups of yours")
+ROBOT = (  # of commands that show a trained robot, or a scripted expert
+    Argument("run", "", "folder of a trained run"),
+    POLICY,
+    Argument("task", "", "instead: a task with a scripted expert"),
+    Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
+    *GOAL,
+    CONFIG_DIR,
+    Argument("mode", "full", "of run or policy: full, policy or planner"),
+    Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
+)
+ROBOT_CHANGES = {**CHANGES, "expert": "with task=T: a key of its expert"}
+
+
+def robot(given: Mapping[str, Any], changes: Mapping[str, str]) -> str:
+    """The run, policy or task that values of ROBOT name.
+
+    Raises:
+        UsageError: unless it is one, with arguments that it can have.
+    """
+    named = [given[name] for name in ("run", "policy", "task") if given[name]]
+    if len(named) != 1:
+        raise UsageError(
+            "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
+            "policy=NAME a trained policy, task=T shows the task's scripted expert"
+        )
+    expert = given["expert"] or any(key.startswith("expert.") for key in changes)
+    if expert and not given["task"]:
+        raise UsageError("expert: is of a task; give it with task=T")
+    if given["task"] and any(given[each.name] for each in GOAL):
+        goal = ", ".join(each.name for each in GOAL)
+        raise UsageError(f"{goal}: a scripted expert has none; give run=DIR or policy=NAME")
+    if given["task"] and given["mode"] != "full":
+        raise UsageError("mode: a scripted expert has none; give it with run=DIR")
+    return named[0]
 
 
 def read(

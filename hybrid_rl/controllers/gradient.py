@@ -36,6 +36,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, agreement, sampling
+from hybrid_rl.core.members import predicted
 from hybrid_rl.fields import (
     Count,
     Discount,
@@ -189,7 +190,7 @@ class GradientController:
             a, b = (self._scored(params, value, x, one, member).value for one in (plan, own))
             return a - b
 
-        members = len(self._predicted(params, x, chosen.path.u[0])[2])
+        members = len(predicted(self.model, params.model, x, chosen.path.u[0])[2])
         gains = jax.vmap(gain)(jnp.arange(members))
         surely = gains.mean() > self.doubt * gains.std()
         others = (own, self._scored(params, value, x, own))
@@ -206,7 +207,7 @@ class GradientController:
             if self.policy is not None:
                 u = one.s * self.policy.mean(params.policy, x) + v
             u = jnp.clip(u, -1, 1)
-            after, apart, each = self._predicted(params, x, u)
+            after, apart, each = predicted(self.model, params.model, x, u)
             after = after if member is None else each[member]
             return after, (after, u, jnp.mean(apart), *self._risk(x, u, each))
 
@@ -221,14 +222,6 @@ class GradientController:
         far = jnp.where(finite, beyond[:T].sum(), jnp.inf)
         score = jnp.where(finite, score, -jnp.inf)
         return Scored(score, J, apart.sum(), risk[:T].max(), far, path)
-
-    def _predicted(self, params: Params, x: Array, u: Array) -> tuple[Array, Array, Array]:
-        """The next state [n], the disagreement [n] or [], and every member's state [members, n]."""
-        model: Any = self.model
-        if hasattr(model, "predictions"):
-            return model.predictions(params.model, x, u)
-        after = model.step(params.model, x, u)
-        return after, jnp.zeros(()), after[None]
 
     def _risk(self, x: Array, u: Array, each: Array) -> tuple[Array, Array]:
         """The probability [] that u [m] at x [n] violates the constraint, and how far [] [widths].

@@ -84,6 +84,10 @@ class ModelBased:
             kept = branches.begin(*sizes, self.branch_steps)
         return ModelBasedState(learner, kept)
 
+    def having(self, state: ModelBasedState, policy: Any) -> ModelBasedState:
+        """`state` with these parameters of its policy."""
+        return state.replace(learner=state.learner.replace(policy=policy))
+
     def params(self, state: ModelBasedState) -> dict[str, Any]:
         """The policy and the critic."""
         return {"policy": state.learner.policy, "critic": state.learner.critic}

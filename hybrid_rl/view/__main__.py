@@ -14,7 +14,7 @@ it, with at most its own weight. Another mode, reward or body needs other progra
 goes on as before until they are compiled: a planner takes a minute or two the first time.
 
 A run that is training is followed by its newest checkpoint. With task=T the task's scripted expert
-acts. reward, constraint, planner, env.KEY and episode.KEY are as with `evaluate`.
+acts. reward, constraint, planner, imagine, env.KEY and episode.KEY are as with `evaluate`.
 """
 
 if __name__ == "__main__":
@@ -33,16 +33,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import (
-    CHANGES,
-    CONFIG_DIR,
-    GOAL,
-    POLICY,
-    Argument,
-    read,
-    text,
-    whole,
-)
+from hybrid_rl.cli.arguments import ROBOT, ROBOT_CHANGES, Argument, read, robot, whole
 from hybrid_rl.errors import UsageError
 
 
@@ -54,18 +45,10 @@ def port(name: str, given: str) -> int:
 
 
 ARGUMENTS = (
-    Argument("run", "", "folder of a trained run, or of one that is training"),
-    POLICY,
-    Argument("task", "", "instead: a task with a scripted expert"),
-    Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
-    *GOAL,
-    CONFIG_DIR,
-    Argument("mode", "full", "of run or policy: full, policy or planner", text),
-    Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
+    *ROBOT,
     Argument("port", 8080, "of the address, or the next one that is free", port),
     Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
 )
-GROUPS = {**CHANGES, "expert": "with task=T: a key of its expert"}
 INSTALL = 'needs viser and mjviser; pip install "hybrid_rl[view]"'
 
 
@@ -105,23 +88,6 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     name = given["task"] or (trained.task if trained else "")
     step = trained.step if trained else None
     return Session(server(), name, player, Wishes(choice, seed), rewards, step, follower)
-
-
-def check(given: Mapping[str, Any], changes: Mapping[str, str]) -> None:
-    """Raise UsageError unless one thing is named, with arguments that it can have."""
-    named = [given[name] for name in ("run", "policy", "task") if given[name]]
-    if len(named) != 1:
-        raise UsageError(
-            "run, policy, task: give one of them; run=DIR is a folder that training wrote, "
-            "policy=NAME a trained policy, task=T shows the task's scripted expert"
-        )
-    expert = given["expert"] or any(key.startswith("expert.") for key in changes)
-    if expert and not given["task"]:
-        raise UsageError("expert: is of a task; give it with task=T")
-    if given["task"] and (given["reward"] or given["constraint"] or given["planner"]):
-        raise UsageError("reward, constraint, planner: a scripted expert has none; give run=DIR")
-    if given["task"] and given["mode"] != "full":
-        raise UsageError("mode: a scripted expert has none; give it with run=DIR")
 
 
 def check_address(host: str, port: int) -> None:
@@ -187,8 +153,8 @@ def show(
 
 def main() -> None:
     """The command."""
-    given, changes = read(__doc__, ARGUMENTS, GROUPS)
-    check(given, changes)
+    given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
+    robot(given, changes)
     check_address(given["host"], given["port"])
     installed()
     show(given, changes)
