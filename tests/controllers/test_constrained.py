@@ -12,6 +12,7 @@ from jax import Array
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
 from hybrid_rl.controllers.gradient import GradientController, Scored
+from hybrid_rl.core.members import predicted
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.models.gaussian import Gaussian
