@@ -6,7 +6,8 @@
 As the robot's process decides (training.decider.Decider), after a warm-up, with XLA in one thread.
 Parameters are the first ones: the time does not depend on them. For machines that do other work:
 `best` is the fastest decision, `processor` the time of the core in the fastest block. of=goals:
-who acts in scripts.new_goals, and `planner=refits`, on a reward that no run was trained on.
+who acts in scripts.new_goals, `planner=refits`, and the live window's quick planner, on a reward
+that no run was trained on.
 """
 
 import json
@@ -30,13 +31,14 @@ from hybrid_rl.trained import Trained
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
+from hybrid_rl.view.subject import quicker
 from scripts.new_goals import overrides, rows
 
 ARGUMENTS = (
     Argument("of", "methods", "or goals: planners for a new reward", one_of("methods", "goals")),
     Argument("out", "decision_ms.json", "the numbers"),
 )
-CALLS, BLOCK = 500, 10
+CALLS, BLOCK = {"methods": 500, "goals": 100}, 10
 METHODS = {
     "policy (settings=light)": ["algo=sac", "settings=light"],
     "policy": ["algo=sac"],
@@ -60,6 +62,7 @@ WHO = (
     "refits",
     "planner: gradient",
     "both: gradient",
+    "both: gradient, quick",
 )
 
 
@@ -79,6 +82,7 @@ def goals() -> Iterator[tuple[str, str, Agent]]:
         known = rows(retargeted(trained, overrides(goal)))
         refits = retargeted(trained, [*overrides(goal), "planner=refits"])
         known["refits"] = refits.controllers["full"]
+        known["both: gradient, quick"] = quicker(known["both: gradient"])
         for name in WHO:
             yield robot, name, replace(agent, controller=known[name])
 
@@ -90,20 +94,21 @@ def _agent(words: list[str]) -> Agent:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    found: dict[str, Any] = {"device": device(), "calls": CALLS, "block": BLOCK, "tasks": {}}
-    for task, name, agent in methods() if given["of"] == "methods" else goals():
-        row = measured(agent) | {"period": 1e3 * agent.spec.dt}
+    of = given["of"]
+    found: dict[str, Any] = {"device": device(), "calls": CALLS[of], "block": BLOCK, "tasks": {}}
+    for task, name, agent in methods() if of == "methods" else goals():
+        row = measured(agent, CALLS[of]) | {"period": 1e3 * agent.spec.dt}
         found["tasks"].setdefault(task, {})[name] = row
         print(f"{task}, {name}: {row['processor']:.2f} ms, best {row['best']:.2f}", flush=True)
         Path(given["out"]).write_text(json.dumps(found, indent=1) + "\n")
 
 
-def measured(agent: Agent) -> dict[str, float]:
-    """Milliseconds of a decision: median, 99%, and by the processor's clock the fastest block."""
+def measured(agent: Agent, calls: int) -> dict[str, float]:
+    """Milliseconds of a decision: median, 99%, and the fastest block by the processor's clock."""
     decide = Decider(agent, 0, at_random=False)
     params = jax.jit(lambda: agent.params(agent.init(jax.random.key(0))))()
     obs, each, blocks = np.zeros(agent.spec.obs, np.float32), [], []
-    for _ in range(CALLS // BLOCK):
+    for _ in range(calls // BLOCK):
         busy = time.process_time()
         for _ in range(BLOCK):
             began = time.perf_counter()
