@@ -2,7 +2,7 @@
 
     python -m hybrid_rl.report run=runs/hopper/sac/TIME
     python -m hybrid_rl.report run="runs/hopper/*/*" out=hopper.html
-    python -m hybrid_rl.report run="runs/*/sac/*" out=docs/results/community/mine.json
+    python -m hybrid_rl.report run="runs/*/sac/*" out=mine.json
 
 The page is one file without a script, and needs no network. Its curves are those of `figures`:
 interquartile means over seeds with 95% bootstrap bands. Of several runs it lists the settings in

@@ -27,6 +27,7 @@ LIBRARY = [  # pages; those of the atlas are copied from other pages
     *(f"docs/{path.name}" for path in sorted(ROOT.glob("docs/*.md")) if path.name != "atlas.md"),
 ]
 RESULTS = [f"docs/results/{path.name}" for path in sorted(ROOT.glob("docs/results/*.md"))]
+GROUPS = ("GROUPS", "CHANGES", "ROBOT_CHANGES")  # what commands call their keys KEY.FIELD
 LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
 
 
@@ -121,7 +122,7 @@ def check_arguments(page: str) -> None:
         for word in words:
             key = word.partition("=")[0]
             section, dot, _ = key.partition(".")
-            groups = (getattr(module(name), key, {}) for key in ("GROUPS", "CHANGES"))
+            groups = (getattr(module(name), key, {}) for key in GROUPS)
             in_group = dot and any(section in each for each in groups)
             assert in_group or key in known, f"{name}: {word}"
 

@@ -11,7 +11,7 @@ from hybrid_rl.cli import command
 
 SMALL = {  # command -> arguments that make it small
     "demonstrate": {"episodes": "1"},
-    "evaluate": {"episodes": "1"},
+    "evaluate": {"episodes": "1", "episode.steps": "20"},
     "render": {"episode_steps": "2", "width": "64", "height": "48"},
 }
 FILE_OR_NUMBER = re.compile(r"[\w/]+(?=\.\w+$)|[\d.,]+$")
@@ -43,6 +43,7 @@ def programs():
             if name == "evaluate":  # the small run is one of another task
                 given = {key: each for key, each in given.items() if not key.startswith("env.")}
             given |= SMALL.get(name, {})
+            given |= {"imagine.updates": "2", "imagine.critic_first": "1"} if "imagine" in given else {}
             kind = {key: FILE_OR_NUMBER.sub("", each) for key, each in given.items()}
             found.setdefault((name, *sorted(kind.items())), (name, given))
     return list(found.values())
