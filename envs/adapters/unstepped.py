@@ -53,7 +53,7 @@ class Made(Unstepped):
 class Items(dict):
     """Settings of an environment: a dictionary that is not changed, with a hash."""
 
-    def __hash__(self) -> int:  # type: ignore[override]
+    def __hash__(self) -> int:
         return hash(repr(sorted(self.items(), key=repr)))
 
 

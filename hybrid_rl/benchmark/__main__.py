@@ -72,7 +72,9 @@ ARGUMENTS = (
     Argument(
         "settings", [], f"of parts shares and loop, of {', '.join(SETTINGS)}", several(*SETTINGS)
     ),
-    Argument("precision", ["auto"], "of networks; several of part loop", several(*PRECISIONS)),
+    Argument(
+        "precision", [], "of networks; of part loop several, or the method's", several(*PRECISIONS)
+    ),
     Argument("seconds", 3.0, "of a row of parts shares and loop, in each round", number(0.0)),
     Argument("rounds", 5, "of which medians are taken", whole()),
     Argument("out", "benchmark.json", "the numbers; a picture in the same folder"),
@@ -103,7 +105,8 @@ def main() -> None:
     out, rounds = output("out", settings["out"], (".json",), ".png"), settings["rounds"]
     _check(settings)
     threads = ["physics=mjx"] if "mjx" in (settings["physics"] or "") else []
-    prepare(config.load([*threads, f"precision={settings['precision'][0]}"]))
+    precision = next(iter(settings["precision"]), "auto")
+    prepare(config.load([*threads, f"precision={precision}"]))
     sizes = SIZES["cpu" if jax.default_backend() == "cpu" else "gpu"] | {"experiment": EXPERIMENT}
     machine = provenance.device()
     print(f"{machine}; medians of {rounds} rounds, ratios to the first line of a table")

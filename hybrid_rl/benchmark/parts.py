@@ -123,8 +123,9 @@ def loop(settings: Settings, rounds: int) -> Iterator[Table]:
         for count in _counts(settings, "learners"):
             field = []
             for implementation in settings["physics"].split(","):
-                agent = _agent(settings, implementation, size)
-                for asked in settings["precision"]:
+                chosen = _config(settings, implementation, size)
+                agent = config.build(chosen).agent
+                for asked in settings["precision"] or [chosen.precision]:
                     with precision.using(asked):
                         name = f"{implementation}, {precision.chosen()}"
                         made = ours.loop(name, agent, count, ours.MOST, settings["seconds"])
@@ -181,12 +182,16 @@ PARTS = {
 
 
 def _agent(settings: Settings, physics: str = "auto", size: str = "default") -> Any:
+    return config.build(_config(settings, physics, size)).agent
+
+
+def _config(settings: Settings, physics: str, size: str) -> Any:
     names = [f"experiment={settings['experiment']}"] if settings["experiment"] else []
     names += [] if size == "default" else [f"settings={size}"]
     names += [f"algo={settings['algo']}", f"physics={physics}"]
     names += [f"{key}={value}" for key, value in settings.items() if "." in key]
     steps = "total_steps=20000"  # bounds the replay memory of many learners
-    return config.build(config.load([*names, steps])).agent
+    return config.load([*names, steps])
 
 
 def _many(count: int, what: str) -> str:

@@ -73,6 +73,13 @@ def test_loops_are_timed_by_precision_beside_the_committed_ones(tmp_path, capsys
     assert capsys.readouterr().out.count("0.000 of 1,000,000,000 (a GPU, native, tf32)") == 2
 
 
+def test_without_precision_a_loop_has_that_of_its_method():
+    """What `train` would use, for which the default has bf16 on a GPU."""
+    for algo, own in (("hybrid_stochastic", "mixed"), ("sac", "auto")):
+        asked = {"experiment": None, "algo": algo}
+        assert parts._config(asked, "native", "default").precision == own
+
+
 def test_products_are_counted_by_loops_and_the_costlier_branch():
     """Three layers of 4 x 5 on 2 rows with their gradient, and one product of a choice."""
     x, w, square = jnp.ones((2, 4)), jnp.ones((4, 5)), jnp.ones((7, 7))
