@@ -238,7 +238,7 @@ def test_what_is_no_usable_environment_is_one_line(given, line):
 @pytest.mark.parametrize(
     ("method", "returned", "line"),
     [
-        ("step", (np.ones(2), 0.0, False, {}), "returns 4 things; it must return obs, reward, term"),
+        ("step", (np.ones(2), 0.0, False, {}), "returns 4 things; it must return obs, reward,"),
         ("step", (np.ones(3), 0.0, False, False, {}), "obs has the shape [3]; its space says [2]"),
         ("step", (np.ones(2), np.zeros(1), False, False, {}), "reward has the shape [1]; it must"),
         ("step", (np.ones(2), np.nan, False, False, {}), "reward is not finite"),
@@ -254,7 +254,7 @@ def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, l
 
 
 def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
-    with pytest.raises(UsageError, match="add env.dt=0.05, .* or metadata = .* to its class"):
+    with pytest.raises(UsageError, match=r"add env.dt=0.05, .* or metadata = .* to its class"):
         External(make=type("Timeless", (Count,), {"metadata": {}}))
 
 
