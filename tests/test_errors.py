@@ -46,6 +46,8 @@ USAGE = [  # overrides of train, words of the line
     ),
     ("experiment=foo", "experiment=foo: unknown; choose one of arrangements/first"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of arrangements/first"),
+    ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
+    ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
     ("task=pendulm", "walker2d; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("sed=3", "sed: unknown key; did you mean seed?"),

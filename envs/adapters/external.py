@@ -30,6 +30,7 @@ from hybrid_rl.types import EnvState, Spec
 KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
 KINDS += "that Gymnasium flattens (Box, Discrete, Dict, Tuple)"
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
+PICTURE = "for a video, give it `def __init__(self, render_mode=None)` and a method `render`"
 RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
 HUGE = 100_000  # entries; an image has as many
 
@@ -95,7 +96,12 @@ class External(Made):
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             env = gymnasium.make(self.id, **options, **given)
         else:
-            env = imported(self.make)(**given)
+            try:
+                env = imported(self.make)(**given)
+            except TypeError as error:
+                if render_mode is None:
+                    raise
+                raise WorldError(f"env.make={self.name}: {PICTURE}") from error  # it was made before
             if not isinstance(env, gymnasium.Env):
                 raise UsageError(
                     f"env.make={self.name}: returns {env!r}, which is no gymnasium.Env"
