@@ -9,6 +9,7 @@ from typing import Any, get_origin
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
+from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, relative, shown
 from hybrid_rl.fields import choices, plain
@@ -48,6 +49,10 @@ def check(config: DictConfig) -> None:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
     _check_parts(config)
     check_names(config)
+    kind, plans = parts.part_class(config.env._target_), "hybrid_rl.models.world.World"
+    if isinstance(kind, type) and issubclass(kind, Unstepped) and plans in str(config.controllers):
+        line = "plans on the true dynamics, and this task steps outside JAX; choose a method that"
+        raise UsageError(f"task={config.task}: {config.algo} {line} learns its model, or sac")
     for key in ("task", "algo"):
         if not NAME.fullmatch(str(config[key])):
             line = "must be letters, digits, _, . and -"

@@ -46,6 +46,7 @@ USAGE = [  # overrides of train, words of the line
     ),
     ("experiment=foo", "experiment=foo: unknown; choose one of arrangements/first"),
     ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of arrangements/first"),
+    ("task=gymnasium algo=mppi", "Pendulum-v1: mppi plans on the true dynamics, and this task st"),
     ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
     ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
     ("task=pendulm", "walker2d; did you mean pendulum?"),

@@ -99,9 +99,9 @@ class External(Made):
             try:
                 env = imported(self.make)(**given)
             except TypeError as error:
-                if render_mode is None:
+                if render_mode is None:  # as when its spaces were read
                     raise
-                raise WorldError(f"env.make={self.name}: {PICTURE}") from error  # it was made before
+                raise WorldError(f"env.make={self.name}: {PICTURE}") from error
             if not isinstance(env, gymnasium.Env):
                 raise UsageError(
                     f"env.make={self.name}: returns {env!r}, which is no gymnasium.Env"

@@ -258,6 +258,12 @@ def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
         External(make=type("Timeless", (Count,), {"metadata": {}}))
 
 
+def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs():
+    copies = counting().copies([1], STEPS, render_mode="rgb_array")
+    with pytest.raises(WorldError, match="Count: for a video, give it `def __init__"):
+        copies.reset()
+
+
 def test_planning_on_the_environment_itself_is_refused():
     env = counting()
     with pytest.raises(UsageError, match="steps on the host"):
