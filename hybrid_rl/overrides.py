@@ -291,8 +291,9 @@ def unknown(config: DictConfig, key: str) -> str:
     """The line for a key that `config`, any node of what was composed, does not have."""
     if close := near(config, key):
         return f"{key}: unknown key; did you mean {close}?"
-    parent: Any = key.rpartition(".")[0]
-    inside = select(plain(config._get_root()), parent) if parent else None
+    root: Any = config._get_root()
+    parent = key.rpartition(".")[0]
+    inside = select(plain(root), parent) if parent else None
     if not isinstance(inside, dict):
         return f"{key}: unknown key; {SHOW}"
     names = [name for name in inside if not name.startswith("_")]

@@ -154,7 +154,7 @@ def _known(env: External) -> Known:
 
 def _check_first(name: str, one: gymnasium.Env, found: Any) -> None:
     """Raise WorldError for what reset returned, `found`, and what a first step returns."""
-    method, space, wanted = "reset", one.action_space, one.observation_space.shape
+    method, space, wanted = "reset", one.action_space, one.observation_space.shape or ()
     try:
         obs, _ = _entries(name, method, found, RESET)
         _check_shape(name, method, "obs", obs, wanted)
