@@ -9,6 +9,7 @@ from typing import Any, get_origin
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
+from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, relative, shown
 from hybrid_rl.fields import choices, plain
@@ -52,6 +53,8 @@ def check(config: DictConfig) -> None:
         if not NAME.fullmatch(str(config[key])):
             line = "must be letters, digits, _, . and -"
             raise UsageError(f"{key}={shown(config[key])}: {line}")
+    check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
+    _check_planned(config)
     for key in COUNTS:
         whole(config, key)
     countable(config)
@@ -78,7 +81,6 @@ def check(config: DictConfig) -> None:
     for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
         if config[key] not in known:
             raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
-    check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
     check_kinds(config)
 
 
@@ -92,6 +94,14 @@ def _check_parts(config: DictConfig) -> None:
             raise UsageError(f"{key}={node}: must be a part, a group of keys with _target_")
     if config.controllers.get("full") is None:
         raise UsageError("controllers.full=null: must be a part, as it acts in training")
+
+
+def _check_planned(config: DictConfig) -> None:
+    """Raise UsageError for a method that plans on the true dynamics of what JAX cannot step."""
+    kind, planned = parts.part_class(config.env._target_), "hybrid_rl.models.world.World"
+    if isinstance(kind, type) and issubclass(kind, Unstepped) and planned in str(config):
+        line = "plans on the true dynamics, and this task steps outside JAX; choose a method that"
+        raise UsageError(f"task={config.task}: {config.algo} {line} learns its model, or sac")
 
 
 def countable(config: DictConfig) -> None:

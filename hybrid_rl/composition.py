@@ -21,6 +21,7 @@ CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml
 THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the search path
 OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin
 GLOBAL = "# @package _global_"
+OF_GYMNASIUM = re.compile(r"(?P<id>-v\d+$)|(?P<make>\w:\w)")  # ids, and MODULE:CLASS
 ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
 INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
 
@@ -83,6 +84,8 @@ def explain(error: Exception) -> str:
         group, value = "/".join(parts[:deep]), "/".join(parts[deep:])
         known = sorted({*options(group), *(error.options or ())})  # theirs: of --config-dir too
         close = overrides.meant(value, known)
+        if group == "task" and (kind := OF_GYMNASIUM.search(value)):
+            close = f"; did you mean task=gymnasium env.{kind.lastgroup}={value}?"
         return f"{group}={value}: unknown; choose one of {', '.join(known)}{close}"
     cause, text = error.__cause__, str(error)
     if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):

@@ -157,12 +157,15 @@ def near(config: DictConfig, path: str) -> str:
     raw = plain(whole)
     parent, _, name = path.rpartition(".")
     siblings = select(raw, parent) if parent else [*raw, *GROUPS]
-    close = difflib.get_close_matches(name, siblings if isinstance(siblings, (dict, list)) else ())
-    if close:
-        return ", ".join(f"{parent}.{each}".lstrip(".") for each in close)
-    named = [each for each in reached(raw, raw) if each.rsplit(".", 1)[-1] == name]
-    named.sort(key=lambda each: each.split(".")[-2:] != path.split(".")[-2:])
-    return ", ".join(named[:MOST])
+    siblings = siblings if isinstance(siblings, (dict, list)) else ()
+    close = difflib.get_close_matches(name, siblings, cutoff=0.8)
+    named = [each for each in reached(raw, raw) if each.endswith((f".{name}", f"_{name}"))]
+    if named and not close:  # learning_rate: policy_learner.policy_learning_rate
+        here, ends = f"{source(raw, parent)}.", path.split(".")[-2:]
+        named.sort(key=lambda each: (each.split(".")[-2:] != ends, not each.startswith(here)))
+        return ", ".join(named[:MOST])
+    close = difflib.get_close_matches(name, siblings)
+    return ", ".join(f"{parent}.{each}".lstrip(".") for each in close)
 
 
 def meant(word: str, known: Iterable[str]) -> str:
@@ -242,13 +245,15 @@ def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
 def refuse_unused(
     composed: Sequence[DictConfig], overrides: Sequence[str], roots: Sequence[str]
 ) -> None:
-    """Raise UsageError for an override that none of the configurations reads.
+    """Raise UsageError for an override that none of the configurations reads, or a word for a part.
 
     composed: with their interpolations, one for each job of a sweep. roots: the keys
     that a run reads. A resumed run has settings of its own, so there nothing is refused here.
     """
     if any(config.resume is not None for config in composed):
         return
+    for config in composed:
+        _refuse_words(plain(config))
     typed = parse(text for text in overrides if not is_swept(text))
     each = [unused(config, typed, roots) for config in composed]
     for path in each[0]:
@@ -261,7 +266,35 @@ def refuse_unused(
             raise UsageError(f"{line}; {use}" if instead else line)
 
 
+def _refuse_words(raw: dict[str, Any]) -> None:
+    """Raise UsageError for a controller that is a word, or names no part, with the parts' names."""
+    named = raw["controllers"] if isinstance(raw["controllers"], dict) else {}
+    for path in (f"controllers.{name}" for name in named):
+        at, node = source(raw, path), select(raw, path)
+        for _ in raw:  # and not for ever, where keys refer to each other
+            if link := REFERENCE.fullmatch(str(node)):
+                at, node = source(raw, link[1]), select(raw, link[1])
+        if not (isinstance(node, str) or node is LACKING):
+            continue
+        parts = [name for name, part in raw.items() if ".controllers." in str(_target(part))]
+        typed = f"{path}=${{{at}}}" if node is LACKING else f"{at}={node}"
+        line = "must be a part, a group of keys with _target_; another one of the method's acts by"
+        raise UsageError(f"{typed}: {line} '{path}=${{NAME}}': {', '.join(parts)}")
+
+
+def _target(part: Any) -> Any:
+    """What a part of the configuration is made by; None for what is no part."""
+    return part.get("_target_") if isinstance(part, dict) else None
+
+
 def unknown(config: DictConfig, key: str) -> str:
     """The line for a key that `config`, any node of what was composed, does not have."""
-    close = near(config, key)
-    return f"{key}: unknown key; " + (f"did you mean {close}?" if close else SHOW)
+    if close := near(config, key):
+        return f"{key}: unknown key; did you mean {close}?"
+    root: Any = config._get_root()
+    parent = key.rpartition(".")[0]
+    inside = select(plain(root), parent) if parent else None
+    if not isinstance(inside, dict):
+        return f"{key}: unknown key; {SHOW}"
+    names = [name for name in inside if not name.startswith("_")]
+    return f"{key}: unknown key; {parent} has {', '.join(names) or 'no keys'}"

@@ -101,6 +101,9 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
     assert c.learners.policy.updates == 3
     for algo in ("sac", "nn_mppi", "hybrid_deterministic", "hybrid_disagreement"):
         config.build(config.load(["settings=light", f"algo={algo}"]))
+    one = config.load(["settings=light", "model=gaussian", "reward_model.hidden=[8]"])
+    assert one.learners.model.model.hidden == [200]
+    config.build(one)
 
 
 def test_how_a_hybrid_method_learns_is_one_override() -> None:

@@ -24,20 +24,24 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.copies import Copies
 from hybrid_rl.envs.adapters.unstepped import Made, imported
-from hybrid_rl.errors import UsageError, gist, in_user_code
+from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
 KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
 KINDS += "that Gymnasium flattens (Box, Discrete, Dict, Tuple)"
+DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
+PICTURE = "for a video, give it `def __init__(self, render_mode=None)` and a method `render`"
+RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
 HUGE = 100_000  # entries; an image has as many
 
 
 @dataclass(frozen=True)
 class External(Made):
-    """An environment that Gymnasium makes, of which one copy is made to read its spaces.
+    """An environment that Gymnasium makes; one copy is made to read its spaces and makes a step.
 
     Raises:
         UsageError: if it cannot be made, or its spaces are none that a method can use.
+        WorldError: if `reset` or `step` does not return what Gymnasium asks for.
     """
 
     id: str = ""  # in place of `make`
@@ -92,7 +96,12 @@ class External(Made):
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             env = gymnasium.make(self.id, **options, **given)
         else:
-            env = imported(self.make)(**given)
+            try:
+                env = imported(self.make)(**given)
+            except TypeError as error:
+                if render_mode is None:  # as when its spaces were read
+                    raise
+                raise WorldError(f"env.make={self.name}: {PICTURE}") from error
             if not isinstance(env, gymnasium.Env):
                 raise UsageError(
                     f"env.make={self.name}: returns {env!r}, which is no gymnasium.Env"
@@ -120,7 +129,7 @@ class Known(NamedTuple):
 def _known(env: External) -> Known:
     try:
         one = env.one()
-        one.reset(seed=0)
+        found = one.reset(seed=0)
     except UsageError:
         raise
     except Exception as error:
@@ -134,9 +143,46 @@ def _known(env: External) -> Known:
     dt = env.dt or getattr(one.unwrapped, "dt", None)
     dt = dt or 1 / (one.metadata.get("render_fps") or np.inf)
     if not dt:
-        raise UsageError(f"{env.name}: does not say its time step; give env.dt [s]")
+        raise UsageError(f"{env.name}: does not say its time step; {DT}")
+    _check_first(env.name, one, found)
     limit = None if env.make else gymnasium.spec(env.id.rpartition(":")[2]).max_episode_steps
     one.close()
     assert isinstance(space, Box)
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
     return Known(Spec(*sizes, float(dt)), limit, space)
+
+
+def _check_first(name: str, one: gymnasium.Env, found: Any) -> None:
+    """Raise WorldError for what reset returned, `found`, and what a first step returns."""
+    method, space, wanted = "reset", one.action_space, one.observation_space.shape or ()
+    try:
+        obs, _ = _entries(name, method, found, RESET)
+        _check_shape(name, method, "obs", obs, wanted)
+        method, middle = "step", np.add(space.low / 2, space.high / 2).astype(space.dtype)
+        obs, reward, *flags, _ = _entries(name, method, one.step(middle), STEP)
+        _check_shape(name, method, "obs", obs, wanted)
+        for word, value in zip(STEP.split(", ")[1:4], (reward, *flags), strict=True):
+            _check_shape(name, method, word, value, ())
+    except WorldError:
+        raise
+    except Exception as error:
+        raise WorldError(f"{name}: {method}: {in_user_code(error) or gist(error)}") from error
+
+
+def _entries(name: str, method: str, found: Any, wanted: str) -> tuple:
+    """What a method returned, if it is as many things as `wanted`."""
+    if isinstance(found, tuple) and len(found) == len(wanted.split(", ")):
+        return found
+    many = f"{len(found)} things" if isinstance(found, tuple) else type(found).__name__
+    raise WorldError(f"{name}: {method}: returns {many}; it must return {wanted}")
+
+
+def _check_shape(name: str, method: str, word: str, value: Any, wanted: tuple[int, ...]) -> None:
+    """Raise WorldError for an entry that is no array of numbers of the shape `wanted`."""
+    shape = np.shape(value)
+    if shape != wanted:  # of a reward and the ends it is ()
+        must = f"its space says {list(wanted)}" if wanted else "it must be one number"
+        raise WorldError(f"{name}: {method}: {word} has the shape {list(shape)}; {must}")
+    for entry in np.flatnonzero(~np.isfinite(np.asarray(value, np.float32))):
+        where = f"entry {entry} of {word}" if wanted else word
+        raise WorldError(f"{name}: {method}: {where} is not finite")

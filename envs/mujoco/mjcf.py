@@ -101,9 +101,14 @@ def load(asset: str) -> mujoco.MjModel:
     """The compiled model of `asset`, which is shared: do not modify it.
 
     Raises:
-        ValueError: for a model with automatic resets.
+        ValueError: for a model with automatic resets; that names the file, for one that does not
+            compile.
     """
-    model = spec(asset).compile()
+    given = spec(asset)
+    try:
+        model = given.compile()
+    except ValueError as error:
+        raise ValueError(f"{asset}: {error}") from error
     if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
         raise ValueError(
             f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '

@@ -99,7 +99,7 @@ def usage(module: Any) -> str:
     """What --help of a command with Hydra's overrides prints."""
     text = (CONF / "train.yaml").read_text(encoding="utf-8")
     lines = re.findall(r"^(?:  - )?(\w+): (\S.*?)(?: +# (.*))?$", text, re.MULTILINE)
-    scalars = [line for line in lines if line[0] in KEYS]
+    scalars = {line[0]: line for line in lines if line[0] in KEYS}.values()  # the last of each
     width = max(len(f"{key}={value}") for key, value, _ in scalars)
     keys = "\n".join(f"  {f'{key}={value}':{width}}  {about}" for key, value, about in scalars)
     return USAGE.format(doc=inspect.getdoc(module), keys=keys).strip()

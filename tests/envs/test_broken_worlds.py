@@ -242,6 +242,12 @@ SIMULATED = [  # the same of a world in MuJoCo; None: of its model
         r"""w\.py:26: W\.reset: KeyError: "Invalid name 'hand'\. Valid names: \[\]\"""",
     ),
     (
+        "a motor of a joint that is not there",
+        None,
+        ('<motor joint="', '<motor joint="un'),
+        r"w\.py:19: W\.reset: ValueError: .*/rail\.xml: Error: unknown transmission target 'un.*",
+    ),
+    (
         "a model that resets itself",
         None,
         ('<flag autoreset="disable"/>', ""),

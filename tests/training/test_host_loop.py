@@ -64,13 +64,14 @@ class Count(gymnasium.Env):
 
     def step(self, action: np.ndarray) -> tuple:
         self.time, self.last = self.time + 1, action
-        if self.fail == "error" and self.time == 2:
+        fail = self.fail if self.time == 2 else ""  # the first step is tried before a run
+        if fail == "error":
             raise ValueError("motor off")
         obs = self._seen()
-        if self.fail == "nan":
+        if fail == "nan":
             obs[1] = np.nan
-        obs = np.zeros(3) if self.fail == "size" else obs
-        reward = np.inf if self.fail == "reward" else float(action[0])
+        obs = np.zeros(3) if fail == "size" else obs
+        reward = np.inf if fail == "reward" else float(action[0])
         return obs, reward, self.time >= self.episode + 1, self.fail == "both", {}
 
     def _seen(self) -> np.ndarray:
@@ -206,6 +207,9 @@ class Odd(gymnasium.Env):
     def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
         return self.observation_space.sample(), {}
 
+    def step(self, action: np.ndarray) -> tuple:
+        return self.observation_space.sample(), 0.0, False, False, {}
+
 
 def test_spaces_of_any_form_are_flattened():
     assert External(make=Odd).spec == Spec(obs=7, act=2, dt=0.02)
@@ -229,6 +233,35 @@ def test_what_is_no_usable_environment_is_one_line(given, line):
         External(**given)
     assert line in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("method", "returned", "line"),
+    [
+        ("step", (np.ones(2), 0.0, False, {}), "returns 4 things; it must return obs, reward,"),
+        ("step", (np.ones(3), 0.0, False, False, {}), "obs has the shape [3]; its space says [2]"),
+        ("step", (np.ones(2), np.zeros(1), False, False, {}), "reward has the shape [1]; it must"),
+        ("step", (np.ones(2), np.nan, False, False, {}), "reward is not finite"),
+        ("step", (np.array([0, np.nan]), 0.0, False, False, {}), "entry 1 of obs is not finite"),
+        ("reset", np.ones(2), "returns ndarray; it must return obs, info"),
+    ],
+)
+def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, line):
+    kind = type("Wrong", (Count,), {method: lambda self, *_, **options: returned})
+    with pytest.raises(WorldError) as error:
+        External(make=kind)
+    assert str(error.value).startswith(f"Wrong: {method}: {line}")
+
+
+def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
+    with pytest.raises(UsageError, match=r"add env.dt=0.05, .* or metadata = .* to its class"):
+        External(make=type("Timeless", (Count,), {"metadata": {}}))
+
+
+def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs():
+    copies = counting().copies([1], STEPS, render_mode="rgb_array")
+    with pytest.raises(WorldError, match="Count: for a video, give it `def __init__"):
+        copies.reset()
 
 
 def test_planning_on_the_environment_itself_is_refused():
