@@ -16,6 +16,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.networks import precision
+from hybrid_rl.networks.layers import Dense, LayerNorm
 
 ACTIVATIONS = {
     "relu": nn.relu,
@@ -42,14 +43,14 @@ class MLP(nn.Module):
     @nn.compact
     def __call__(self, x: Array) -> Array:
         """The outputs y [..., out] for x [..., d]."""
-        kind, of_products = precision.of_hidden(), precision.of_products()
+        kind = precision.of_hidden()
         for width in self.hidden:
-            x = nn.Dense(width, kernel_init=SPREAD, dtype=kind, precision=of_products)(x)
+            x = Dense(width, SPREAD, kind)(x)
             if self.layer_norm:
-                x = nn.LayerNorm(use_scale=self.layer_norm != "shift", dtype=kind)(x)
+                x = LayerNorm(self.layer_norm != "shift", kind)(x)
             x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
-        return nn.Dense(self.out, kernel_init=last, precision=of_products)(x)
+        return Dense(self.out, last)(x)
 
 
 class Perceptron(NamedTuple):
