@@ -17,7 +17,7 @@ from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.view.imagined import lines
 from hybrid_rl.view.push import Pull
 
-PALE, BRIGHT = (70, 90, 120), (255, 122, 0)  # colours of lines
+PALE, BRIGHT = (110, 135, 175), (255, 122, 0)  # of lines, on a light and a dark ground
 BACK = 1.6  # times as far as in a video, as the panel covers a part
 
 

@@ -13,10 +13,12 @@ from tiny import call, call_train, only_line, run
 from hybrid_rl import trained
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.mujoco import scenery
+from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.envs.sawyer_torque import SawyerTorque
 from hybrid_rl.envs.sprk import Sprk
@@ -73,6 +75,9 @@ def test_sliders_have_the_range_of_their_field():
     assert found["reward.effort"].least == 0
     (mass,) = [one for one in sliders("env", HalfCheetah()) if one.key == "env.mass"]
     assert mass.least > 0
+    for world in (Quadcopter(), QuadcopterSE3()):
+        (wind,) = [one for one in sliders("env", world) if one.key == "env.wind"]
+        assert (wind.value, wind.least, wind.most) == (0, -5, 5)
 
 
 def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
