@@ -138,17 +138,18 @@ def noise(run: Evidence) -> str | None:
     Noise n of variance s^2 makes n' - n of the change, and -s^2 of the covariance of what is left
     of it from one decision to the next, so that -2 cov is its share. What is left is predicted
     from the observation before: that of the decision has the same noise n. A contact moves and
-    moves back, too, as does what a plane leaves of a motion. So half of the noise at least must be
-    there in new episodes at rest; where there are none, what the decision's own observation leaves
-    must have such a covariance, which a contact has not, and noise only if it is not all there is.
+    moves back, too, but what the decision's own observation leaves of it has no such covariance.
+    Where the observations are too many for more than a plane, what bends is left, too, and may
+    do the same: so half of the noise at least must be there when nothing acts, too.
     """
     if run.made is None or len(run.at(2)[0]) < ENOUGH:
         return None
     noise, share, sure = _taken_back(run)
-    if (share > NOISE).any() and run.at_rest is not None:
+    found = (share > NOISE) & sure
+    if found.any() and run.at_rest is not None:
         noise_at_rest, share_at_rest, _ = _taken_back(run.at_rest)
-        sure = (share_at_rest > NOISE) & (2 * noise_at_rest > noise)
-    at = np.flatnonzero((share > NOISE) & sure)
+        found &= (share_at_rest > NOISE) & (2 * noise_at_rest > noise)
+    at = np.flatnonzero(found)
     if not len(at):
         return None
     size = ", ".join(f"{each:.2g}" for each in noise[at])
@@ -175,7 +176,7 @@ def _taken_back(run: Evidence) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
     before = np.concatenate((run.known((k, t - 1), actions=1), run.made.action[k, t]), axis=1)
     older, own = both(before), both(run.known((k, t), actions=1))
-    share = -2 * older.mean(0) / y.var(0)
+    share = -2 * older.mean(0) / np.maximum(y.var(0), np.finfo(float).tiny)
     sure = -own.mean(0) > ERRORS * own.std(0) / np.sqrt(len(own))
     found = np.zeros((3, run.made.obs.shape[-1]))
     found[:, run.moving] = np.sqrt(np.maximum(-older.mean(0), 0)), share, sure
