@@ -13,7 +13,7 @@ from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.doctor import __main__ as doctor
 from hybrid_rl.doctor import learned, observed, task
-from hybrid_rl.doctor.evidence import Evidence, read
+from hybrid_rl.doctor.evidence import Evidence, of_each, read
 from hybrid_rl.doctor.tried import Tried
 from hybrid_rl.types import Spec, Transition
 
@@ -214,6 +214,26 @@ def test_a_value_beyond_all_rewards_is_noticed(tmp_path):
         made = given.made._replace(reward=given.made.reward * factor)
         assert line in learned.scale(replace(given, made=made, folder=rows))
     assert learned.scale(given) is None  # after 60 decisions values are no sums yet
+
+
+def test_each_learner_is_examined_by_itself(tmp_path):
+    run(tmp_path, "task=pendulum", "algo=sac", "total_steps=60", "num_seeds=2", "seed=4")
+    given = read(tmp_path)
+    one, two = given.learners
+    np.testing.assert_array_equal(two.made.reward, given.made.reward[1:])
+    assert one.by_policy.obs.shape == two.by_policy.obs.shape
+    assert (one.by_policy.action != two.by_policy.action).any()
+    assert {row["seed"] for row in two.rows} == {5}
+    values = [
+        {"step": 9, "seed": seed, "sac/q": q} for seed, q in ((4, -5.0), (5, 70.0), (5, 80.0))
+    ]
+    for rows, seeds in (
+        (values[:2], "seed 5: the"),
+        ([*values[1:], values[2] | {"seed": 4}], "seeds 4, 5: the"),
+    ):
+        many = replace(given, folder=SimpleNamespace(rows=rows, path=given.path))
+        assert of_each(learned.critic)(many).startswith(f"{seeds} critic's value")
+    assert of_each(learned.critic)(given) is None
 
 
 def test_what_is_no_run_is_one_line(tmp_path, capfd):
