@@ -38,7 +38,8 @@ class Tried:
         half = self.action.shape[1] // 2
         obs, action, reward = (each[which, half:] for each in (self.obs, self.action, self.reward))
         over = np.zeros_like(reward)
-        return Transition(obs[:, :-1], action, reward, over, over, obs[:, 1:])
+        rows: Any = (obs[:, :-1], action, reward, over, over, obs[:, 1:])
+        return Transition(*rows)
 
 
 class Still:
