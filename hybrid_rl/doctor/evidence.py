@@ -123,8 +123,9 @@ class Evidence:
     def at_rest(self) -> "Evidence | None":
         """The second half of new episodes without action, of those that last so long."""
         found = episodes(self.run.agent.episode, Still(), Params())
-        lasting = found[0].lives.all(1) if found else np.zeros(1, bool)
-        return replace(self, made=found[0].made(lasting)) if found and lasting.any() else None
+        if not found or not found[0].lives.all(1).any():
+            return None
+        return replace(self, made=found[0].second_half())
 
     @cached_property
     def _by_policies(self) -> list[Tried] | None:

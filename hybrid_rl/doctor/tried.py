@@ -33,9 +33,9 @@ class Tried:
         obs, after = self.obs[:, :decisions], self.obs[:, 1 : decisions + 1]
         return obs[lives], self.action[:, :decisions][lives], after[lives]
 
-    def made(self, which: np.ndarray) -> Transition:
-        """The second half of the episodes `which` [N], as decisions of learners."""
-        half = self.action.shape[1] // 2
+    def second_half(self) -> Transition:
+        """The second half of the episodes that last so long, as decisions of learners."""
+        which, half = self.lives.all(1), self.action.shape[1] // 2
         obs, action, reward = (each[which, half:] for each in (self.obs, self.action, self.reward))
         over = np.zeros_like(reward)
         rows: Any = (obs[:, :-1], action, reward, over, over, obs[:, 1:])
