@@ -158,6 +158,20 @@ class PandaStack:
         """Joint positions qpos [23] for rendering."""
         return state.data.qpos
 
+    def points(self, state: EnvState, obs: Array) -> Array:
+        """Positions [T+1, n, 3] [m] along observations [T+1, o] from `state`, for drawing.
+
+        Of the hand and the block; with observation=stage of the hand alone, as if the block stood
+        still while the hand is open, and were in it while it is closed.
+        """
+        goal, block = self._goal(state.data)[None], state.data.qpos[BLOCK][None]
+        if self.observation == "thesis":
+            return obs[:, :6].reshape(-1, 2, 3)
+        if self.observation == "relative":
+            block = goal - obs[:, 3:6]
+            return jnp.stack((block - obs[:, :3], block), 1)
+        return (jnp.where(obs[:, 3:4] > 0.5, goal, block) - obs[:, :3])[:, None]
+
     def _state(self, data: PhysicsState, action: Array, info: dict[str, Array]) -> EnvState:
         tool, block, goal = TOOL.pose(data.qpos)[0], data.qpos[BLOCK], self._goal(data)
         wrench = jnp.concatenate([self._body.sensor(data, s) for s in ("force", "torque")])

@@ -12,10 +12,12 @@ o = (g, w, v) [9], for track (g, w, v, R'(p* - p)) [12]; a: four motor controls,
 u = 3 (a + 1) with bidirectional=false; start: level, w and v ~ U(-2, 2); for track also
 p* - p ~ U(-2, 2), and the target moves at a constant velocity ~ U(-1, 1) x target_speed. A decision
 is one step of 0.005 s; never terminates. success: |w|^2 + |v|^2 (track: + |p* - p|^2) < 0.01.
+`wind` accelerates the quadcopter along the world's x axis, by a change of its velocity before each
+step.
 
 Source: thesis section 7.3 and Appendix D, whose reward has |u|^2 instead of |u - u*|^2; targets
 from section 6.3.2; the position's weight is our choice. Damping is in the thesis' code but not in
-its equations.
+its equations; wind is our choice.
 """
 
 from typing import Literal
@@ -27,7 +29,7 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
-from hybrid_rl.envs.mujoco.kinematics import inverse, rotate
+from hybrid_rl.envs.mujoco.kinematics import inverse, quat_multiply, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
@@ -49,6 +51,7 @@ class Quadcopter(Body):
     start_speed: float = 2.0  # [m/s, rad/s] largest in each direction
     target_distance: float = 2.0  # [m] largest in each direction; track only
     target_speed: float = 0.0  # [m/s] largest in each direction; track only
+    wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
     asset: str = ASSET  # another file needs the same actuators
 
     @property
@@ -79,7 +82,10 @@ class Quadcopter(Body):
         action = jnp.clip(action, -1.0, 1.0)
         u = MAX_CONTROL * (action if self.bidirectional else (action + 1) / 2)
         drag = jnp.full(6, float(self.damping), jnp.float32)
-        data = self._body.step(state.data, jnp.concatenate((u, drag)), 1)
+        data = state.data
+        if self.wind:
+            data = data.replace(qvel=data.qvel.at[0].add(DT * self.wind))
+        data = self._body.step(data, jnp.concatenate((u, drag)), 1)
         target = state.info["target"] + DT * state.info["target_velocity"]
         effort = ((u - self.hovering) ** 2).sum()
         return self._state(data, effort, {**state.info, "target": target})
@@ -114,6 +120,26 @@ class Quadcopter(Body):
         hidden = jnp.asarray((0.0, 0.0, -99.0), jnp.float32)  # below the ground
         target = state.info["target"] if self.task == "track" else hidden
         return jnp.concatenate((state.data.qpos, target))
+
+    def points(self, state: EnvState, obs: Array) -> Array:
+        """Positions [T+1, 1, 3] [m] along observations [T+1, o] from `state`, for drawing.
+
+        By trapezoids, from the attitude and the position of `state`.
+        """
+        drift = state.info["target_velocity"]
+
+        def ahead(at: tuple[Array, Array], now: Array) -> tuple[tuple[Array, Array], Array]:
+            p, r = at
+            before, after = now[:, 3:9]
+            w = (before + after)[:3] / 2
+            turned = quat_multiply(r, jnp.concatenate((jnp.ones(1), DT / 2 * w)))
+            turned = turned / jnp.linalg.norm(turned)
+            v = (rotate(r, before[3:]) + rotate(turned, after[3:])) / 2 + drift
+            return (p + DT * v, turned), p + DT * v
+
+        start = state.data.qpos[:3], state.data.qpos[3:]
+        p = jax.lax.scan(ahead, start, jnp.stack((obs[:-1], obs[1:]), 1))[1]
+        return jnp.concatenate((start[0][None], p))[:, None]
 
     def _state(self, data: PhysicsState, effort: Array, info: dict[str, Array]) -> EnvState:
         """State with observation, reward and metrics; effort: |u - u*|^2 of the decision."""

@@ -180,6 +180,11 @@ class SawyerProbe:
         """MJCF text of the scene for rendering."""
         return self.asset
 
+    def points(self, state: EnvState, obs: Array) -> Array:
+        """Positions [T+1, 1, 3] [m] of the tip along observations [T+1, 4], for drawing."""
+        height = jnp.broadcast_to(TIP.pose(state.data.qpos)[0][2], (len(obs), 1))
+        return jnp.concatenate((obs[:, :2], height), 1)[:, None]
+
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [7] for rendering, at which the tip is where it was observed."""
         return self._reached(state.obs[:2], state.data.qpos)

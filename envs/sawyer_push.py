@@ -195,6 +195,14 @@ class SawyerPush:
         """Joint positions qpos [16] for rendering: arm and block, then the target's x and y."""
         return jnp.concatenate((state.data.qpos, state.info["target"]))
 
+    def points(self, state: EnvState, obs: Array) -> Array:
+        """Positions [T+1, 2, 3] [m] of tip and block along observations [T+1, o], for drawing."""
+        from_tip, from_target = jnp.moveaxis(obs[:, :4].reshape(-1, 2, 2), 1, 0) / self.state_scale
+        block = state.info["target"][None] + from_target
+        plane = jnp.stack((block - from_tip, block), 1)
+        height = jnp.stack((TIP.pose(state.data.qpos)[0][2], state.data.qpos[9]))
+        return jnp.concatenate((plane, jnp.broadcast_to(height[:, None], (len(obs), 2, 1))), 2)
+
     def _state(self, data: PhysicsState, action: Array, info: dict[str, Array]) -> EnvState:
         tip, block = TIP.pose(data.qpos)[0][:2], data.qpos[7:9]
         reach, left = block - tip, block - info["target"]

@@ -5,7 +5,8 @@
 
 A run that is in the folder already is not made again. The checks were written with seeds 0 to 3
 and 100 in view, those of new episodes, of the reward's scale and of the action rate with seeds 10
-to 13. The table has seed 4, of both kinds, as it was found.
+to 13, that of noise at rest with seeds 4 and 5. The table has seed 6, of both kinds, as it was
+found.
 """
 
 import json
@@ -21,7 +22,7 @@ from hybrid_rl.doctor.__main__ import examine
 HERE = Path(__file__).parent / "broken"  # the user's files: a world, and its task
 ARGUMENTS = (
     Argument("folder", "runs/broken", "of the runs"),
-    Argument("seed", 4, "of each run", whole(0)),
+    Argument("seed", 6, "of each run", whole(0)),
     Argument("runs", "all", "which: all, broken or sound", one_of("all", "broken", "sound")),
     Argument("out", "", "JSON with the lines on each run; empty: printed alone"),
 )

@@ -13,7 +13,7 @@ from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.doctor import __main__ as doctor
 from hybrid_rl.doctor import learned, observed, task
-from hybrid_rl.doctor.evidence import Evidence, read
+from hybrid_rl.doctor.evidence import Evidence, of_each, read
 from hybrid_rl.doctor.tried import Tried
 from hybrid_rl.types import Spec, Transition
 
@@ -38,8 +38,11 @@ def oscillator(delay=0, lag=1.0, dt=DT, steps=STEPS, seed=0):
     return x, action
 
 
-def evidence(seen, action, reward=None, terminated=False):
-    """What the memory of a learner shows that made these episodes [E, T+1, o] in turn."""
+def evidence(seen, action, reward=None, terminated=False, rest=None):
+    """What the memory of a learner shows that made these episodes [E, T+1, o] in turn.
+
+    rest: the evidence of episodes without action; None: the world cannot be run here.
+    """
     ends = np.zeros(action.shape[:2])
     ends[:, -1] = 1
     reward = -(seen[:, 1:] ** 2).sum(-1) if reward is None else reward
@@ -48,7 +51,10 @@ def evidence(seen, action, reward=None, terminated=False):
     each = (seen[:, :-1], action, reward, *flags, seen[:, 1:])
     made = Transition(*(a.reshape(1, -1, *a.shape[2:]) for a in each))
     agent = SimpleNamespace(spec=Spec(seen.shape[-1], 1, DT))
-    return Evidence(SimpleNamespace(rows=[], summary={}), None, SimpleNamespace(agent=agent), made)
+    folder, run = SimpleNamespace(rows=[], summary={}), SimpleNamespace(agent=agent)
+    given = Evidence(folder, None, run, made)
+    vars(given)["at_rest"] = rest
+    return given
 
 
 def found(given):
@@ -91,6 +97,16 @@ def test_noise_is_measured():
     line = observed.noise(evidence(x, action))
     assert line.startswith("obs 1 moves and moves back: noise of about 0.")
     assert float(line.split("about ")[1].split()[0]) == pytest.approx(0.4, rel=0.25)
+
+
+def test_what_moves_back_is_noise_only_if_it_does_so_at_rest():
+    x, action = oscillator()
+    noise = np.random.default_rng(2).normal(size=x.shape) * [0.0, 0.4]
+    still, none = evidence(0 * x + [1.0, 0.0], 0 * action), evidence(x, action)
+    noisy = evidence(0 * x + [1.0, 0.0] + noise, 0 * action)
+    assert observed.noise(evidence(x + noise, action, rest=noisy)).startswith("obs 1 moves")
+    for rest in (still, none):
+        assert observed.noise(evidence(x + noise, action, rest=rest)) is None
 
 
 def test_a_velocity_that_is_missing_is_missed():
@@ -198,6 +214,26 @@ def test_a_value_beyond_all_rewards_is_noticed(tmp_path):
         made = given.made._replace(reward=given.made.reward * factor)
         assert line in learned.scale(replace(given, made=made, folder=rows))
     assert learned.scale(given) is None  # after 60 decisions values are no sums yet
+
+
+def test_each_learner_is_examined_by_itself(tmp_path):
+    run(tmp_path, "task=pendulum", "algo=sac", "total_steps=60", "num_seeds=2", "seed=4")
+    given = read(tmp_path)
+    one, two = given.learners
+    np.testing.assert_array_equal(two.made.reward, given.made.reward[1:])
+    assert one.by_policy.obs.shape == two.by_policy.obs.shape
+    assert (one.by_policy.action != two.by_policy.action).any()
+    assert {row["seed"] for row in two.rows} == {5}
+    values = [
+        {"step": 9, "seed": seed, "sac/q": q} for seed, q in ((4, -5.0), (5, 70.0), (5, 80.0))
+    ]
+    for rows, seeds in (
+        (values[:2], "seed 5: the"),
+        ([*values[1:], values[2] | {"seed": 4}], "seeds 4, 5: the"),
+    ):
+        many = replace(given, folder=SimpleNamespace(rows=rows, path=given.path))
+        assert of_each(learned.critic)(many).startswith(f"{seeds} critic's value")
+    assert of_each(learned.critic)(given) is None
 
 
 def test_what_is_no_run_is_one_line(tmp_path, capfd):

@@ -18,6 +18,7 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.export import program
 from hybrid_rl.networks import MLP, normalised, precision
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
+from hybrid_rl.training.axis import Axis
 from hybrid_rl.types import Params, Spec
 
 pytestmark = pytest.mark.turns(3)
@@ -68,6 +69,21 @@ def test_residual_networks_stay_in_float32():
         params = normalised.init(net, jax.random.key(0), 3)
         kinds, _ = products(lambda x: normalised.apply(net, params, x), jnp.ones((4, 3)))
     assert set(kinds) == {"f32"}
+
+
+def test_the_numbers_of_a_sweep_leave_the_products_as_they_are():
+    """They are arrays of float32, which would raise a bfloat16 that they met."""
+    words, keys = ("task=pendulum", "algo=sac"), ("discount", "tau", "critic_learning_rate")
+    other = [f"policy_learner.{key}=0.25" for key in keys] + ["policy.log_std_max=0.25"]
+    agent, changed = (build(load("sac", *words, *more)).agent for more in ([], other))
+    axis = Axis.of([{"agent": agent}, {"agent": changed}])
+    assert len(axis.numbers) >= len(other)
+    with precision.using("bf16"):
+        state = jax.eval_shape(agent.init, jax.random.key(0))
+        numbers = dict.fromkeys(axis.numbers, jnp.float32(0.25))
+        swept = products(lambda x, s: axis.put(agent, "agent", x).step(s, 0), numbers, state)
+        assert swept == products(lambda s: agent.step(s, 0), state)
+    assert swept[0]["bf16"] > 0
 
 
 @pytest.mark.parametrize("algo", ["koopman_active", "koopman_embedding", "gp_active", "kle3"])

@@ -5,8 +5,8 @@
 A line for each fault: what was seen, what it means, what to try. They come in the order in which
 they are to be mended, as the later may follow from the first. It reads metrics.jsonl,
 summary.json, and replay memory and networks of the newest checkpoint, and runs new episodes of the
-policy and of random actions. Nothing is written. docs/not_learning.md has the
-checks, and how often they were right.
+policy, of random actions and of none. Nothing is written. The page "My robot does not learn" of the
+documentation has the checks, and how often they were right.
 """
 
 if __name__ == "__main__":
@@ -21,10 +21,17 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.cli.arguments import read as arguments
 from hybrid_rl.doctor import learned, observed, task
-from hybrid_rl.doctor.evidence import Evidence, read
+from hybrid_rl.doctor.evidence import Evidence, of_each, read
 
 ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
-CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of docs/not_learning.md
+NOTHING = """{folder}: {count} checks, and nothing to see.
+They see neither what you want nor how hard it is; to see it:
+  python -m hybrid_rl.render run={folder}  what the robot does: is that what the reward pays?
+  python -m hybrid_rl.evaluate run={folder} mode=policy
+                                           and mode=planner, if it has one: the worse is at fault
+  python -m hybrid_rl.report run={folder}  all curves; returns that still rise need more decisions
+The documentation's page "My robot does not learn" goes on."""
+CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that page
     "numbers": learned.diverged,
     "silent sensor": observed.constant,
     "observation limits": observed.clipped,
@@ -32,14 +39,14 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of docs/
     "noise": observed.noise,
     "action": observed.action,
     "hidden state": observed.hidden,
-    "model": learned.forecast,
+    "model": of_each(learned.forecast),
     "ends": task.ends,
     "episode": task.short,
     "reward": task.reward,
     "reward's sign": task.sign,
-    "reward's scale": learned.scale,
+    "reward's scale": of_each(learned.scale),
     "random decisions": learned.random,
-    "critic": learned.critic,
+    "critic": of_each(learned.critic),
 }
 
 
@@ -62,7 +69,7 @@ def main() -> None:
     for name, line in found.items():
         print(f"{name:{width}}  {line}")
     if not found:
-        print(f"{folder}: {len(CHECKS)} checks, and nothing to see; docs/not_learning.md goes on")
+        print(NOTHING.format(folder=folder, count=len(CHECKS)))
 
 
 if __name__ == "__main__":

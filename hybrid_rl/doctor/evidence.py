@@ -7,9 +7,13 @@ observation, y = o' - o, are predicted from what was known at the decision by
 
 with z scaled to variance 1; phi is linear where z has too many entries for the decisions there
 are. Every second of FOLDS stretches of time is predicted by W of the others.
+
+What a learner has learned is examined in the evidence of that learner alone, for the first
+LEARNERS of a run (`of_each`).
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -21,15 +25,16 @@ from hybrid_rl.analysis.held_out import RandomActions
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
-from hybrid_rl.doctor.tried import Tried, episodes
+from hybrid_rl.doctor.tried import Still, Tried, episodes
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.trained import built, load, restore
+from hybrid_rl.trained import Trained, built, load, restore
 from hybrid_rl.types import Params, Transition
 
 FOLDS = 100  # stretches of time, of which every second one is predicted by the others
+LEARNERS = 4  # of a run that are examined one by one
 LONGER = 4  # time limits that an episode of the policy lasts
 MOST = 12_000  # decisions of a regression, the newest ones
 PER_FEATURE = 10  # decisions at least for each feature of a regression
@@ -45,6 +50,8 @@ class Evidence:
     config: Any  # of config.yaml
     run: Run
     made: Transition | None  # [K, T, ...] NumPy; None: no checkpoint has the replay memory
+    whole: "Evidence | None" = None  # of the run, of which this is a learner's part
+    learner: int = 0  # its number; of the run the first one's
 
     @property
     def path(self) -> Path:
@@ -74,24 +81,66 @@ class Evidence:
         return np.concatenate((obs, np.sin(wide), np.cos(wide)), axis=-1)
 
     @cached_property
+    def learners(self) -> "list[Evidence]":
+        """The part of each of the first learners."""
+        seeds = self.run.seeds
+        if len(seeds) == 1:
+            return [self]
+        return [self._part(i, len(seeds)) for i in range(min(LEARNERS, len(seeds)))]
+
+    def _part(self, learner: int, learners: int) -> "Evidence":
+        made: Any = self.made and jax.tree.map(lambda a: np.split(a, learners)[learner], self.made)
+        return replace(self, made=made, whole=self, learner=learner)
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows of metrics.jsonl, of a learner's part its own."""
+        rows = self.folder.rows
+        seed = self.run.seeds[self.learner] if self.whole else None
+        return rows if seed is None else [row for row in rows if row["seed"] == seed]
+
+    @cached_property
+    def _trained(self) -> Trained | None:
+        """The learners; None: there is nothing yet, without a checkpoint."""
+        return load(self.path) if checkpoint.steps(self.path / "checkpoints") else None
+
+    @property
     def params(self) -> Params | None:
-        """What the first learner has learned; None: nothing yet, without a checkpoint."""
-        if not checkpoint.steps(self.path / "checkpoints"):
-            return None
-        return load(self.path).learner(mode=next(iter(self.run.controllers)), world=True)[1]
+        """What the learner has learned; None: nothing yet."""
+        trained = (self.whole or self)._trained
+        learned: Any = trained and trained.params
+        return learned and jax.tree.map(lambda leaf: leaf[self.learner], learned)
 
     @cached_property
     def by_chance(self) -> Tried | None:
         """New episodes of random actions."""
-        return episodes(self.run.agent.episode, RandomActions(), Params())
+        if self.whole:
+            return self.whole.by_chance
+        found = episodes(self.run.agent.episode, RandomActions(), Params())
+        return found and found[0]
 
     @cached_property
+    def at_rest(self) -> "Evidence | None":
+        """The second half of new episodes without action, of those that last so long."""
+        found = episodes(self.run.agent.episode, Still(), Params())
+        if not found or not found[0].lives.all(1).any():
+            return None
+        return replace(self, made=found[0].second_half())
+
+    @cached_property
+    def _by_policies(self) -> list[Tried] | None:
+        policy, trained = self.run.controllers.get("policy"), self._trained
+        if policy is None or trained is None:
+            return None
+        number = len(self.learners)
+        params: Any = jax.tree.map(lambda leaf: leaf[:number], trained.params)
+        return episodes(self.run.agent.episode, policy, params, number, LONGER)
+
+    @property
     def by_policy(self) -> Tried | None:
         """New episodes of the policy, which go on after the time limit; None: it has none."""
-        policy = self.run.controllers.get("policy")
-        if policy is None or self.params is None:
-            return None
-        return episodes(self.run.agent.episode, policy, self.params, LONGER)
+        each = (self.whole or self)._by_policies
+        return each and each[self.learner]
 
     def at(self, lags: int) -> tuple[np.ndarray, np.ndarray]:
         """(k, t) of the newest decisions that have `lags` others before them in their episode."""
@@ -119,6 +168,21 @@ class Evidence:
         seen = [self._shown[k, t - i] for i in range(obs + 1)]
         done = [self.made.action[k, t - i] for i in range(actions)]
         return np.concatenate(seen + done, axis=1)
+
+
+def of_each(check: Callable[[Evidence], str | None]) -> Callable[[Evidence], str | None]:
+    """A check of a run that examines each learner: the first line, and the seeds that have one."""
+
+    def checked(run: Evidence) -> str | None:
+        found = {one.learner: line for one in run.learners if (line := check(one))}
+        if not found:
+            return None
+        line = next(iter(found.values()))
+        seeds = ", ".join(str(run.run.seeds[i]) for i in found)
+        many = "s" if len(found) > 1 else ""
+        return line if len(run.learners) == 1 else f"seed{many} {seeds}: {line}"
+
+    return checked
 
 
 def residual(z: np.ndarray, y: np.ndarray) -> np.ndarray:

@@ -112,7 +112,7 @@ def random(run: Evidence) -> str | None:
 
 def critic(run: Evidence) -> str | None:
     """A critic whose values are larger than any possible return, with entropy."""
-    rows = [row for row in run.folder.rows if row.get("sac/q") is not None]
+    rows = [row for row in run.rows if row.get("sac/q") is not None]
     learner: Any = run.run.agent.learners.get("policy")
     if run.made is None or not rows or getattr(learner.critic, "scale", True):
         return None
@@ -135,7 +135,7 @@ def scale(run: Evidence) -> str | None:
     after n updates they hold sums of about n tau rewards, if Adam has moved the weights that far.
     """
     learner: Any = run.run.agent.learners.get("policy")
-    rows = [row for row in run.folder.rows if {"sac/alpha", "sac/q"} <= row.keys()]
+    rows = [row for row in run.rows if {"sac/alpha", "sac/q"} <= row.keys()]
     if run.made is None or run.params is None or not rows:  # or rewards are scaled already
         return None
     act, std = run.run.agent.spec.act, float(run.made.reward.std())

@@ -139,9 +139,33 @@ def noise(run: Evidence) -> str | None:
     of it from one decision to the next, so that -2 cov is its share. What is left is predicted
     from the observation before: that of the decision has the same noise n. A contact moves and
     moves back, too, but what the decision's own observation leaves of it has no such covariance.
+    Where the observations are too many for more than a plane, what bends is left, too, and may
+    do the same: so half of the noise at least must be there when nothing acts, too.
     """
     if run.made is None or len(run.at(2)[0]) < ENOUGH:
         return None
+    noise, share, sure = _taken_back(run)
+    found = (share > NOISE) & sure
+    if found.any() and run.at_rest is not None:
+        noise_at_rest, share_at_rest, _ = _taken_back(run.at_rest)
+        found &= (share_at_rest > NOISE) & (2 * noise_at_rest > noise)
+    at = np.flatnonzero(found)
+    if not len(at):
+        return None
+    size = ", ".join(f"{each:.2g}" for each in noise[at])
+    return (
+        f"obs {_numbers(at)} moves and moves back: noise of about {size} is "
+        f"{min(share[at].max(), 1):.0%} of its change; filter the sensor, or "
+        "give the learner several observations"
+    )
+
+
+def _taken_back(run: Evidence) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """[o] std of the noise, its share of the change, whether a contact cannot make it.
+
+    Each is 0 for an entry that does not move.
+    """
+    assert run.made is not None
     k, t = run.at(1)
     y = run.change((k, t))
     next_one = (k[1:] == k[:-1]) & (t[1:] == t[:-1] + 1) & ~run.begins[k[1:], t[1:]]
@@ -152,17 +176,11 @@ def noise(run: Evidence) -> str | None:
 
     before = np.concatenate((run.known((k, t - 1), actions=1), run.made.action[k, t]), axis=1)
     older, own = both(before), both(run.known((k, t), actions=1))
-    share = -2 * older.mean(0) / y.var(0)
+    share = -2 * older.mean(0) / np.maximum(y.var(0), np.finfo(float).tiny)
     sure = -own.mean(0) > ERRORS * own.std(0) / np.sqrt(len(own))
-    at = np.flatnonzero((share > NOISE) & sure)
-    if not len(at):
-        return None
-    size = ", ".join(f"{each:.2g}" for each in np.sqrt(-older.mean(0)[at]))
-    return (
-        f"obs {_numbers(run.moving[at])} moves and moves back: noise of about {size} is "
-        f"{min(share[at].max(), 1):.0%} of its change; filter the sensor, or "
-        "give the learner several observations"
-    )
+    found = np.zeros((3, run.made.obs.shape[-1]))
+    found[:, run.moving] = np.sqrt(np.maximum(-older.mean(0), 0)), share, sure
+    return found[0], found[1], found[2] > 0
 
 
 def hidden(run: Evidence) -> str | None:

@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 
-from hybrid_rl.doctor.evidence import LONGER, Evidence, explained
+from hybrid_rl.doctor.evidence import LONGER, Evidence, explained, of_each
 from hybrid_rl.doctor.limits import (
     BOTH,
     ENOUGH,
@@ -48,7 +48,7 @@ def _lengths(run: Evidence, k: np.ndarray, t: np.ndarray) -> list[int]:
 
 def short(run: Evidence) -> str | None:
     """Episodes that are over before a policy has a say, or before it is paid."""
-    return _fixed(run) or _cut(run)
+    return _fixed(run) or of_each(_cut)(run)
 
 
 def _cut(run: Evidence) -> str | None:

@@ -4,12 +4,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
-from hybrid_rl.types import EnvState, Params
+from hybrid_rl.types import EnvState, Params, Spec, Transition
 
 START_KEY = 2_000_000  # of episodes, which no evaluation uses
 FEWEST, EPISODES = 16, 64  # of them
@@ -32,23 +33,52 @@ class Tried:
         obs, after = self.obs[:, :decisions], self.obs[:, 1 : decisions + 1]
         return obs[lives], self.action[:, :decisions][lives], after[lives]
 
+    def second_half(self) -> Transition:
+        """The second half of the episodes that last so long, as decisions of learners."""
+        which, half = self.lives.all(1), self.action.shape[1] // 2
+        obs, action, reward = (each[which, half:] for each in (self.obs, self.action, self.reward))
+        over = np.zeros_like(reward)
+        rows: Any = (obs[:, :-1], action, reward, over, over, obs[:, 1:])
+        return Transition(*rows)
 
-def episodes(episode: Episode, controller: Any, params: Params, longer: int = 1) -> Tried | None:
-    """Episodes of a controller, `longer` time limits long; None: no world of JAX."""
+
+class Still:
+    """No action."""
+
+    def init(self, spec: Spec) -> jax.Array:
+        """The action [m]."""
+        return jnp.zeros(spec.act)
+
+    def act(self, params: Params, state: jax.Array, obs: jax.Array, key: jax.Array) -> tuple:
+        """Action [m], the state, no metrics."""
+        return state, state, {}
+
+
+def episodes(
+    episode: Episode, controller: Any, params: Params, learners: int = 1, longer: int = 1
+) -> list[Tried] | None:
+    """Episodes of a controller for each learner, `longer` time limits long; None: no world of JAX.
+
+    params: [learners, ...].
+    """
     if isinstance(episode.env, External):
         return None
     steps = longer * episode.steps
     number = min(max(DECISIONS // steps, FEWEST), EPISODES)
     world = replace(episode, steps=steps)
 
-    def one(key: jax.Array) -> tuple:
+    def one(params: Params, key: jax.Array) -> tuple:
         actions, states = rollout_with_actions(world, controller, params, key, steps)
         return actions, _seen(states)
 
     keys = jax.random.split(jax.random.key(START_KEY), number)
-    made = jax.jit(jax.vmap(one))(keys)
-    action, (obs, reward, done, success) = jax.tree.map(np.asarray, made)
-    return Tried(obs, action, reward[:, 1:], ~done[:, :-1], success)
+    each = jax.vmap(jax.vmap(one, (None, 0)), (0, None), axis_size=learners)
+    made: Any = jax.tree.map(np.asarray, jax.jit(each)(params, keys))
+    found = [jax.tree.map(lambda a, i=i: a[i], made) for i in range(learners)]
+    return [
+        Tried(obs, action, reward[:, 1:], ~done[:, :-1], success)
+        for action, (obs, reward, done, success) in found
+    ]
 
 
 def _seen(states: EnvState) -> tuple:

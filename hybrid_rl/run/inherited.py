@@ -6,7 +6,7 @@ there or by reference elsewhere, is changed in the values of DIR (`resolved`).
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -113,30 +113,31 @@ def resolved(config: DictConfig, texts: Sequence[str]) -> DictConfig:
     for key in configuration.READ:
         if key in now:
             values.setdefault(key, now[key])
-    keys = {source(raw, overrides.key(each)) for each in typed} - {*CHOSEN}
-    _take(values, now, raw, keys)
+    for key in sorted({source(raw, overrides.key(each)) for each in typed} - {*CHOSEN}):
+        _put(values, key, _node(select(raw, key), select(now, key), values, raw))
     made: Any = OmegaConf.create(values)
     OmegaConf.resolve(made)
     OmegaConf.set_struct(made, True)
     return made
 
 
-def _linked(stored: Mapping[str, Any], raw: dict[str, Any]) -> dict[str, Any]:
-    """The values, in which a part that has a key of its own is a reference to that key.
+def _linked(stored: dict[str, Any], raw: dict[str, Any]) -> dict[str, Any]:
+    """The values, in which one is a reference that is one in `raw`, or a part with its own key.
 
-    raw: the composed configuration, whose references are preferred.
+    raw: the composed configuration. Values that differ from what it refers to stay.
     """
-    named = {key: node for key, node in stored.items() if _is_part(node)}
-    links = {key: REFERENCE.fullmatch(str(raw.get(key))) for key in named}
-    aliases = {k: link[1] for k, link in links.items() if link and named[k] == named.get(link[1])}
-    own = {key: node for key, node in named.items() if key not in aliases}
+
+    def referred(node: Any, path: str) -> str:
+        key = source(raw, path)
+        return key if key != path and select(stored, key) == node else ""
+
+    named = {key: part for key, part in stored.items() if _is_part(part)}
+    named = {key: part for key, part in named.items() if not referred(part, key)}
 
     def link(node: Any, path: str) -> Any:
-        if _is_part(node) and path not in own:
-            wanted = source(raw, path)
-            same = [key for key, part in own.items() if part == node]
-            if same:
-                return f"${{{wanted if wanted in same else same[0]}}}"
+        same = [k for k, part in named.items() if part == node] if path not in named else []
+        if key := referred(node, path) or next(iter(same), ""):
+            return f"${{{key}}}"
         if isinstance(node, list):
             return [link(each, f"{path}.{i}") for i, each in enumerate(node)]
         if isinstance(node, dict):
@@ -150,23 +151,12 @@ def _is_part(node: Any) -> bool:
     return isinstance(node, dict) and "_target_" in node
 
 
-def _take(
-    values: dict[str, Any], now: Mapping[str, Any], raw: dict[str, Any], keys: set[str]
-) -> None:
-    """Put into `values` what stands at or below one of the keys, or refers to it.
-
-    now: the composed configuration, resolved; raw: with its interpolations.
-    """
-
-    def visit(mine: dict[str, Any], theirs: Mapping[str, Any], at: str) -> None:
-        for name, value in theirs.items():
-            origin = source(raw, f"{at}{name}")
-            if any(origin == key or origin.startswith(f"{key}.") for key in keys):
-                mine[name] = _node(select(raw, origin), value, values, raw)
-            elif isinstance(value, dict) and isinstance(mine.get(name), dict):
-                visit(mine[name], value, f"{at}{name}.")
-
-    visit(values, now, "")
+def _put(values: dict[str, Any], path: str, value: Any) -> None:
+    """Put what is composed at `path` into the values, if they have a part there."""
+    above, _, name = path.rpartition(".")
+    holder = select(values, above) if above else values
+    if isinstance(holder, dict) and value is not LACKING:
+        holder[name] = value
 
 
 def _node(node: Any, value: Any, values: dict[str, Any], raw: dict[str, Any]) -> Any:

@@ -1,9 +1,10 @@
 """What a controller imagines, as paths through space.
 
 A path in a model is one of planning states. It can be drawn where the positions follow from the
-observation: of a robot of which each coordinate is observed, itself or as sine and cosine, or at
-least its velocity; of an analytic world, from its state. Whether an environment is of such a kind
-is tried on states of it. Paths on the world itself have its states.
+observation: by the method `points` of an environment; of a robot of which each coordinate is
+observed, itself or as sine and cosine, or at least its velocity; of an analytic world, from its
+state. Whether an environment is of one of the latter kinds is tried on states of it. Paths on the
+world itself have its states.
 """
 
 from collections.abc import Callable
@@ -27,12 +28,16 @@ PLANAR = 3  # degrees of freedom of a torso at least
 NEAR = 1e-4  # of positions that a reading gets right
 TRIED = 20  # decisions of random actions on which it is tried
 
-Reading = Callable[[EnvState, Any], Array]  # state, path x [T+1, ...] -> qpos [T+1, nq]
+# state, path x [T+1, ...] -> qpos [T+1, nq] that is drawn, or [T+1, n, 3] of n points [m]
+Reading = Callable[[EnvState, Any], Array]
 
 
 def reading(episode: Episode) -> Reading | None:
     """The first kind of reading that fits; None: its imagined states cannot be drawn."""
     env, pose = episode.env, pose_of(episode.env)
+    if hasattr(env, "points"):
+        points: Any = env
+        return lambda state, x: points.points(state, x[:, : env.spec.obs])
 
     def stepped(state: EnvState, key: Array) -> tuple[EnvState, EnvState]:
         action = jax.random.uniform(key, (env.spec.act,), minval=-1, maxval=1)
@@ -45,29 +50,33 @@ def reading(episode: Episode) -> Reading | None:
         read = make(episode, states)
         if read is None:
             continue
-        fits = jax.vmap(lambda state, read=read: read(state, state.obs[None])[0] - pose(state))
-        if jax.eval_shape(lambda s: pose(s), first).shape == fits(states).shape[1:] and bool(
-            (jnp.abs(_turn(fits(states))) < NEAR).all()
-        ):
+        found = jax.vmap(lambda state, read=read: read(state, state.obs[None])[0])(states)
+        drawn = jax.vmap(pose)(states)
+        if found.shape == drawn.shape and bool((jnp.abs(_turn(found - drawn)) < NEAR).all()):
             return read
     return None
 
 
 def _of_robot(episode: Episode, states: EnvState) -> Reading | None:
-    """Of a robot of MuJoCo, each of whose positions is observed, or moves as an observed speed."""
-    found = simulated(states)
+    """Of a robot of MuJoCo, each of whose positions is observed, or moves as an observed speed.
+
+    What is drawn beside it, such as a target, stays.
+    """
+    found, pose = simulated(states), pose_of(episode.env)
     if len(found) != 1:
         return None
     q, v = (np.asarray(each) for each in (found[0].qpos, found[0].qvel))
     obs, dt = np.asarray(states.obs), episode.spec.dt
     each = [_source(obs, q[:, i], v[:, min(i, v.shape[1] - 1)], dt) for i in range(q.shape[1])]
     known = [source for source in each if source is not None]
-    if len(known) < len(each):
+    nq = len(jax.eval_shape(pose, jax.tree.map(lambda leaf: leaf[0], states)))
+    if len(known) < len(each) or nq < len(known):
         return None
 
     def read(state: EnvState, x: Array) -> Array:
         start = simulated(state)[0].qpos
-        return jnp.stack([of(x, start[i]) for i, of in enumerate(known)], 1)
+        beside = jnp.broadcast_to(pose(state)[len(known) :], (len(x), nq - len(known)))
+        return jnp.hstack([jnp.stack([of(x, start[i]) for i, of in enumerate(known)], 1), beside])
 
     return read
 
@@ -131,8 +140,8 @@ def _of_state(env: Any, data: Callable[[Array], Array]) -> Reading:
     return read
 
 
-def poses(read: Reading | None, env: Any, state: EnvState, paths: Path) -> Array | None:
-    """Positions [K, T+1, nq] along imagined paths [K, ...] from `state`; None: not to be drawn."""
+def seen(read: Reading | None, env: Any, state: EnvState, paths: Path) -> Array | None:
+    """What is drawn of imagined paths [K, ...] from `state`: a Reading of each; None: nothing."""
     if isinstance(paths.x, EnvState):
         return jax.vmap(jax.vmap(pose_of(env)))(paths.x)
     return None if read is None else jax.vmap(lambda x: read(state, x))(paths.x)
@@ -175,6 +184,16 @@ def point_of(model: mujoco.MjModel) -> tuple[int, float]:
         return int(moving[0]), 1.0
     same = model.body_treeid[moving] == model.body_treeid[moving[0]]  # not a block beside an arm
     return int(moving[same][-1]), 2.0
+
+
+def lines(model: mujoco.MjModel, drawn: np.ndarray) -> np.ndarray:
+    """Lines [K, n, T, 3] [m] of K paths.
+
+    drawn: [K, T, nq], of which it is that of `point_of`, or [K, T, n, 3] of n points.
+    """
+    if drawn.ndim == 4:
+        return drawn.swapaxes(1, 2)
+    return track(model, drawn, *point_of(model))[:, None]
 
 
 def track(model: mujoco.MjModel, poses: np.ndarray, body: int, reach: float = 1.0) -> np.ndarray:

@@ -27,7 +27,7 @@ class Decision(NamedTuple):
     u: Array  # [m]
     control: Any  # its next state
     metrics: dict[str, Array]
-    poses: Array | None  # [K, T+1, nq] along the candidates; None: not to be drawn
+    drawn: Array | None  # [K, ...] of the candidates, for `imagined.lines`; None: nothing
     chosen: Array  # [] the candidate that acts
 
 
@@ -106,7 +106,7 @@ def actor(subject: Subject, mode: str, params: Params, numbers: Numbers) -> Acto
         drawn, chosen = None, jnp.zeros((), jnp.int32)
         if found is not None:
             first = jax.tree.map(lambda leaf: leaf[: imagined.MOST], found.paths)
-            drawn, chosen = imagined.poses(read, episode.env, state, first), found.chosen
+            drawn, chosen = imagined.seen(read, episode.env, state, first), found.chosen
         return Decision(u, control, metrics, drawn, chosen)
 
     key, resting = jax.random.key(0), controllers[mode].init

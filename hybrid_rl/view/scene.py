@@ -14,10 +14,10 @@ from mjviser import ViserMujocoScene
 from viser import SceneNodeDragEvent, ViserServer
 
 from hybrid_rl.envs.mujoco import scenery
-from hybrid_rl.view.imagined import point_of, track
+from hybrid_rl.view.imagined import lines
 from hybrid_rl.view.push import Pull
 
-PALE, BRIGHT = (70, 90, 120), (255, 122, 0)  # colours of lines
+PALE, BRIGHT = (110, 135, 175), (255, 122, 0)  # of lines, on a light and a dark ground
 BACK = 1.6  # times as far as in a video, as the panel covers a part
 
 
@@ -30,7 +30,6 @@ class Scene:
         self.model = scenery.dressed(scenery.scene_of(env))
         self._data = mujoco.MjData(self.model)
         self._drawn = ViserMujocoScene(server, self.model, num_envs=1)
-        self._point = point_of(self.model)
         self._lines: dict[str, Any] = {}
         for group in self._drawn._mesh_groups:
             group.handle.on_drag("left")(self._dragged(group.body_ids))
@@ -48,22 +47,22 @@ class Scene:
         mujoco.mj_comPos(self.model, self._data)
         self._drawn.update_from_mjdata(self._data)
 
-    def imagine(self, poses: np.ndarray | None, chosen: int = 0) -> None:
-        """Paths of one point at poses [K, T, nq], the chosen one bright; None: no paths."""
-        paths = np.zeros((0, 2, 3)) if poses is None else track(self.model, poses, *self._point)
+    def imagine(self, drawn: np.ndarray | None, chosen: int = 0) -> None:
+        """The `lines` of K paths, those of the chosen one bright; None: no paths."""
+        paths = np.zeros((0, 1, 2, 3)) if drawn is None else lines(self.model, drawn)
         self._line("candidates", paths, PALE, 1.5)
         self._line("chosen", paths[chosen : chosen + 1], BRIGHT, 5.0)
 
     def _line(
         self, name: str, paths: np.ndarray, colour: tuple[int, int, int], width: float
     ) -> None:
-        """Paths [K, T, 3] as lines; nothing is sent that would not be seen."""
+        """Paths [K, n, T, 3] as lines; nothing is sent that would not be seen."""
         handle = self._lines.get(name)
         if not len(paths):
             if handle is not None:
                 handle.visible = False
             return
-        ends = np.stack([paths[:, :-1], paths[:, 1:]], 2).reshape(-1, 2, 3)
+        ends = np.stack([paths[..., :-1, :], paths[..., 1:, :]], -2).reshape(-1, 2, 3)
         points = (ends + self.offset).astype(np.float32)
         if handle is None:
             handle = self._lines[name] = self._server.scene.add_line_segments(

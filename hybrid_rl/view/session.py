@@ -109,11 +109,11 @@ class Session:
         """The robot and its imagined paths."""
         player, decided = self.player, self.player.decided
         self._scene.draw(np.asarray(player.cast.world.pose(player.state)))
-        poses = decided.poses if decided and self.wishes.candidates else None
-        if poses is None or decided is None:
+        drawn = decided.drawn if decided and self.wishes.candidates else None
+        if drawn is None or decided is None:
             self._scene.imagine(None)
         else:
-            self._scene.imagine(np.asarray(poses), int(decided.chosen))
+            self._scene.imagine(np.asarray(drawn), int(decided.chosen))
 
     def _report(self) -> None:
         """Plots, sliders and a line, a few times a second."""

@@ -139,6 +139,32 @@ def test_the_target_moves():
     np.testing.assert_allclose(state.obs[6:9], relative, atol=1e-6)  # level at the start
 
 
+def test_points_of_observations_follow_a_moving_target():
+    env = Quadcopter("native", task="track", target_speed=1.0)
+    first = jitted(env, "reset")(jax.random.key(0))
+    path = _fly(env, first, np.random.default_rng(0).uniform(-1, 1, (40, 4)))
+    points = env.points(first, jnp.concatenate((first.obs[None], path.obs)))
+    np.testing.assert_allclose(points[0, 0], first.data.qpos[:3])
+    np.testing.assert_allclose(points[1:, 0], path.data.qpos[:, :3], atol=1e-4)
+
+
+def test_wind_is_a_force_on_the_body():
+    """As MuJoCo C has it: m a along x, in a fall with moving rotors."""
+    env, actions = Quadcopter("native", wind=3.0), np.random.default_rng(1).uniform(-1, 1, (100, 4))
+    state = jitted(env, "reset")(jax.random.key(2))
+    model = mjcf.load("quadcopter.xml")
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = state.data.qpos, state.data.qvel
+    data.xfrc_applied[1, 0] = 3.0 * MASS
+    for action in actions:
+        data.ctrl[:4] = 6 * action
+        mujoco.mj_step(model, data)
+    last = jax.tree.map(lambda a: a[-1], _fly(env, state, actions)).data
+    np.testing.assert_allclose(last.qvel, data.qvel, atol=1e-4)
+    np.testing.assert_allclose(last.qpos[:3], data.qpos[:3], atol=5e-3)  # half a step ahead
+    assert data.qvel[0] > 1.0
+
+
 def test_another_asset(tmp_path):
     file = tmp_path / "heavy.xml"
     file.write_text(mjcf.text("quadcopter.xml").replace('mass="0.6"', 'mass="1.2"'))

@@ -111,6 +111,16 @@ def test_it_is_drawn_where_the_tip_was_observed(paths) -> None:
     assert model.camera("track").id >= 0
 
 
+def test_the_points_of_observations_are_those_of_the_tip(paths) -> None:
+    """The height, which is not observed, within 2 mm."""
+    _, _, states = paths
+    one = jax.tree.map(lambda a: a[0], states)
+    got = WORLD.points(jax.tree.map(lambda a: a[0], one), one.obs)
+    want = jax.vmap(TIP.pose)(one.data.qpos)[0]
+    np.testing.assert_allclose(got[:, 0, :2], want[:, :2], atol=1e-6)
+    np.testing.assert_allclose(got[:, 0, 2], want[:, 2], atol=2e-3)
+
+
 @pytest.mark.parametrize(
     ("fields", "words"),
     [({"lead": 0.0}, "lead=0.0: must be above 0"), ({"low": (0.9, 0.0)}, "low=")],

@@ -120,6 +120,47 @@ def test_pose_has_the_size_of_the_scene(env):
     assert model.camera("track").id >= 0
 
 
+POINTS = {
+    "quadcopter": lambda data: [data.body("quadcopter").xpos],
+    "sawyer_push": lambda data: [data.site("tip").xpos, data.body("cube").xpos],
+    "panda_stack": lambda data: [data.site("tool").xpos, data.body("block").xpos],
+}
+
+
+def placed(task):
+    """States of eight decisions, and where MuJoCo has their points [8, n, 3]."""
+    env = make(task, "native")
+    states = [jax.tree.map(lambda a, t=t: a[(*OTHER, t)], rollout(env)) for t in range(8)]
+    model = mujoco.MjModel.from_xml_string(env.scene())
+    data, points = mujoco.MjData(model), []
+    for state in states:
+        data.qpos[:] = env.pose(state)
+        mujoco.mj_kinematics(model, data)
+        points.append(np.array(POINTS[task](data)))
+    return env, states[0], np.stack([state.obs for state in states]), np.array(points)
+
+
+@pytest.mark.parametrize("task", POINTS)
+def test_points_of_observations_are_where_mujoco_has_them(task):
+    """From a state and the observations after it."""
+    env, first, obs, want = placed(task)
+    near = 2e-3 if task == "sawyer_push" else 1e-5  # the height of its rod is not observed
+    np.testing.assert_allclose(env.points(first, obs), want, atol=near)
+    assert np.ptp(want[:, 0], axis=0).max() > 0.01
+
+
+def test_points_of_other_observations_of_the_stacked_block():
+    env, first, obs, want = placed("panda_stack")
+    (tool, block), goal = want.swapaxes(0, 1), np.asarray(env._goal(first.data))
+    relative = np.concatenate((block - tool, goal - block, obs[:, 6:7]), 1)
+    other = replace(env, observation="relative")
+    np.testing.assert_allclose(other.points(first, relative), want, atol=1e-5)
+    other = replace(env, observation="stage")
+    for closed, left, hand in ((1, goal - block, block), (0, block[0] - tool, tool)):
+        stage = np.concatenate((left, np.full((8, 1), closed), block[:, 2:]), 1)
+        np.testing.assert_allclose(other.points(first, stage)[:, 0], hand, atol=1e-5)
+
+
 @pytest.mark.parametrize("task", TASKS)
 def test_resets_differ_by_key_and_repeat(task):
     env = make(task, "native")

@@ -13,12 +13,15 @@ from tiny import call, call_train, only_line, run
 from hybrid_rl import trained
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import SawyerPush
+from hybrid_rl.envs.sawyer_torque import SawyerTorque
+from hybrid_rl.envs.sprk import Sprk
 from hybrid_rl.rewards.aim import Aim
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.view import __main__ as view
@@ -72,6 +75,9 @@ def test_sliders_have_the_range_of_their_field():
     assert found["reward.effort"].least == 0
     (mass,) = [one for one in sliders("env", HalfCheetah()) if one.key == "env.mass"]
     assert mass.least > 0
+    for world in (Quadcopter(), QuadcopterSE3()):
+        (wind,) = [one for one in sliders("env", world) if one.key == "env.wind"]
+        assert (wind.value, wind.least, wind.most) == (0, -5, 5)
 
 
 def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
@@ -99,10 +105,16 @@ def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
 
 @pytest.mark.parametrize(
     ("env", "fits"),
-    [(HalfCheetah(), 0.05), (Cartpole(), 1e-5), (Pendulum(), 1e-5), (Quadcopter(), None)],
+    [
+        (HalfCheetah(), 0.05),
+        (Cartpole(), 1e-5),
+        (Pendulum(), 1e-5),
+        (SawyerTorque(), 1e-5),
+        (Sprk(), None),
+    ],
 )
 def test_positions_follow_from_observations(env, fits):
-    """Of a true path of 20 decisions; not of a drone, which observes no position."""
+    """Of a true path of 20 decisions; not of a ball seen in another frame."""
     episode = Episode(env)
     read = imagined.reading(episode)
     if fits is None:
@@ -118,9 +130,10 @@ def test_positions_follow_from_observations(env, fits):
 
 def test_the_path_of_a_pendulum_is_that_of_its_tip():
     model = scenery.dressed(scenery.scene_of(Pendulum()))
-    points = imagined.track(
-        model, np.array([[[0.0], [np.pi / 2], [np.pi]]]), *imagined.point_of(model)
-    )
+    poses = np.array([[[0.0], [np.pi / 2], [np.pi]]])
+    points = imagined.track(model, poses, *imagined.point_of(model))
+    (line,) = imagined.lines(model, poses)
+    np.testing.assert_array_equal(line, points)
     middle = points[0, [0, 2]].mean(0)
     away = np.linalg.norm(points[0] - middle, axis=1)
     np.testing.assert_allclose(away, away[0], rtol=1e-3)
