@@ -43,14 +43,14 @@ class MLP(nn.Module):
     @nn.compact
     def __call__(self, x: Array) -> Array:
         """The outputs y [..., out] for x [..., d]."""
-        kind = precision.of_hidden()
+        kind, of_products = precision.of_hidden(), precision.of_products()
         for width in self.hidden:
-            x = Dense(width, SPREAD, kind)(x)
+            x = Dense(width, SPREAD, kind, of_products)(x)
             if self.layer_norm:
-                x = LayerNorm(self.layer_norm != "shift", kind)(x)
+                x = LayerNorm(self.layer_norm != "shift", kind, of_products)(x)
             x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
-        return Dense(self.out, last)(x)
+        return Dense(self.out, last, precision=of_products)(x)
 
 
 class Perceptron(NamedTuple):

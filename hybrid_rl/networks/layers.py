@@ -7,18 +7,7 @@ from flax import linen as nn
 from flax.linen.dtypes import promote_dtype
 from jax import Array
 
-from hybrid_rl.core.row_sums import repeated
-from hybrid_rl.networks import precision
-
-FEW = 64  # rows, of which a sum is a sum
-
-
-def _along(v: Array, x: Array) -> Array:
-    """v [d] in each row of x [..., d]."""
-    rows = x.size // x.shape[-1]
-    if rows < FEW:
-        return jnp.broadcast_to(v, x.shape)
-    return repeated(v, rows, precision.of_products()).reshape(x.shape)
+from hybrid_rl.core.row_sums import along
 
 
 class Dense(nn.Module):
@@ -27,6 +16,7 @@ class Dense(nn.Module):
     features: int
     kernel_init: nn.initializers.Initializer
     dtype: Any = None  # of products and results; None: that of x and W
+    precision: Any = None  # of products of float32 matrices
 
     @nn.compact
     def __call__(self, x: Array) -> Array:
@@ -34,8 +24,8 @@ class Dense(nn.Module):
         kernel = self.param("kernel", self.kernel_init, (x.shape[-1], self.features))
         bias = self.param("bias", nn.initializers.zeros, (self.features,))
         x, kernel, bias = promote_dtype(x, kernel, bias, dtype=self.dtype)
-        y = jnp.matmul(x, kernel, precision=precision.of_products())
-        return y + _along(bias, y)
+        y = jnp.matmul(x, kernel, precision=self.precision)
+        return y + along(bias, y, self.precision, self.dtype)
 
 
 class LayerNorm(nn.Module):
@@ -43,12 +33,15 @@ class LayerNorm(nn.Module):
 
     use_scale: bool = True
     dtype: Any = None  # of results; None: that of x
+    precision: Any = None  # of the gradients' sums of float32 rows
 
     @nn.compact
     def __call__(self, x: Array) -> Array:
         """y [..., d] for x [..., d]."""
+        numbers = self.precision, self.dtype
         y = nn.LayerNorm(use_scale=False, use_bias=False, dtype=jnp.float32)(x)
         if self.use_scale:
-            y = y * _along(self.param("scale", nn.initializers.ones, x.shape[-1:]), y)
-        y = y + _along(self.param("bias", nn.initializers.zeros, x.shape[-1:]), y)
-        return y.astype(self.dtype or x.dtype)
+            scale = self.param("scale", nn.initializers.ones, x.shape[-1:])
+            y = y * along(scale, y, *numbers)
+        shift = self.param("bias", nn.initializers.zeros, x.shape[-1:])
+        return (y + along(shift, y, *numbers)).astype(self.dtype or x.dtype)
