@@ -87,6 +87,16 @@ class Replay:
         rows = jax.lax.dynamic_update_index_in_dim(memory.rows, _packed(new), slot, 0)
         return Memory(rows, memory.count + 1)
 
+    def expecting(self, memory: Memory, obs: Array, action: Array) -> Memory:
+        """The memory with decisions `action` [E, m] at obs [E, o] whose outcome is to come.
+
+        `sample` draws none of them, and reads of them the action, as that of their predecessors'
+        successors.
+        """
+        unknown = jnp.full(len(obs), jnp.nan)
+        new = Transition(obs, action, *[unknown] * 3, jnp.full_like(obs, jnp.nan))
+        return self.add(memory, new)
+
     def newest(self, memory: Memory, spec: Spec) -> Transition:
         """The last decision [E, ...] of every environment; flags are 0 or 1."""
         slot = (memory.count - 1) % memory.rows.shape[0]

@@ -1,27 +1,25 @@
-"""The loop of training for an environment on the host, between two compiled programs.
+"""The loop of training for an environment on the host, between three compiled programs.
 
-    u = decide(state)        on the device
-    outcome = copies.step(u)         on the host
-    state = learn(state, outcome)    on the device
+    u = decide(state)                      on the device
+    learners = learn(learners, memory)     on the device, meanwhile
+    outcome = copies.step(u)                   on the host
+    state = observe(state, outcome)        on the device
 
-It has the interface of `Loop` and draws the same random numbers. Both programs donate the state:
-the replay memory is not copied. Metrics stay on the device until the end of a call.
+It has the interface of `Loop` and draws the same random numbers. `Replay.sample` draws no decision
+without its successor in the memory, so what learns from samples needs no outcome of the newest
+decision: it learns bit for bit the same while the environment steps. A learner of `latest` data
+does need it, and then learning comes last.
 
-With `overlap` of the environment a thread learns while the environment steps. Actions are then
-chosen before the learning from the decision before them begins; `decide` gets that one's outcome,
-and donates nothing.
-
-    u' = decide(state, outcome)
-    state = learn(state, outcome)    in a thread, meanwhile on the host
-    outcome' = copies.step(u')
+The programs run one after another in the order of their calls, which do not wait for them, and
+donate what they change: the replay memory is not copied. Metrics stay on the device until the end
+of a call.
 """
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -29,6 +27,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core.branching import where
+from hybrid_rl.data.replay import Memory
 from hybrid_rl.envs.adapters.copies import Copies, Outcome
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
@@ -48,13 +47,8 @@ RESUMED += "decisions after this one differ from those of a run without the inte
 class HostLoop(Loop):
     """Trains one learner per seed; all environments of all learners step side by side."""
 
-    deciding: Any = field(default=None, init=False)  # the trace of the first program
-    rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
-
-    @property
-    def overlap(self) -> bool:
-        """Whether a thread learns while the environment steps."""
-        return getattr(self.agent.episode.env, "overlap", False)
+    sides: Any = field(default=None, init=False)  # the traces of `decide` and `observe`
+    rows: Any = field(default=None, init=False)  # [stride, S, ...] of the metrics of each program
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -62,28 +56,38 @@ class HostLoop(Loop):
         return (RESUMED,)
 
     def trace(self, state: AgentState) -> Any:
-        """The trace of the program that learns; that of the other one is kept."""
-        began, zero = perf_counter(), jnp.zeros((), jnp.int32)
-        got, axes = _standing(state.env), (0, 0, 0, 0, None)
-        given: tuple = (*_read(state), zero)
-        if self.overlap:
-            axes, given = (*axes, 0, None), (*given, got, jnp.zeros((), bool))
-        decide = jax.vmap(self._decide, axes)
-        parts = tuple(REPLICATED if axis is None else SEEDS for axis in axes), SEEDS
-        donated = () if self.overlap else 1  # the learning that follows gets all of the state
-        self.deciding = self.shard(decide, *parts, donate_argnums=donated).trace(*given)
-        u, _, planned = jax.eval_shape(decide, *given)
-        parts = (SEEDS, METRICS, SEEDS, SEEDS, SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
-        self.rows = jax.eval_shape(self._rows, state, planned, u, got, zero)
-        learn = self.shard(self._learn, *parts, donate_argnums=(0, 1))
-        traced = learn.trace(state, self.rows, planned, u, got, zero, zero)
+        """The trace of the program that learns; those of the others are kept."""
+        began, at = perf_counter(), jnp.zeros(2, jnp.int32)
+        acting, learned = _parts(state)
+        u = jax.eval_shape(jax.vmap(self.agent.decide, (0, None)), state, at[1])[0]
+
+        def traced(f: Callable[..., Any], *given: Any, outs: int) -> tuple[Any, Any]:
+            """Of f(*given, step) -> (*outs, metrics), whose first argument is donated."""
+            batched = jax.vmap(f, (*[0] * len(given), None))
+            rows = jax.tree.map(self._row, jax.eval_shape(batched, *given, at[1])[-1])
+
+            def program(*given: Any) -> Any:
+                *given, rows, at = given
+                *found, metrics = batched(*given, at[1])
+                put = partial(jax.lax.dynamic_update_index_in_dim, index=at[0], axis=0)
+                return *found, jax.tree.map(lambda row, m: put(row, m), rows, metrics)
+
+            parts = (*[SEEDS] * len(given), METRICS, REPLICATED), (*[SEEDS] * outs, METRICS)
+            sharded = self.shard(program, *parts, donate_argnums=(0, len(given)))
+            return sharded.trace(*given, rows, at), rows
+
+        decide = traced(self._decide, acting, learned, outs=2)
+        observe = traced(self._observe, acting, u, _standing(state.env), outs=1)
+        learn = traced(self._learn, learned, state.memory, outs=1)
+        self.sides, self.rows = (decide[0], observe[0]), (decide[1], observe[1], learn[1])
         self.compile_s += perf_counter() - began
-        return traced
+        return learn[0]
 
     def compile(self, state: AgentState, traced: Any = None) -> "HostProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
         learn = super().compile(state, self.trace(state) if traced is None else traced)
-        return HostProgram(self, super().compile(state, self.deciding), learn)
+        decide, observe = (super(HostLoop, self).compile(state, side) for side in self.sides)
+        return HostProgram(self, decide, observe, learn)
 
     def copies(self) -> Copies:
         """The environments [S * E] of training, each with a seed of its own."""
@@ -102,60 +106,59 @@ class HostLoop(Loop):
         return self.shard(jax.vmap(one), SEEDS, SEEDS, donate_argnums=0)(state, obs)
 
     def _decide(
-        self,
-        learners: Any,
-        control: Any,
-        env: Any,
-        key: Any,
-        step: Any,
-        got: Any = None,
-        *made: Any,
-    ) -> tuple[Array, Any, dict[str, Array]]:
-        """Actions [E, m] of one learner, the states of its controllers, and metrics.
+        self, acting: "Acting", learned: "Learned", step: Array
+    ) -> tuple[Array, "Acting", dict[str, Array]]:
+        """Actions [E, m] of one learner, which its memory has now, and metrics."""
+        u, state, planned = self.agent.decide(_joined(acting, learned), step)
+        memory = self.agent.replay.expecting(acting.memory, acting.env.obs, u)
+        return u, Acting(acting.env, state.control, memory), planned
 
-        got: with overlap, the outcome [E, ...] of a decision at `env`, if one was `made` [].
-        """
-        if got is not None:
-            now, after = states(env, got)
-            begun = where(now.done, self.agent.first_control(), control)
-            following = begun, after, Keys.of(key, self.agent.num_envs).next
-            control, env, key = where(made[0], following, (control, env, key))
-        memory: Any = None
-        state = AgentState(env, control, memory, learners, key)
-        u, after, planned = self.agent.decide(state, step)
-        return u, after.control, planned
-
-    def _step(
-        self, state: AgentState, planned: Any, u: Array, got: Outcome, step: Array
-    ) -> tuple[AgentState, dict[str, Array]]:
+    def _observe(
+        self, acting: "Acting", u: Array, got: Outcome, _: Array
+    ) -> tuple["Acting", dict[str, Array]]:
         """One learner after its actions u [E, m] had the outcome `got` [E, ...]."""
-        now, after = states(state.env, got)
-        state, learned = self.agent.learn(self.agent.observe(state, u, now, after), step)
-        return state, {**planned, **learned, **outcome(u, now)}
+        now, after = states(acting.env, got)
+        memory = acting.memory.replace(count=acting.memory.count - 1)  # the row is written again
+        state = _joined(acting._replace(memory=memory), Learned({}, jax.random.key(0)))
+        return _parts(self.agent.observe(state, u, now, after))[0], outcome(u, now)
 
     def _learn(
-        self, state: Any, rows: Any, planned: Any, u: Array, got: Outcome, i: Array, step: Array
-    ) -> tuple[Any, Any]:
-        """All learners, and their metrics in row i of `rows` [stride, S, ...]."""
-        state, metrics = jax.vmap(self._step, (0, 0, 0, 0, None))(state, planned, u, got, step)
-        put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
-        return state, jax.tree.map(lambda row, m: put(row, m), rows, metrics)
+        self, learned: "Learned", memory: Memory, step: Array
+    ) -> tuple["Learned", dict[str, Array]]:
+        """One learner after the updates of a decision."""
+        state = _joined(Acting(None, None, memory), learned)
+        state, metrics = self.agent.learn(state, step)
+        return _parts(state)[1], metrics
 
-    def _rows(self, *arguments: Any) -> Any:
-        """Rows [stride, S, ...] of zeros for the metrics of one call; arguments: of `_step`."""
-        shapes = jax.eval_shape(jax.vmap(self._step, (0, 0, 0, 0, None)), *arguments)[1]
-        return jax.tree.map(lambda m: jnp.zeros((self.stride, *m.shape), m.dtype), shapes)
+    def _row(self, metric: Any) -> jax.ShapeDtypeStruct:
+        """Of a metric [S, ...] in each round of a call, [stride, S, ...]."""
+        return jax.ShapeDtypeStruct((self.stride, *metric.shape), metric.dtype)
+
+
+class Acting(NamedTuple):
+    """What deciding and observing change of an agent's state."""
+
+    env: Any
+    control: Any
+    memory: Memory
+
+
+class Learned(NamedTuple):
+    """What learning changes of it."""
+
+    learners: Any
+    key: Array
 
 
 class HostProgram:
     """What trains: (state, first step, rounds) -> (state, metrics [stride, S, ...])."""
 
-    def __init__(self, loop: HostLoop, decide: Any, learn: Any) -> None:
-        """decide, learn: the compiled halves."""
-        self.loop, self.decide, self.learn = loop, decide, learn
+    def __init__(self, loop: HostLoop, decide: Any, observe: Any, learn: Any) -> None:
+        """decide, observe, learn: compiled."""
+        self.loop, self.decide, self.observe, self.learn = loop, decide, observe, learn
         self.memory_analysis = learn.memory_analysis
+        self.early = all(each.data == "uniform" for each in loop.agent.learners.values())
         self.copies: Copies | None = None  # made at the first call
-        self.ahead: Any = None  # with overlap, what was decided for the next call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
         """As the program of `Loop`.
@@ -163,53 +166,22 @@ class HostProgram:
         Raises:
             WorldError: if an environment raises an error, gives NaN, or takes too long.
         """
-        loop, envs, first = self.loop, self.loop.agent.num_envs, int(start)
-        each = (len(loop.seeds), envs)
+        loop, count = self.loop, np.arange(int(rounds), dtype=np.int32)
+        envs = loop.agent.num_envs
         if self.copies is None:
             self.copies = loop.copies()
-            state = loop.restarted(state, self.copies.reset().reshape(*each, -1))
-        rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
-        steps = [np.int32(first + i * envs) for i in range(int(rounds))]
-        state, rows = (self._overlapping if loop.overlap else self._in_turn)(state, rows, steps)
-        return state, jax.device_get(rows)
-
-    def _in_turn(self, state: AgentState, rows: Any, steps: list[np.int32]) -> tuple[Any, Any]:
-        """Learning from each decision ends before the next one."""
-        for i, step in enumerate(steps):
-            u, control, planned = self.decide(*_read(state), step)
-            state = state.replace(control=control)
-            state, rows = self.learn(state, rows, planned, u, self._outcome(u), np.int32(i), step)
-        return state, rows
-
-    def _overlapping(self, state: AgentState, rows: Any, steps: list[np.int32]) -> tuple[Any, Any]:
-        """Learning from a decision runs while the environment makes the next one.
-
-        That one, also the first of the next call, was chosen before, so that a run does not depend
-        on where its calls end.
-        """
-
-        def learn() -> tuple[Any, Any]:
-            return state, rows
-
-        with ThreadPoolExecutor(1) as thread:
-            for i, step in enumerate(steps):
-                u, control, planned = self.ahead or self._ahead(state, step)
-                learning = thread.submit(learn)
-                got = self._outcome(u)
-                state, rows = learning.result()
-                state = state.replace(control=control)
-                self.ahead = self._ahead(state, step + np.int32(self.loop.agent.num_envs), got)
-                learn = partial(self.learn, state, rows, planned, u, got, np.int32(i), step)
-        return learn()
-
-    def _ahead(self, state: AgentState, step: np.int32, got: Outcome | None = None) -> tuple:
-        """Decision `step`, after one at `state` that had the outcome `got`, if any.
-
-        It waits for the actions, as learning is then given what was read.
-        """
-        after = (got or _standing(state.env), np.bool_(got is not None))
-        u, *rest = self.decide(*_read(state), step, *after)
-        return np.asarray(u), *rest
+            obs = self.copies.reset().reshape(len(loop.seeds), envs, -1)
+            state = loop.restarted(state, obs)
+        acting, learned = _parts(state)
+        planned, led, metrics = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
+        for at in np.stack((count, int(start) + count * envs), 1):  # row, decision of the run
+            u, acting, planned = self.decide(acting, learned, planned, at)
+            if self.early:
+                learned, metrics = self.learn(learned, acting.memory, metrics, at)
+            acting, led = self.observe(acting, u, self._outcome(u), led, at)
+            if not self.early:
+                learned, metrics = self.learn(learned, acting.memory, metrics, at)
+        return _joined(acting, learned), jax.device_get({**planned, **metrics, **led})
 
     def _outcome(self, u: Any) -> Outcome:
         """What the actions u [S, E, m] lead to, [S, E, ...]."""
@@ -219,13 +191,18 @@ class HostProgram:
 
 
 def _standing(env: EnvState) -> Outcome:
-    """An outcome of the shapes of one at `env`, for a decision that has none before it."""
+    """An outcome of the shapes of one at `env`."""
     return Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
 
 
-def _read(state: AgentState) -> tuple:
-    """What deciding reads of the state; not the memory, as each array of a call takes time."""
-    return state.learners, state.control, state.env, state.key
+def _parts(state: AgentState) -> tuple[Acting, Learned]:
+    """The two parts of a state."""
+    return Acting(state.env, state.control, state.memory), Learned(state.learners, state.key)
+
+
+def _joined(acting: Acting, learned: Learned) -> AgentState:
+    """The state of the two parts."""
+    return AgentState(*acting, *learned)
 
 
 class HostEvaluator:

@@ -98,9 +98,6 @@ class RobotLoop(HostLoop):
         if hasattr(self, "program"):
             self.program.process.stop()
 
-    def _row(self, shape: Any) -> jax.ShapeDtypeStruct:
-        return jax.ShapeDtypeStruct((self.stride, *shape.shape), shape.dtype)
-
     def _observed(
         self, state: AgentState, action: Array, got: Outcome
     ) -> tuple[AgentState, dict[str, Array]]:
