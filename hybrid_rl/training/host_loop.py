@@ -1,25 +1,24 @@
-"""The loop of training for an environment on the host, between three compiled programs.
+"""The loop of training for an environment on the host, beside a compiled program.
 
-    u = decide(state)                      on the device
-    learners = learn(learners, memory)     on the device, meanwhile
-    outcome = copies.step(u)                   on the host
-    state = observe(state, outcome)        on the device
+    u = decide(state)                  in the program, which sends u and goes on
+    learners = learn(learners, memory)     in the program     meanwhile
+    outcome = copies.step(u)               on the host        meanwhile
+    state = observe(state, outcome)    in the program of the next decision, or `close`
 
 It has the interface of `Loop` and draws the same random numbers. `Replay.sample` draws no decision
 without its successor in the memory, so what learns from samples needs no outcome of the newest
-decision: it learns bit for bit the same while the environment steps. A learner of `latest` data
-does need it, and then learning comes last.
+decision, and learns the same while the environment steps. A learner of `latest` data needs it:
+then `close` ends each decision, and learns.
 
-The programs run one after another in the order of their calls, which do not wait for them, and
-donate what they change: the replay memory is not copied. Metrics stay on the device until the end
-of a call.
+The programs donate the state: the replay memory is not copied. Metrics stay on the device until
+the end of a call.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -27,7 +26,6 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core.branching import where
-from hybrid_rl.data.replay import Memory
 from hybrid_rl.envs.adapters.copies import Copies, Outcome
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
@@ -37,6 +35,7 @@ from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.rollout import act
+from hybrid_rl.training.sending import letters, send
 from hybrid_rl.types import EnvState, Params
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
@@ -47,8 +46,13 @@ RESUMED += "decisions after this one differ from those of a run without the inte
 class HostLoop(Loop):
     """Trains one learner per seed; all environments of all learners step side by side."""
 
-    sides: Any = field(default=None, init=False)  # the traces of `decide` and `observe`
-    rows: Any = field(default=None, init=False)  # [stride, S, ...] of the metrics of each program
+    early: bool = field(init=False)  # learning without the outcome of the newest decision
+    closing: Any = field(default=None, init=False)  # the trace of the second program
+    rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
+
+    def __post_init__(self) -> None:
+        """Whether all learners can."""
+        self.early = all(each.data == "uniform" for each in self.agent.learners.values())
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -56,38 +60,25 @@ class HostLoop(Loop):
         return (RESUMED,)
 
     def trace(self, state: AgentState) -> Any:
-        """The trace of the program that learns; those of the others are kept."""
-        began, at = perf_counter(), jnp.zeros(2, jnp.int32)
-        acting, learned = _parts(state)
-        u = jax.eval_shape(jax.vmap(self.agent.decide, (0, None)), state, at[1])[0]
-
-        def traced(f: Callable[..., Any], *given: Any, outs: int) -> tuple[Any, Any]:
-            """Of f(*given, step) -> (*outs, metrics), whose first argument is donated."""
-            batched = jax.vmap(f, (*[0] * len(given), None))
-            rows = jax.tree.map(self._row, jax.eval_shape(batched, *given, at[1])[-1])
-
-            def program(*given: Any) -> Any:
-                *given, rows, at = given
-                *found, metrics = batched(*given, at[1])
-                put = partial(jax.lax.dynamic_update_index_in_dim, index=at[0], axis=0)
-                return *found, jax.tree.map(lambda row, m: put(row, m), rows, metrics)
-
-            parts = (*[SEEDS] * len(given), METRICS, REPLICATED), (*[SEEDS] * outs, METRICS)
-            sharded = self.shard(program, *parts, donate_argnums=(0, len(given)))
-            return sharded.trace(*given, rows, at), rows
-
-        decide = traced(self._decide, acting, learned, outs=2)
-        observe = traced(self._observe, acting, u, _standing(state.env), outs=1)
-        learn = traced(self._learn, learned, state.memory, outs=1)
-        self.sides, self.rows = (decide[0], observe[0]), (decide[1], observe[1], learn[1])
+        """The trace of the program that decides; that of the other one is kept."""
+        began, at, agent = perf_counter(), jnp.zeros(4, jnp.int32), self.agent
+        got = _standing(state.env)
+        u, _, planned = jax.eval_shape(jax.vmap(agent.decide, (0, None)), state, at[0])
+        led = jax.eval_shape(jax.vmap(self._observed, (0, 0, 0, None)), state, u, got, at[0])[1]
+        learned = jax.eval_shape(jax.vmap(agent.learn, (0, None)), state, at[0])[1]
+        self.rows = jax.tree.map(self._row, {**planned, **learned, **led})
+        parts = (SEEDS, METRICS, SEEDS, SEEDS, REPLICATED), (SEEDS, METRICS)
+        traced, self.closing = (
+            self.shard(each, *parts, donate_argnums=(0, 1)).trace(state, self.rows, u, got, at)
+            for each in (self._act, self._close)
+        )
         self.compile_s += perf_counter() - began
-        return learn[0]
+        return traced
 
     def compile(self, state: AgentState, traced: Any = None) -> "HostProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
-        learn = super().compile(state, self.trace(state) if traced is None else traced)
-        decide, observe = (super(HostLoop, self).compile(state, side) for side in self.sides)
-        return HostProgram(self, decide, observe, learn)
+        act = super().compile(state, self.trace(state) if traced is None else traced)
+        return HostProgram(self, act, super().compile(state, self.closing))
 
     def copies(self) -> Copies:
         """The environments [S * E] of training, each with a seed of its own."""
@@ -105,59 +96,60 @@ class HostLoop(Loop):
 
         return self.shard(jax.vmap(one), SEEDS, SEEDS, donate_argnums=0)(state, obs)
 
-    def _decide(
-        self, acting: "Acting", learned: "Learned", step: Array
-    ) -> tuple[Array, "Acting", dict[str, Array]]:
-        """Actions [E, m] of one learner, which its memory has now, and metrics."""
-        u, state, planned = self.agent.decide(_joined(acting, learned), step)
-        memory = self.agent.replay.expecting(acting.memory, acting.env.obs, u)
-        return u, Acting(acting.env, state.control, memory), planned
+    def _act(self, state: Any, rows: Any, u: Array, got: Outcome, at: Array) -> tuple[Any, Any]:
+        """All learners after a decision that is sent, and its metrics in a row of `rows`.
 
-    def _observe(
-        self, acting: "Acting", u: Array, got: Outcome, _: Array
-    ) -> tuple["Acting", dict[str, Array]]:
-        """One learner after its actions u [E, m] had the outcome `got` [E, ...]."""
-        now, after = states(acting.env, got)
-        memory = acting.memory.replace(count=acting.memory.count - 1)  # the row is written again
-        state = _joined(acting._replace(memory=memory), Learned({}, jax.random.key(0)))
-        return _parts(self.agent.observe(state, u, now, after))[0], outcome(u, now)
+        u [S, E, m], got [S, E, ...]: of the decision before, if it is still to be observed. at:
+        the row, the decision of the run, whether there is one before, and the ticket.
+        """
+        row, step, made, ticket = at
+        state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
+        u, state, metrics = jax.vmap(self.agent.decide, (0, None))(state, step)
+        state = jax.vmap(self._expecting)(state, send(u, ticket, *SEEDS))
+        if self.early:
+            state, learned = jax.vmap(self.agent.learn, (0, None))(state, step)
+            metrics |= learned
+        return state, put(put(rows, led, row - 1), metrics, row)
 
-    def _learn(
-        self, learned: "Learned", memory: Memory, step: Array
-    ) -> tuple["Learned", dict[str, Array]]:
-        """One learner after the updates of a decision."""
-        state = _joined(Acting(None, None, memory), learned)
-        state, metrics = self.agent.learn(state, step)
-        return _parts(state)[1], metrics
+    def _close(self, state: Any, rows: Any, u: Array, got: Outcome, at: Array) -> tuple[Any, Any]:
+        """All learners after u [S, E, m], the decision of `at`, led to `got` [S, E, ...]."""
+        state, metrics = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, 1)
+        if not self.early:
+            state, learned = jax.vmap(self.agent.learn, (0, None))(state, at[1])
+            metrics |= learned
+        return state, put(rows, metrics, at[0])
+
+    def _expecting(self, state: AgentState, u: Array) -> AgentState:
+        """One learner whose memory has the actions u [E, m]."""
+        return state.replace(memory=self.agent.replay.expecting(state.memory, state.env.obs, u))
+
+    def _observed(
+        self, state: AgentState, u: Array, got: Outcome, made: Array | int
+    ) -> tuple[AgentState, dict[str, Array]]:
+        """One learner after the newest actions u [E, m] had the outcome `got` [E, ...].
+
+        made: 0 if there are none; then the next row of the memory is written, as it will be again.
+        """
+        (now, after), count = states(state.env, got), state.memory.count
+        before = state.replace(memory=state.memory.replace(count=count - made))
+        seen = self.agent.observe(before, u, now, after)
+        both = (seen.env, seen.control), (state.env, state.control)
+        env, control = where(jnp.asarray(made) > 0, *both)
+        memory = seen.memory.replace(count=count)
+        return state.replace(env=env, control=control, memory=memory), outcome(u, now)
 
     def _row(self, metric: Any) -> jax.ShapeDtypeStruct:
         """Of a metric [S, ...] in each round of a call, [stride, S, ...]."""
         return jax.ShapeDtypeStruct((self.stride, *metric.shape), metric.dtype)
 
 
-class Acting(NamedTuple):
-    """What deciding and observing change of an agent's state."""
-
-    env: Any
-    control: Any
-    memory: Memory
-
-
-class Learned(NamedTuple):
-    """What learning changes of it."""
-
-    learners: Any
-    key: Array
-
-
 class HostProgram:
     """What trains: (state, first step, rounds) -> (state, metrics [stride, S, ...])."""
 
-    def __init__(self, loop: HostLoop, decide: Any, observe: Any, learn: Any) -> None:
-        """decide, observe, learn: compiled."""
-        self.loop, self.decide, self.observe, self.learn = loop, decide, observe, learn
-        self.memory_analysis = learn.memory_analysis
-        self.early = all(each.data == "uniform" for each in loop.agent.learners.values())
+    def __init__(self, loop: HostLoop, act: Any, close: Any) -> None:
+        """act, close: compiled."""
+        self.loop, self.act, self.close = loop, act, close
+        self.memory_analysis = act.memory_analysis
         self.copies: Copies | None = None  # made at the first call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
@@ -166,43 +158,35 @@ class HostProgram:
         Raises:
             WorldError: if an environment raises an error, gives NaN, or takes too long.
         """
-        loop, count = self.loop, np.arange(int(rounds), dtype=np.int32)
-        envs = loop.agent.num_envs
+        loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
+        each = len(loop.seeds), envs
         if self.copies is None:
             self.copies = loop.copies()
-            obs = self.copies.reset().reshape(len(loop.seeds), envs, -1)
-            state = loop.restarted(state, obs)
-        acting, learned = _parts(state)
-        planned, led, metrics = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
-        for at in np.stack((count, int(start) + count * envs), 1):  # row, decision of the run
-            u, acting, planned = self.decide(acting, learned, planned, at)
-            if self.early:
-                learned, metrics = self.learn(learned, acting.memory, metrics, at)
-            acting, led = self.observe(acting, u, self._outcome(u), led, at)
-            if not self.early:
-                learned, metrics = self.learn(learned, acting.memory, metrics, at)
-        return _joined(acting, learned), jax.device_get({**planned, **metrics, **led})
+            state = loop.restarted(state, self.copies.reset().reshape(*each, -1))
+        rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
+        got = jax.tree.map(np.array, _standing(state.env))  # the state itself is donated
+        u = np.zeros((*each, loop.agent.spec.act), np.float32)
+        with letters(loop.mesh.size) as sent:
+            for i in range(int(rounds)):
+                at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
+                state, rows = self.act(state, rows, u, got, at)
+                u = sent.next(state.key)
+                got = Outcome(*(x.reshape(*each, *x.shape[1:]) for x in self.copies.step(u)))
+                u, made = u.reshape(*each, -1), loop.early and i + 1 < int(rounds)
+                if not made:
+                    state, rows = self.close(state, rows, u, got, at)
+        return state, jax.device_get(rows)
 
-    def _outcome(self, u: Any) -> Outcome:
-        """What the actions u [S, E, m] lead to, [S, E, ...]."""
-        assert self.copies is not None
-        got = self.copies.step(np.asarray(u).reshape(-1, u.shape[-1]))
-        return Outcome(*(value.reshape(*u.shape[:2], *value.shape[1:]) for value in got))
+
+def put(rows: Any, metrics: dict[str, Array], i: Array) -> Any:
+    """The rows with `metrics` [S, ...] in row i."""
+    at = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
+    return rows | {name: at(rows[name], metric) for name, metric in metrics.items()}
 
 
 def _standing(env: EnvState) -> Outcome:
-    """An outcome of the shapes of one at `env`."""
+    """An outcome of the shapes of one at `env`, for a decision that has none before it."""
     return Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
-
-
-def _parts(state: AgentState) -> tuple[Acting, Learned]:
-    """The two parts of a state."""
-    return Acting(state.env, state.control, state.memory), Learned(state.learners, state.key)
-
-
-def _joined(acting: Acting, learned: Learned) -> AgentState:
-    """The state of the two parts."""
-    return AgentState(*acting, *learned)
 
 
 class HostEvaluator:
