@@ -58,7 +58,13 @@ ARGUMENTS = (
     Argument("out", "host_speed.json", "the numbers"),
 )
 METHODS = {"sac": 300, "hybrid_stochastic": 40}  # decisions of a block
-TURNS, QUIETEST, WARM, STRIDE = 40, 10, 400, 200
+KINDS = (  # of a block
+    "clock",  # [1/s] decisions
+    "processor",  # [1/s] of the time of all its threads
+    "python",  # [us] of the main thread for a decision: the environment, and calls of the program
+    "others",  # processors that other programs took
+)
+TURNS, QUIETEST, WARM, STRIDE = 30, 10, 400, 200
 PAUSE_S = 0.003
 
 
@@ -98,7 +104,7 @@ class Contestant:
         self.block(WARM)
 
     def block(self, decisions: int) -> np.ndarray:
-        """Of so many more: decisions per second of the clock, of the processor; others' share."""
+        """KINDS of so many more."""
         began, end = _now(), self.step + decisions
         while self.step < end:
             rounds = min(STRIDE, end - self.step)
@@ -106,8 +112,9 @@ class Contestant:
             self.state, _ = self.program(*given)
             self.step += rounds
         jax.block_until_ready(self.state)
-        clock, processor, all_ = _now() - began
-        return np.array([decisions / clock, decisions / processor, (all_ - processor) / clock])
+        clock, processor, python, machine = _now() - began
+        rates = decisions / clock, decisions / processor
+        return np.array([*rates, 1e6 * python / decisions, (machine - processor) / clock])
 
     def close(self) -> None:
         """End the environment, and its process."""
@@ -116,10 +123,10 @@ class Contestant:
 
 
 def _now() -> np.ndarray:
-    """Seconds [3]: of the clock, of this program, and of all programs of the machine."""
+    """Seconds [4]: of the clock; of this program, its main thread, and all programs."""
     jiffies = list(map(int, Path("/proc/stat").read_text().split(None, 9)[1:9]))
     busy = (sum(jiffies) - jiffies[3] - jiffies[4]) / os.sysconf("SC_CLK_TCK")
-    return np.array([time.perf_counter(), time.process_time(), busy])
+    return np.array([time.perf_counter(), time.process_time(), time.thread_time(), busy])
 
 
 def compare(rows: dict[str, list[str]], algo: str) -> dict[str, Any]:
@@ -131,11 +138,10 @@ def compare(rows: dict[str, list[str]], algo: str) -> dict[str, Any]:
         turns.append({name: each[name].block(METHODS[algo]) for name in names})
     for one in each.values():
         one.close()
-    turns.sort(key=lambda turn: max(block[2] for block in turn.values()))
+    turns.sort(key=lambda turn: max(block[-1] for block in turn.values()))
     blocks = {name: np.array([turn[name] for turn in turns[:QUIETEST]]) for name in rows}
-    kinds = ("clock", "processor", "others")
     return {
-        name: dict(zip(kinds, np.round(found.T, 2).tolist(), strict=True))
+        name: dict(zip(KINDS, np.round(found.T, 2).tolist(), strict=True))
         for name, found in blocks.items()
     }
 

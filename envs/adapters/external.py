@@ -1,4 +1,4 @@
-"""A Gymnasium environment, which is no JAX function: it steps on the host, between two programs.
+"""A Gymnasium environment, which is no JAX function: it steps on the host, beside a program.
 
     External(id="Hopper-v5")                      of Gymnasium's registry, or MODULE:ID
     External(make="my_module:MyEnv")              a class, or a function without arguments

@@ -88,14 +88,12 @@ class Replay:
         return Memory(rows, memory.count + 1)
 
     def expecting(self, memory: Memory, obs: Array, action: Array) -> Memory:
-        """The memory with decisions `action` [E, m] at obs [E, o] whose outcome is to come.
+        """The memory with the actions [E, m] at obs [E, o] of a decision whose outcome is to come.
 
-        `sample` draws none of them, and reads of them the action, as that of their predecessors'
-        successors.
+        `sample` never draws the newest decision; it reads the actions, as the next ones.
         """
-        unknown = jnp.full(len(obs), jnp.nan)
-        new = Transition(obs, action, *[unknown] * 3, jnp.full_like(obs, jnp.nan))
-        return self.add(memory, new)
+        late, after = jnp.full(len(obs), jnp.nan), jnp.full_like(obs, jnp.nan)
+        return self.add(memory, Transition(obs, action, late, late, late, after))
 
     def newest(self, memory: Memory, spec: Spec) -> Transition:
         """The last decision [E, ...] of every environment; flags are 0 or 1."""

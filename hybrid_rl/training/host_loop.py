@@ -31,7 +31,6 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.rollout import act

@@ -45,6 +45,7 @@ class RobotLoop(HostLoop):
 
     def __post_init__(self) -> None:
         """Check the counts."""
+        super().__post_init__()
         check_one(self.agent, self.seeds)
 
     @property

@@ -53,9 +53,7 @@ def numbers(*leaves: Any) -> Iterator[Any]:
         yield jax.random.key_data(x) if jnp.issubdtype(x.dtype, jax.dtypes.prng_key) else x
 
 
-@pytest.mark.parametrize(
-    ("algo", "loss"), [("sac", "sac/critic_loss"), ("nn_mppi", "model/loss")]
-)
+@pytest.mark.parametrize(("algo", "loss"), [("sac", "sac/critic_loss"), ("nn_mppi", "model/loss")])
 def test_it_learns_what_it_learns_after_the_step(algo, loss):
     """From the first update on; what is not known yet is NaN in the memory, which would spread."""
     assert compiled(algo, "", True)[0].early
