@@ -64,7 +64,8 @@ KINDS = (  # of a block
     "python",  # [us] of the main thread for a decision: the environment, and calls of the program
     "others",  # processors that other programs took
 )
-TURNS, QUIETEST, WARM, STRIDE = 30, 10, 400, 200
+TURNS, QUIETEST = {"doors": 30, "waits": 6}, 10
+WARM, STRIDE = 400, 200
 PAUSE_S = 0.003
 
 
@@ -129,11 +130,11 @@ def _now() -> np.ndarray:
     return np.array([time.perf_counter(), time.process_time(), time.thread_time(), busy])
 
 
-def compare(rows: dict[str, list[str]], algo: str) -> dict[str, Any]:
-    """Decisions per second of each row in the quietest turns."""
+def compare(rows: dict[str, list[str]], algo: str, count: int) -> dict[str, Any]:
+    """KINDS of each row in the quietest of `count` turns."""
     each = {name: Contestant(name, [*words, f"algo={algo}"]) for name, words in rows.items()}
     turns = []
-    for number in range(TURNS):
+    for number in range(count):
         names = list(rows)[:: 1 if number % 2 else -1]
         turns.append({name: each[name].block(METHODS[algo]) for name in names})
     for one in each.values():
@@ -152,7 +153,7 @@ def main() -> None:
     found: dict[str, Any] = {"machine": device(), "rows": {}}
     for task, rows in COMPARED[given["rows"]].items():
         for algo in METHODS:
-            found["rows"][f"{task} {algo}"] = rates = compare(rows, algo)
+            found["rows"][f"{task} {algo}"] = rates = compare(rows, algo, TURNS[given["rows"]])
             medians = {
                 name: [float(np.median(v)) for v in rate.values()] for name, rate in rates.items()
             }

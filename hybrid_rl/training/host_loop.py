@@ -169,7 +169,7 @@ class HostProgram:
             for i in range(int(rounds)):
                 at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
                 state, rows = self.act(state, rows, u, got, at)
-                u = sent.next(state.key)
+                u = sent.next(state.memory.count)
                 got = Outcome(*(x.reshape(*each, *x.shape[1:]) for x in self.copies.step(u)))
                 u, made = u.reshape(*each, -1), loop.early and i + 1 < int(rounds)
                 if not made:

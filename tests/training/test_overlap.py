@@ -73,8 +73,9 @@ def test_only_a_learner_of_the_latest_decision_waits_for_it(algo, closed, monkey
     assert len(calls) == closed
 
 
-def test_a_run_does_not_depend_on_where_its_calls_end():
-    """Bit by bit, as the time that a call takes chooses its number of rounds."""
+def test_a_run_does_not_depend_on_where_its_calls_end(monkeypatch):
+    """Bit by bit, as the time that a call takes chooses its number of rounds; nor on waiting."""
+    monkeypatch.setattr(sending, "POLL_S", 1e-5)
     whole, parts = run("sac"), run("sac", calls=(1, 4, ROUNDS - 5))
     for a, b in zip(*map(jax.tree.leaves, (whole, parts)), strict=True):
         np.testing.assert_array_equal(*numbers(a, b))
