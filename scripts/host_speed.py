@@ -1,17 +1,18 @@
-"""Decisions per second of Gymnasium's half-cheetah on the host, beside ours in one program.
+"""Decisions per second of Gymnasium's environments on the host, beside ours in one program.
 
-    taskset -c 0 python -m scripts.host_speed out=docs/results/host_speed.json
-    python -m scripts.host_speed rows=overlap out=docs/results/host_overlap.json
+    python -m scripts.host_speed out=docs/results/host_speed.json
+    python -m scripts.host_speed rows=waits out=docs/results/host_waits.json
 
 One learner with settings=light, which learns; blocks of all rows take turns on one machine, and
-count the processor's time, as others may use it. rows=overlap: by the clock, with
-env.overlap=true and without; also where a step takes 3 ms more, and where nothing is learned then,
-which is what overlap can reach at most.
+of all turns the quietest ones count, in which other programs took the least of the processors. A
+block has its seconds of the clock, and those of the processors that this program took.
+rows=waits: Gymnasium's half-cheetah as it is, and where a step takes 3 ms more; learning after a
+step, meanwhile as in every run, and nothing learned, which is what `meanwhile` can reach at most.
 """
 
 import json
+import os
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,33 +28,43 @@ from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.provenance import device
 from hybrid_rl.training.loops import loop_of
 
-CHEETAH = ["task=gymnasium", "env.id=HalfCheetah-v5"]
+IDS = {"halfcheetah": "HalfCheetah-v5", "hopper": "Hopper-v5", "pendulum": "Pendulum-v1"}
 SLOW = ["task=gymnasium", "env.make=scripts.host_speed:Slow", "episode.steps=1000"]
 BUSY = [*SLOW, "env.kwargs={busy: true}"]
-OVERLAP, PROCESSES = "env.overlap=true", "env.processes=true"
-NOTHING = "nothing learned"
-TASKS = {
-    "doors": {"native": ["task=halfcheetah", "physics=native"], "gymnasium": CHEETAH},
-    "overlap": {
-        "gymnasium": CHEETAH,
-        "gymnasium, overlap": [*CHEETAH, OVERLAP],
-        "waits": SLOW,
-        "waits, overlap": [*SLOW, OVERLAP],
-        "computes": BUSY,
-        "computes, overlap": [*BUSY, OVERLAP],
-        "computes, processes": [*BUSY, PROCESSES],
-        "computes, processes, overlap": [*BUSY, PROCESSES, OVERLAP],
-        NOTHING: [*SLOW, OVERLAP],
+AFTER, NOTHING = "after", "nothing learned"  # what ends the name of a row
+WAITS = {
+    "gymnasium": ["task=gymnasium", "env.id=HalfCheetah-v5"],
+    "waits": SLOW,
+    "computes": BUSY,
+    "computes, processes": [*BUSY, "env.processes=true"],
+}
+COMPARED = {  # comparisons -> rows -> words
+    "doors": {
+        task: {
+            "native": [f"task={task}", "physics=native"],
+            "gymnasium": ["task=gymnasium", f"env.id={name}"],
+        }
+        for task, name in IDS.items()
+    },
+    "waits": {
+        "halfcheetah": {
+            **{f"{row}{end}": words for row, words in WAITS.items() for end in ("", f", {AFTER}")},
+            f"waits, {NOTHING}": SLOW,
+        }
     },
 }
 ARGUMENTS = (
-    Argument("rows", "doors", "what is compared", one_of(*TASKS)),
+    Argument("rows", "doors", "what is compared", one_of(*COMPARED)),
     Argument("out", "host_speed.json", "the numbers"),
 )
-METHODS = {  # words, decisions of a block, blocks
-    "sac": (["algo=sac"], 400, 6),
-    "hybrid_stochastic": (["algo=hybrid_stochastic"], 60, 4),
-}
+METHODS = {"sac": 300, "hybrid_stochastic": 40}  # decisions of a block
+KINDS = (  # of a block
+    "clock",  # [1/s] decisions
+    "processor",  # [1/s] of the time of all its threads
+    "python",  # [us] of the main thread for a decision: the environment, and calls of the program
+    "others",  # processors that other programs took
+)
+TURNS, QUIETEST = {"doors": 30, "waits": 6}, 10
 WARM, STRIDE = 400, 200
 PAUSE_S = 0.003
 
@@ -79,29 +90,32 @@ class Slow(HalfCheetahEnv):
 class Contestant:
     """A learner that is past its random decisions."""
 
-    def __init__(self, words: list[str], learns: bool, clock: Callable[[], float]) -> None:
-        """Compile, and learn from the first decisions, if at all; clock: [s]."""
-        self.clock = clock
+    def __init__(self, name: str, words: list[str]) -> None:
+        """Compile, and learn from the first decisions, if at all; name: of the row."""
         size = ["settings=light", "random_steps=100", "total_steps=20000"]
         config = configuration.load([*words, *size])
         prepare(config)
         run = configuration.build(config)
-        agent = run.agent if learns else replace(run.agent, first_update=10**9)
+        agent = replace(run.agent, first_update=10**9) if name.endswith(NOTHING) else run.agent
         self.loop, self.step = loop_of(agent, run.seeds, STRIDE), 0
+        if name.endswith(AFTER):
+            self.loop.early = False
         self.state = self.loop.init()
         self.program = self.loop.compile(self.state)
-        self.rate(WARM)
+        self.block(WARM)
 
-    def rate(self, decisions: int) -> float:
-        """Decisions per second of so many more."""
-        began, end = self.clock(), self.step + decisions
+    def block(self, decisions: int) -> np.ndarray:
+        """KINDS of so many more."""
+        began, end = _now(), self.step + decisions
         while self.step < end:
             rounds = min(STRIDE, end - self.step)
             given = self.state, jnp.int32(self.step), jnp.int32(rounds)
             self.state, _ = self.program(*given)
             self.step += rounds
-        jax.block_until_ready(self.state.key)
-        return decisions / (self.clock() - began)
+        jax.block_until_ready(self.state)
+        clock, processor, python, machine = _now() - began
+        rates = decisions / clock, decisions / processor
+        return np.array([*rates, 1e6 * python / decisions, (machine - processor) / clock])
 
     def close(self) -> None:
         """End the environment, and its process."""
@@ -109,26 +123,41 @@ class Contestant:
             copies.close()
 
 
+def _now() -> np.ndarray:
+    """Seconds [4]: of the clock; of this program, its main thread, and all programs."""
+    jiffies = list(map(int, Path("/proc/stat").read_text().split(None, 9)[1:9]))
+    busy = (sum(jiffies) - jiffies[3] - jiffies[4]) / os.sysconf("SC_CLK_TCK")
+    return np.array([time.perf_counter(), time.process_time(), time.thread_time(), busy])
+
+
+def compare(rows: dict[str, list[str]], algo: str, count: int) -> dict[str, Any]:
+    """KINDS of each row in the quietest of `count` turns."""
+    each = {name: Contestant(name, [*words, f"algo={algo}"]) for name, words in rows.items()}
+    turns = []
+    for number in range(count):
+        names = list(rows)[:: 1 if number % 2 else -1]
+        turns.append({name: each[name].block(METHODS[algo]) for name in names})
+    for one in each.values():
+        one.close()
+    turns.sort(key=lambda turn: max(block[-1] for block in turn.values()))
+    blocks = {name: np.array([turn[name] for turn in turns[:QUIETEST]]) for name in rows}
+    return {
+        name: dict(zip(KINDS, np.round(found.T, 2).tolist(), strict=True))
+        for name, found in blocks.items()
+    }
+
+
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    tasks = TASKS[given["rows"]]
-    clock = time.process_time if given["rows"] == "doors" else time.perf_counter
     found: dict[str, Any] = {"machine": device(), "rows": {}}
-    for algo, (chosen, block, blocks) in METHODS.items():
-        each = {
-            name: Contestant([*words, *chosen], name != NOTHING, clock)
-            for name, words in tasks.items()
-        }
-        rates: dict[str, list[float]] = {name: [] for name in tasks}
-        for number in range(blocks):
-            for name in list(tasks)[:: 1 if number % 2 else -1]:
-                rates[name].append(round(each[name].rate(block), 1))
-        found["rows"][algo] = rates
-        medians = {name: float(np.median(values)) for name, values in rates.items()}
-        print(f"{algo}: {medians}", flush=True)
-        for one in each.values():
-            one.close()
+    for task, rows in COMPARED[given["rows"]].items():
+        for algo in METHODS:
+            found["rows"][f"{task} {algo}"] = rates = compare(rows, algo, TURNS[given["rows"]])
+            medians = {
+                name: [float(np.median(v)) for v in rate.values()] for name, rate in rates.items()
+            }
+            print(f"{task} {algo}: {medians}", flush=True)
     Path(given["out"]).write_text(json.dumps(found, indent=1) + "\n")
 
 

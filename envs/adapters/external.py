@@ -1,4 +1,4 @@
-"""A Gymnasium environment, which is no JAX function: it steps on the host, between two programs.
+"""A Gymnasium environment, which is no JAX function: it steps on the host, beside a program.
 
     External(id="Hopper-v5")                      of Gymnasium's registry, or MODULE:ID
     External(make="my_module:MyEnv")              a class, or a function without arguments
@@ -48,7 +48,6 @@ class External(Made):
     dt: float | None = None  # [s] between decisions; None: what the environment says
     processes: bool = False  # one for each copy; pays where a step takes 1 ms or more
     timeout_s: float | None = None  # [s] for a step, with processes; then the run ends
-    overlap: bool = False  # learn while it steps; actions then know one decision less
 
     def __post_init__(self) -> None:
         """Check the fields, and the spaces."""

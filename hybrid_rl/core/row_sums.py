@@ -22,7 +22,7 @@ FEW = 128  # rows, below which a sum is a sum
 _along = Primitive("along")
 
 
-def summed(x: Array, precision: Precision = Precision.HIGHEST) -> Array:
+def summed(x: Array, precision: Precision | None = Precision.HIGHEST) -> Array:
     """The sum [..., d] of the rows of x [..., rows, d], in float32."""
     if x.shape[-2] < FEW:
         return x.sum(-2, dtype=jnp.float32)

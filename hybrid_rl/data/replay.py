@@ -87,6 +87,14 @@ class Replay:
         rows = jax.lax.dynamic_update_index_in_dim(memory.rows, _packed(new), slot, 0)
         return Memory(rows, memory.count + 1)
 
+    def expecting(self, memory: Memory, obs: Array, action: Array) -> Memory:
+        """The memory with the actions [E, m] at obs [E, o] of a decision whose outcome is to come.
+
+        `sample` never draws the newest decision; it reads the actions, as the next ones.
+        """
+        late, after = jnp.full(len(obs), jnp.nan), jnp.full_like(obs, jnp.nan)
+        return self.add(memory, Transition(obs, action, late, late, late, after))
+
     def newest(self, memory: Memory, spec: Spec) -> Transition:
         """The last decision [E, ...] of every environment; flags are 0 or 1."""
         slot = (memory.count - 1) % memory.rows.shape[0]

@@ -1,23 +1,20 @@
-"""The loop of training for an environment on the host, between two compiled programs.
+"""The loop of training for an environment on the host, beside a compiled program.
 
-    u = decide(state)        on the device
-    outcome = copies.step(u)         on the host
-    state = learn(state, outcome)    on the device
+    u = decide(state)                  in the program, which sends u and goes on
+    learners = learn(learners, memory)     in the program     meanwhile
+    outcome = copies.step(u)               on the host        meanwhile
+    state = observe(state, outcome)    in the program of the next decision, or `close`
 
-It has the interface of `Loop` and draws the same random numbers. Both programs donate the state:
-the replay memory is not copied. Metrics stay on the device until the end of a call.
+It has the interface of `Loop` and draws the same random numbers. `Replay.sample` draws no decision
+without its successor in the memory, so what learns from samples needs no outcome of the newest
+decision, and learns the same while the environment steps. A learner of `latest` data needs it:
+then `close` ends each decision, and learns.
 
-With `overlap` of the environment a thread learns while the environment steps. Actions are then
-chosen before the learning from the decision before them begins; `decide` gets that one's outcome,
-and donates nothing.
-
-    u' = decide(state, outcome)
-    state = learn(state, outcome)    in a thread, meanwhile on the host
-    outcome' = copies.step(u')
+The programs donate the state: the replay memory is not copied. Metrics stay on the device until
+the end of a call.
 """
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
@@ -34,10 +31,10 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.rollout import act
+from hybrid_rl.training.sending import letters, send
 from hybrid_rl.types import EnvState, Params
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
@@ -48,13 +45,13 @@ RESUMED += "decisions after this one differ from those of a run without the inte
 class HostLoop(Loop):
     """Trains one learner per seed; all environments of all learners step side by side."""
 
-    deciding: Any = field(default=None, init=False)  # the trace of the first program
+    early: bool = field(init=False)  # learning without the outcome of the newest decision
+    closing: Any = field(default=None, init=False)  # the trace of the second program
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
-    @property
-    def overlap(self) -> bool:
-        """Whether a thread learns while the environment steps."""
-        return getattr(self.agent.episode.env, "overlap", False)
+    def __post_init__(self) -> None:
+        """Whether all learners can."""
+        self.early = all(each.data == "uniform" for each in self.agent.learners.values())
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -62,28 +59,25 @@ class HostLoop(Loop):
         return (RESUMED,)
 
     def trace(self, state: AgentState) -> Any:
-        """The trace of the program that learns; that of the other one is kept."""
-        began, zero = perf_counter(), jnp.zeros((), jnp.int32)
-        got, axes = _standing(state.env), (0, 0, 0, 0, None)
-        given: tuple = (*_read(state), zero)
-        if self.overlap:
-            axes, given = (*axes, 0, None), (*given, got, jnp.zeros((), bool))
-        decide = jax.vmap(self._decide, axes)
-        parts = tuple(REPLICATED if axis is None else SEEDS for axis in axes), SEEDS
-        donated = () if self.overlap else 1  # the learning that follows gets all of the state
-        self.deciding = self.shard(decide, *parts, donate_argnums=donated).trace(*given)
-        u, _, planned = jax.eval_shape(decide, *given)
-        parts = (SEEDS, METRICS, SEEDS, SEEDS, SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
-        self.rows = jax.eval_shape(self._rows, state, planned, u, got, zero)
-        learn = self.shard(self._learn, *parts, donate_argnums=(0, 1))
-        traced = learn.trace(state, self.rows, planned, u, got, zero, zero)
+        """The trace of the program that decides; that of the other one is kept."""
+        began, at, agent = perf_counter(), jnp.zeros(4, jnp.int32), self.agent
+        got = _standing(state.env)
+        u, _, planned = jax.eval_shape(jax.vmap(agent.decide, (0, None)), state, at[0])
+        led = jax.eval_shape(jax.vmap(self._observed, (0, 0, 0, None)), state, u, got, at[0])[1]
+        learned = jax.eval_shape(jax.vmap(agent.learn, (0, None)), state, at[0])[1]
+        self.rows = jax.tree.map(self._row, {**planned, **learned, **led})
+        parts = (SEEDS, METRICS, SEEDS, SEEDS, REPLICATED), (SEEDS, METRICS)
+        traced, self.closing = (
+            self.shard(each, *parts, donate_argnums=(0, 1)).trace(state, self.rows, u, got, at)
+            for each in (self._act, self._close)
+        )
         self.compile_s += perf_counter() - began
         return traced
 
     def compile(self, state: AgentState, traced: Any = None) -> "HostProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
-        learn = super().compile(state, self.trace(state) if traced is None else traced)
-        return HostProgram(self, super().compile(state, self.deciding), learn)
+        act = super().compile(state, self.trace(state) if traced is None else traced)
+        return HostProgram(self, act, super().compile(state, self.closing))
 
     def copies(self) -> Copies:
         """The environments [S * E] of training, each with a seed of its own."""
@@ -101,61 +95,61 @@ class HostLoop(Loop):
 
         return self.shard(jax.vmap(one), SEEDS, SEEDS, donate_argnums=0)(state, obs)
 
-    def _decide(
-        self,
-        learners: Any,
-        control: Any,
-        env: Any,
-        key: Any,
-        step: Any,
-        got: Any = None,
-        *made: Any,
-    ) -> tuple[Array, Any, dict[str, Array]]:
-        """Actions [E, m] of one learner, the states of its controllers, and metrics.
+    def _act(self, state: Any, rows: Any, u: Array, got: Outcome, at: Array) -> tuple[Any, Any]:
+        """All learners after a decision that is sent, and its metrics in a row of `rows`.
 
-        got: with overlap, the outcome [E, ...] of a decision at `env`, if one was `made` [].
+        u [S, E, m], got [S, E, ...]: of the decision before, if it is still to be observed. at:
+        the row, the decision of the run, whether there is one before, and the ticket.
         """
-        if got is not None:
-            now, after = states(env, got)
-            begun = where(now.done, self.agent.first_control(), control)
-            following = begun, after, Keys.of(key, self.agent.num_envs).next
-            control, env, key = where(made[0], following, (control, env, key))
-        memory: Any = None
-        state = AgentState(env, control, memory, learners, key)
-        u, after, planned = self.agent.decide(state, step)
-        return u, after.control, planned
+        row, step, made, ticket = at
+        state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
+        u, state, metrics = jax.vmap(self.agent.decide, (0, None))(state, step)
+        state = jax.vmap(self._expecting)(state, send(u, ticket, *SEEDS))
+        if self.early:
+            state, learned = jax.vmap(self.agent.learn, (0, None))(state, step)
+            metrics |= learned
+        return state, put(put(rows, led, row - 1), metrics, row)
 
-    def _step(
-        self, state: AgentState, planned: Any, u: Array, got: Outcome, step: Array
+    def _close(self, state: Any, rows: Any, u: Array, got: Outcome, at: Array) -> tuple[Any, Any]:
+        """All learners after u [S, E, m], the decision of `at`, led to `got` [S, E, ...]."""
+        state, metrics = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, 1)
+        if not self.early:
+            state, learned = jax.vmap(self.agent.learn, (0, None))(state, at[1])
+            metrics |= learned
+        return state, put(rows, metrics, at[0])
+
+    def _expecting(self, state: AgentState, u: Array) -> AgentState:
+        """One learner whose memory has the actions u [E, m]."""
+        return state.replace(memory=self.agent.replay.expecting(state.memory, state.env.obs, u))
+
+    def _observed(
+        self, state: AgentState, u: Array, got: Outcome, made: Array | int
     ) -> tuple[AgentState, dict[str, Array]]:
-        """One learner after its actions u [E, m] had the outcome `got` [E, ...]."""
-        now, after = states(state.env, got)
-        state, learned = self.agent.learn(self.agent.observe(state, u, now, after), step)
-        return state, {**planned, **learned, **outcome(u, now)}
+        """One learner after the newest actions u [E, m] had the outcome `got` [E, ...].
 
-    def _learn(
-        self, state: Any, rows: Any, planned: Any, u: Array, got: Outcome, i: Array, step: Array
-    ) -> tuple[Any, Any]:
-        """All learners, and their metrics in row i of `rows` [stride, S, ...]."""
-        state, metrics = jax.vmap(self._step, (0, 0, 0, 0, None))(state, planned, u, got, step)
-        put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
-        return state, jax.tree.map(lambda row, m: put(row, m), rows, metrics)
+        made: 0 if there are none; then the next row of the memory is written, as it will be again.
+        """
+        (now, after), count = states(state.env, got), state.memory.count
+        before = state.replace(memory=state.memory.replace(count=count - made))
+        seen = self.agent.observe(before, u, now, after)
+        both = (seen.env, seen.control), (state.env, state.control)
+        env, control = where(jnp.asarray(made) > 0, *both)
+        memory = seen.memory.replace(count=count)
+        return state.replace(env=env, control=control, memory=memory), outcome(u, now)
 
-    def _rows(self, *arguments: Any) -> Any:
-        """Rows [stride, S, ...] of zeros for the metrics of one call; arguments: of `_step`."""
-        shapes = jax.eval_shape(jax.vmap(self._step, (0, 0, 0, 0, None)), *arguments)[1]
-        return jax.tree.map(lambda m: jnp.zeros((self.stride, *m.shape), m.dtype), shapes)
+    def _row(self, metric: Any) -> jax.ShapeDtypeStruct:
+        """Of a metric [S, ...] in each round of a call, [stride, S, ...]."""
+        return jax.ShapeDtypeStruct((self.stride, *metric.shape), metric.dtype)
 
 
 class HostProgram:
     """What trains: (state, first step, rounds) -> (state, metrics [stride, S, ...])."""
 
-    def __init__(self, loop: HostLoop, decide: Any, learn: Any) -> None:
-        """decide, learn: the compiled halves."""
-        self.loop, self.decide, self.learn = loop, decide, learn
-        self.memory_analysis = learn.memory_analysis
+    def __init__(self, loop: HostLoop, act: Any, close: Any) -> None:
+        """act, close: compiled."""
+        self.loop, self.act, self.close = loop, act, close
+        self.memory_analysis = act.memory_analysis
         self.copies: Copies | None = None  # made at the first call
-        self.ahead: Any = None  # with overlap, what was decided for the next call
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
         """As the program of `Loop`.
@@ -163,69 +157,35 @@ class HostProgram:
         Raises:
             WorldError: if an environment raises an error, gives NaN, or takes too long.
         """
-        loop, envs, first = self.loop, self.loop.agent.num_envs, int(start)
-        each = (len(loop.seeds), envs)
+        loop, envs, first, made = self.loop, self.loop.agent.num_envs, int(start), False
+        each = len(loop.seeds), envs
         if self.copies is None:
             self.copies = loop.copies()
             state = loop.restarted(state, self.copies.reset().reshape(*each, -1))
         rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
-        steps = [np.int32(first + i * envs) for i in range(int(rounds))]
-        state, rows = (self._overlapping if loop.overlap else self._in_turn)(state, rows, steps)
+        got = jax.tree.map(np.array, _standing(state.env))  # the state itself is donated
+        u = np.zeros((*each, loop.agent.spec.act), np.float32)
+        with letters(loop.mesh.size) as sent:
+            for i in range(int(rounds)):
+                at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
+                state, rows = self.act(state, rows, u, got, at)
+                u = sent.next(state.memory.count)
+                got = Outcome(*(x.reshape(*each, *x.shape[1:]) for x in self.copies.step(u)))
+                u, made = u.reshape(*each, -1), loop.early and i + 1 < int(rounds)
+                if not made:
+                    state, rows = self.close(state, rows, u, got, at)
         return state, jax.device_get(rows)
 
-    def _in_turn(self, state: AgentState, rows: Any, steps: list[np.int32]) -> tuple[Any, Any]:
-        """Learning from each decision ends before the next one."""
-        for i, step in enumerate(steps):
-            u, control, planned = self.decide(*_read(state), step)
-            state = state.replace(control=control)
-            state, rows = self.learn(state, rows, planned, u, self._outcome(u), np.int32(i), step)
-        return state, rows
 
-    def _overlapping(self, state: AgentState, rows: Any, steps: list[np.int32]) -> tuple[Any, Any]:
-        """Learning from a decision runs while the environment makes the next one.
-
-        That one, also the first of the next call, was chosen before, so that a run does not depend
-        on where its calls end.
-        """
-
-        def learn() -> tuple[Any, Any]:
-            return state, rows
-
-        with ThreadPoolExecutor(1) as thread:
-            for i, step in enumerate(steps):
-                u, control, planned = self.ahead or self._ahead(state, step)
-                learning = thread.submit(learn)
-                got = self._outcome(u)
-                state, rows = learning.result()
-                state = state.replace(control=control)
-                self.ahead = self._ahead(state, step + np.int32(self.loop.agent.num_envs), got)
-                learn = partial(self.learn, state, rows, planned, u, got, np.int32(i), step)
-        return learn()
-
-    def _ahead(self, state: AgentState, step: np.int32, got: Outcome | None = None) -> tuple:
-        """Decision `step`, after one at `state` that had the outcome `got`, if any.
-
-        It waits for the actions, as learning is then given what was read.
-        """
-        after = (got or _standing(state.env), np.bool_(got is not None))
-        u, *rest = self.decide(*_read(state), step, *after)
-        return np.asarray(u), *rest
-
-    def _outcome(self, u: Any) -> Outcome:
-        """What the actions u [S, E, m] lead to, [S, E, ...]."""
-        assert self.copies is not None
-        got = self.copies.step(np.asarray(u).reshape(-1, u.shape[-1]))
-        return Outcome(*(value.reshape(*u.shape[:2], *value.shape[1:]) for value in got))
+def put(rows: Any, metrics: dict[str, Array], i: Array) -> Any:
+    """The rows with `metrics` [S, ...] in row i."""
+    at = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
+    return rows | {name: at(rows[name], metric) for name, metric in metrics.items()}
 
 
 def _standing(env: EnvState) -> Outcome:
     """An outcome of the shapes of one at `env`, for a decision that has none before it."""
     return Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
-
-
-def _read(state: AgentState) -> tuple:
-    """What deciding reads of the state; not the memory, as each array of a call takes time."""
-    return state.learners, state.control, state.env, state.key
 
 
 class HostEvaluator:

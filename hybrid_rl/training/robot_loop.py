@@ -10,7 +10,6 @@ goes on behind the last row of its checkpoint, and loses none that came in the m
 
 import time
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +25,7 @@ from hybrid_rl.envs.adapters.copies import Outcome
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.training.actor import check_one
 from hybrid_rl.training.agent import AgentState
-from hybrid_rl.training.host_loop import HostLoop, states
+from hybrid_rl.training.host_loop import HostLoop, put, states
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.robot_process import RobotProcess
@@ -46,6 +45,7 @@ class RobotLoop(HostLoop):
 
     def __post_init__(self) -> None:
         """Check the counts."""
+        super().__post_init__()
         check_one(self.agent, self.seeds)
 
     @property
@@ -98,9 +98,6 @@ class RobotLoop(HostLoop):
         if hasattr(self, "program"):
             self.program.process.stop()
 
-    def _row(self, shape: Any) -> jax.ShapeDtypeStruct:
-        return jax.ShapeDtypeStruct((self.stride, *shape.shape), shape.dtype)
-
     def _observed(
         self, state: AgentState, action: Array, got: Outcome
     ) -> tuple[AgentState, dict[str, Array]]:
@@ -124,17 +121,12 @@ class RobotLoop(HostLoop):
             return self._observed(state, action, got)
 
         state, metrics = jax.vmap(one)(state, action, got)
-        return state, rows | _put({name: rows[name] for name in metrics}, metrics, i)
+        return state, put(rows, metrics, i)
 
     def _learned(self, state: Any, rows: Any, i: Array, step: Array) -> tuple[Any, Any]:
         """The updates of decision `step`, with their metrics in row i."""
         state, metrics = jax.vmap(self.agent.learn, (0, None))(state, step)
-        return state, rows | _put({name: rows[name] for name in metrics}, metrics, i)
-
-
-def _put(rows: Any, metrics: Any, i: Array) -> Any:
-    put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
-    return jax.tree.map(lambda row, m: put(row, m), rows, metrics)
+        return state, put(rows, metrics, i)
 
 
 def packed(

@@ -1,0 +1,98 @@
+"""Actions that leave a compiled program before it ends.
+
+    u = send(u, ticket)        in the program
+    u = letters.next(state)    on the host, meanwhile
+
+The program does not wait for the host. Each device sends those of its own learners.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from itertools import count
+from queue import Empty, SimpleQueue
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from hybrid_rl.envs.mujoco import xla_callback
+
+TARGET = "hybrid_rl.training.sending"
+POLL_S = 1.0  # [s] after which it is asked whether the program failed before it sent
+_boxes: dict[int, SimpleQueue] = {}  # of those who wait, by ticket
+_tickets = count()
+
+
+def send(u: Array, ticket: Array, axis: str) -> Array:
+    """`u` [S, E, m], once the host has it; axis: of the mesh, over which S is sharded."""
+    _registered()
+    m = u.shape[-1]
+    marks = jnp.stack([jax.lax.axis_index(axis), ticket]).astype(u.dtype)
+    flat = u.reshape(-1, m)
+    x = jnp.concatenate([flat, jnp.broadcast_to(marks, (len(flat), 2))], axis=1)
+    like = jax.ShapeDtypeStruct(x.shape, x.dtype)
+
+    def on_accelerator(x: Array) -> Array:
+        return jax.pure_callback(_posted, like, x)
+
+    def on_cpu(x: Array) -> Array:
+        return jax.ffi.ffi_call(TARGET, like)(x)
+
+    y = jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
+    return y[:, :m].reshape(u.shape)
+
+
+class Letters:
+    """What programs send with this `ticket`."""
+
+    def __init__(self, ticket: int, parts: int) -> None:
+        """parts: devices that send."""
+        self.ticket, self.parts, self._box = ticket, parts, _boxes[ticket]
+
+    def next(self, result: Any) -> np.ndarray:
+        """The actions [S * E, m] of the next program, whose result is `result`.
+
+        Raises:
+            Exception: what the program raised before it sent.
+        """
+        parts: list[np.ndarray] = []
+        while len(parts) < self.parts:
+            try:
+                parts.append(self._box.get(timeout=POLL_S))
+            except Empty:
+                leaves = jax.tree.leaves(result)
+                if all(leaf.is_ready() for leaf in leaves) and self._box.empty():
+                    jax.block_until_ready(leaves)
+        parts.sort(key=lambda part: part[0, -1])
+        return np.concatenate(parts)[:, :-1]
+
+
+@contextmanager
+def letters(parts: int) -> Iterator[Letters]:
+    """Opened for programs that send; what comes later is dropped."""
+    ticket = next(_tickets) % 2**24  # a whole number in float32
+    _boxes[ticket] = SimpleQueue()
+    try:
+        yield Letters(ticket, parts)
+    finally:
+        del _boxes[ticket]
+
+
+@cache
+def _registered() -> None:
+    def post(x: np.ndarray, y: np.ndarray) -> None:
+        y[:] = _posted(x)
+
+    xla_callback.register(TARGET, post)
+
+
+def _posted(x: Any) -> np.ndarray:
+    """x [N, m + 2], after its actions and the part were put into the box of its ticket."""
+    x = np.array(x)
+    box = _boxes.get(int(x[0, -1]))
+    if box is not None:
+        box.put(x[:, :-1])
+    return x
