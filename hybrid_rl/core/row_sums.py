@@ -23,20 +23,19 @@ _along = Primitive("along")
 
 
 def summed(x: Array, precision: Precision | None = Precision.HIGHEST) -> Array:
-    """The sum [..., d] of the rows of x [..., rows, d], in float32."""
+    """The sum [..., d] of the rows of x [..., rows, d], in float32 or wider numbers."""
+    wide = jnp.promote_types(x.dtype, jnp.float32)
     if x.shape[-2] < FEW:
-        return x.sum(-2, dtype=jnp.float32)
+        return x.sum(-2, dtype=wide)
     parts = jnp.arange(x.shape[-2])[None] % PARTS == jnp.arange(PARTS)[:, None]
-    each = jnp.matmul(
-        parts.astype(x.dtype), x, precision=precision, preferred_element_type=jnp.float32
-    )
+    each = jnp.matmul(parts.astype(x.dtype), x, precision=precision, preferred_element_type=wide)
     return each.sum(-2)
 
 
 def along(v: Array, x: Array, precision: Precision | None, dtype: Any = None) -> Array:
     """v [d] in each row of x [..., d].
 
-    precision, dtype: of the products that sum the gradients of the rows; sums are float32.
+    precision, dtype: of the products that sum the gradients of the rows.
     """
     numbers = {"precision": precision, "dtype": jnp.dtype(dtype or x.dtype)}
     return _along.bind(v, x[..., 0], mapped=0, **numbers)
