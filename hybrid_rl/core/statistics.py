@@ -14,8 +14,6 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.row_sums import summed
-
 FLOOR = 1e-6  # minimum standard deviation relative to an entry's magnitude: float32 rounds there
 
 
@@ -55,10 +53,8 @@ def update(
     """
     count = stats.count + 1
     a = jnp.maximum(1 / count, rate)
-    mean = summed(batch) / len(batch)
-    spread = summed((batch - mean[None]) ** 2) / len(batch)
-    step = mean - stats.mean
-    variance = (1 - a) * stats.std**2 + a * spread + a * (1 - a) * step**2
+    step = batch.mean(0) - stats.mean
+    variance = (1 - a) * stats.std**2 + a * batch.var(0) + a * (1 - a) * step**2
     now = Running(stats.mean + a * step, jnp.sqrt(variance), stats.min_std, count)
     return now.replace(min_std=FLOOR * (now.magnitude if magnitude is None else magnitude))
 

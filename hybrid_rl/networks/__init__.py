@@ -6,6 +6,7 @@ have a third of the variance of LeCun's. `precision` says in which numbers they 
 """
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -15,8 +16,7 @@ from flax import linen as nn
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.networks import precision
-from hybrid_rl.networks.layers import Dense, LayerNorm
+from hybrid_rl.networks import layers, precision
 
 ACTIVATIONS = {
     "relu": nn.relu,
@@ -44,13 +44,17 @@ class MLP(nn.Module):
     def __call__(self, x: Array) -> Array:
         """The outputs y [..., out] for x [..., d]."""
         kind, of_products = precision.of_hidden(), precision.of_products()
+        dense: Any = nn.Dense
+        norm: Any = nn.LayerNorm
+        if jax.default_backend() == "gpu":
+            dense, norm = layers.Dense, partial(layers.LayerNorm, precision=of_products)
         for width in self.hidden:
-            x = Dense(width, SPREAD, kind, of_products)(x)
+            x = dense(width, kernel_init=SPREAD, dtype=kind, precision=of_products)(x)
             if self.layer_norm:
-                x = LayerNorm(self.layer_norm != "shift", kind, of_products)(x)
+                x = norm(use_scale=self.layer_norm != "shift", dtype=kind)(x)
             x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
-        return Dense(self.out, last, precision=of_products)(x)
+        return dense(self.out, kernel_init=last, precision=of_products)(x)
 
 
 class Perceptron(NamedTuple):
