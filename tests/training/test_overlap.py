@@ -26,8 +26,7 @@ E = 2  # environments of each of the two learners
 @cache
 def compiled(algo: str, fail: str, early: bool) -> tuple[Any, Any]:
     """A loop in `Count`, and its program."""
-    given = "task=point_mass", f"algo={algo}", f"num_envs={E}"
-    agent = config.build(small.load(algo, *given)).agent
+    agent = config.build(small.load(algo, "task=point_mass", f"num_envs={E}")).agent
     loop = loop_of(replace(agent, episode=Episode(counting(fail=fail), STEPS)), (0, 1), ROUNDS)
     loop.early &= early
     return loop, loop.compile(loop.init())
