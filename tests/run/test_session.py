@@ -310,5 +310,6 @@ def test_a_run_of_random_actions_or_without_evaluations_ends_with_a_line(
         "nothing but random actions: random_steps=1000",
         "nothing was evaluated: eval_modes=[]",
     ]
-    assert call_train("task=pendulum", "algo=sac", "total_steps=1001") == 0
-    assert len(capsys.readouterr().out.splitlines()) == 1
+    for others in (["task=pendulum", "algo=sac"], ["experiment=thesis/fig_5_6"]):  # it sets []
+        assert call_train(*others, "total_steps=1001") == 0
+        assert len(capsys.readouterr().out.splitlines()) == 1
