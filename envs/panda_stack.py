@@ -64,7 +64,7 @@ class PandaStack:
     """Panda stacks a block; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    speed: Positive = 0.15  # [m/s] in each direction at a = 1
+    speed: NotNegative = 0.15  # [m/s] in each direction at a = 1
     lag: NotNegative = 0.2  # [s] time constant of the filter; 0: no filter
     grip: Literal["near", "action"] = "near"  # closes automatically; action: by a fourth action
     reach: NotNegative = 0.01  # [m] at which it closes and opens automatically

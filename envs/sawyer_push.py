@@ -58,7 +58,7 @@ class SawyerPush:
     reward: Literal["thesis", "code"] = "thesis"
     extra: tuple[Extra, ...] = ()  # of EXTRA, observed too
     state_scale: Positive = 10.0  # of the observation [1/m]
-    speed: Positive = 0.15  # [m/s] of the tip at a = 1
+    speed: NotNegative = 0.15  # [m/s] of the tip at a = 1
     smoothing: Discount = 0.8  # weight of the previous command in the filter; 0: no filter
     low: tuple[float, float] = (0.35, -0.3)  # [m] lower limit of the workspace: x, y
     high: tuple[float, float] = (0.75, 0.3)  # [m] upper limit
