@@ -12,7 +12,7 @@ compiling; a world with a field `physics` is simulated by MuJoCo C, which compil
 
 import inspect
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, is_dataclass, replace
 from numbers import Integral, Real
 from typing import Any
@@ -20,7 +20,9 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.extend.core import ClosedJaxpr, Jaxpr
 
+from hybrid_rl.envs.mujoco import mjcf, native
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
 from hybrid_rl.errors import GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
 from hybrid_rl.types import EnvState, Spec
@@ -50,9 +52,9 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     action = jax.ShapeDtypeStruct((world.env.spec.act,), jnp.float32)
     step = world.traced("step", reset.out_info, action)
     _check_trees(world, reset.out_info, step.out_info)
-    text = _text(step)
+    text, clock = _text(step), _clock(world, step)
     if text.count("\n") > LARGE:
-        return ()
+        return clock
     again = world.traced("reset", key), world.traced("step", reset.out_info, action)
     for method, first, second in (("reset", _text(reset), again[0]), ("step", text, again[1])):
         if first != _text(second):
@@ -61,7 +63,7 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
                 "Python draws is a constant of the compiled program; use jax.random, with a key "
                 "in state.info"
             )
-    return _decide(world, *again, decisions) if decisions else ()
+    return (*clock, *(_decide(world, *again, decisions) if decisions else ()))
 
 
 @dataclass(frozen=True)
@@ -200,6 +202,36 @@ def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
     name = next(name for name in (*one, *two) if one.get(name) != two.get(name))
     gives = [f"{name} {each[name]}" if name in each else f"no {name}" for each in (two, one)]
     raise WorldError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be equal")
+
+
+def _clock(world: _World, step: Any) -> tuple[str, ...]:
+    """A note if MuJoCo C simulates another time in a decision than spec.dt; `step`: traced.
+
+    None where that is not certain, as physics steps stand in a loop or a branch.
+    """
+    dt, calls = world.env.spec.dt, list(_physics(step.jaxpr.jaxpr))
+    for asset in {asset for asset, _, _ in calls}:
+        each = [n for name, n, _ in calls if name == asset]
+        h, n = mjcf.load(asset).opt.timestep, sum(each)
+        sure = all(once for name, _, once in calls if name == asset)
+        if sure and not np.isclose([h * n, *(h * one for one in each)], dt, rtol=1e-3).any():
+            steps = f"{n} physics steps of {h:g} s, {h * n:g} s in all"
+            line = f"{world.at('step')}: makes {steps}, and spec.dt is {dt:g} s"
+            return (f"{line}; write dt={h * n:g}, or other steps",)
+    return ()
+
+
+def _physics(program: Jaxpr, once: bool = True) -> Iterator[tuple[str, int, bool]]:
+    """Model, physics steps, and whether it is made once, of each call of MuJoCo C in a program."""
+    for each in program.eqns:
+        if each.primitive.name == "ffi_call":
+            called = native.steps_of(each.params["target_name"])
+            yield from [(*called, once)] if called and called[1] else []
+        straight = each.primitive.name in ("jit", "pjit") or each.params.get("branches_platforms")
+        for inner in jax.tree.leaves(list(each.params.values())):
+            if isinstance(inner, ClosedJaxpr | Jaxpr):
+                inside = inner.jaxpr if isinstance(inner, ClosedJaxpr) else inner
+                yield from _physics(inside, once and bool(straight))
 
 
 def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:

@@ -64,27 +64,27 @@ class PandaStack:
     """Panda stacks a block; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    speed: float = 0.15  # [m/s] in each direction at a = 1
+    speed: NotNegative = 0.15  # [m/s] in each direction at a = 1
     lag: NotNegative = 0.2  # [s] time constant of the filter; 0: no filter
     grip: Literal["near", "action"] = "near"  # closes automatically; action: by a fourth action
-    reach: float = 0.01  # [m] at which it closes and opens automatically
+    reach: NotNegative = 0.01  # [m] at which it closes and opens automatically
     low: tuple[float, float, float] = (0.3, -0.3, 0.02)  # [m] lower limit of the workspace
     high: tuple[float, float, float] = (0.55, 0.3, 0.5)  # [m] upper limit
     block: tuple[float, float] = (0.45, -0.12)  # [m] centre of its initial positions
-    block_spread: float = 0.05  # [m] largest offset along x and y
-    block_turn: float = 0.1  # [rad] largest initial rotation
+    block_spread: NotNegative = 0.05  # [m] largest offset along x and y
+    block_turn: NotNegative = 0.1  # [rad] largest initial rotation
     base: tuple[float, float] = (0.45, 0.12)  # [m] centre of its initial positions
-    base_spread: float = 0.0  # [m] largest offset along x and y
+    base_spread: NotNegative = 0.0  # [m] largest offset along x and y
     block_mass: Positive = 0.1  # [kg] of block and base
     block_friction: Positive = 1.0  # of all contacts
     observation: Literal["thesis", "relative", "stage"] = "thesis"
     reward: Literal["thesis", "joined"] = "thesis"
-    penalty: float = 1e-6  # weight of wrench and action
-    success_distance: float = 0.02  # [m] horizontal, block to base
+    penalty: NotNegative = 1e-6  # weight of wrench and action
+    success_distance: Positive = 0.02  # [m] horizontal, block to base
     terminate: bool = True  # at success
-    hold: float = 5.0  # [1/s] gain on orientation
-    posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
-    damping: float = 0.02  # of the least squares, for [m] and [rad]
+    hold: NotNegative = 5.0  # [1/s] gain on orientation
+    posture: NotNegative = 0.5  # [1/s] gain on the initial posture, in the null space
+    damping: NotNegative = 0.02  # of the least squares, for [m] and [rad]
 
     def __post_init__(self) -> None:
         check(self.physics)

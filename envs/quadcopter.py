@@ -31,7 +31,7 @@ from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import inverse, quat_multiply, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
-from hybrid_rl.fields import part
+from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "quadcopter.xml"
@@ -48,9 +48,9 @@ class Quadcopter(Body):
     task: Literal["hover", "track"] = "hover"
     damping: bool = False  # air drag
     bidirectional: bool = True  # negative thrust, too
-    start_speed: float = 2.0  # [m/s, rad/s] largest in each direction
-    target_distance: float = 2.0  # [m] largest in each direction; track only
-    target_speed: float = 0.0  # [m/s] largest in each direction; track only
+    start_speed: NotNegative = 2.0  # [m/s, rad/s] largest in each direction
+    target_distance: NotNegative = 2.0  # [m] largest in each direction; track only
+    target_speed: NotNegative = 0.0  # [m/s] largest in each direction; track only
     wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
     asset: str = ASSET  # another file needs the same actuators
 

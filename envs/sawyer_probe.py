@@ -35,7 +35,7 @@ from hybrid_rl.envs.mujoco.kinematics import (
 )
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.envs.sawyer_push import HOME
-from hybrid_rl.fields import Positive, part
+from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "sawyer_probe.xml"
@@ -61,15 +61,15 @@ class SawyerProbe:
 
     physics: str = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE
-    acceleration: float = 0.3  # [m/s^2] a
-    drag: float = 0.5  # [1/s] b
+    acceleration: Positive = 0.3  # [m/s^2] a
+    drag: NotNegative = 0.5  # [1/s] b
     low: tuple[float, float] = (0.35, -0.25)  # [m] of the box: x, y
     high: tuple[float, float] = (0.75, 0.25)
     theta: tuple[float, float, float] | None = None  # [m, m, rad]; None: the reference arrangement
     lead: Positive = 0.01  # [m] of the command before the tip
     track: Positive = 5.0  # [1/s] k
     hold: Positive = 10.0  # [1/s] gain on height and orientation
-    posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
+    posture: NotNegative = 0.5  # [1/s] gain on the initial posture, in the null space
     damping: Positive = 0.02  # of the least squares, for [m] and [rad]
     radius: ClassVar[float] = 0.012  # [m] of the rod
 

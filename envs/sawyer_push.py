@@ -32,7 +32,7 @@ from jax import Array
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.fields import Discount, Positive, part
+from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "sawyer_push.xml"
@@ -57,24 +57,24 @@ class SawyerPush:
     physics: str = "auto"
     reward: Literal["thesis", "code"] = "thesis"
     extra: tuple[Extra, ...] = ()  # of EXTRA, observed too
-    state_scale: float = 10.0  # of the observation [1/m]
-    speed: float = 0.15  # [m/s] of the tip at a = 1
+    state_scale: Positive = 10.0  # of the observation [1/m]
+    speed: NotNegative = 0.15  # [m/s] of the tip at a = 1
     smoothing: Discount = 0.8  # weight of the previous command in the filter; 0: no filter
     low: tuple[float, float] = (0.35, -0.3)  # [m] lower limit of the workspace: x, y
     high: tuple[float, float] = (0.75, 0.3)  # [m] upper limit
-    success_distance: float = 0.05  # [m] between block and target
+    success_distance: Positive = 0.05  # [m] between block and target
     terminate: bool = True  # at success
     block: tuple[float, float] = (0.56, 0.12)  # [m] centre of its initial positions
-    block_spread: float = 0.08  # [m] radius of its initial positions
-    block_turn: float = 0.2  # [rad] largest initial rotation
+    block_spread: NotNegative = 0.08  # [m] radius of its initial positions
+    block_turn: NotNegative = 0.2  # [rad] largest initial rotation
     target_low: tuple[float, float] = (0.5, -0.2)  # [m]
     target_high: tuple[float, float] = (0.7, 0.2)  # [m]
-    target_clear: float = 0.12  # [m] smallest initial distance from the block
+    target_clear: NotNegative = 0.12  # [m] smallest initial distance from the block
     block_mass: Positive = 0.1  # [kg]
     block_friction: Positive = 0.4  # on the table and with the rod
-    hold: float = 5.0  # [1/s] gain on height and orientation
-    posture: float = 0.5  # [1/s] gain on the initial posture, in the null space
-    damping: float = 0.02  # of the least squares, for [m] and [rad]
+    hold: NotNegative = 5.0  # [1/s] gain on height and orientation
+    posture: NotNegative = 0.5  # [1/s] gain on the initial posture, in the null space
+    damping: NotNegative = 0.02  # of the least squares, for [m] and [rad]
 
     def __post_init__(self) -> None:
         check(self.physics)

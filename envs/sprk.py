@@ -32,7 +32,7 @@ from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane, turned
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
-from hybrid_rl.fields import NotNegative, Positive, part
+from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 SLIDING, ROLLING = "sprk.xml", "sprk_rolling.xml"
@@ -57,9 +57,9 @@ class Sprk:
 
     physics: str = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE
-    acceleration: float = 1.0  # [m/s^2] a
-    drag: float = 0.0  # [1/s] b
-    radius: float = 0.0365  # [m] of the ball
+    acceleration: Positive = 1.0  # [m/s^2] a
+    drag: NotNegative = 0.0  # [1/s] b
+    radius: Positive = 0.0365  # [m] of the ball
     mass: Positive = 0.18  # [kg] m
     lag: NotNegative = 0.01  # [s] of the motor; 0: none
     rolling: bool = False  # driven by torques on a floor, which it rolls on; else pushed
@@ -69,8 +69,8 @@ class Sprk:
     spread: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of theta at the reset
     sensor: Literal["touch", "accelerometer"] = "touch"
     threshold: Positive = 0.5  # [m/s^2] of the accelerometer
-    false_contact: float = 0.0  # probability for |u - u_before| = 2, besides the sensor's own
-    missed: float = 0.0  # probability
+    false_contact: Discount = 0.0  # probability for |u - u_before| = 2, besides the sensor's own
+    missed: Discount = 0.0  # probability
 
     def __post_init__(self) -> None:
         check(self.physics)

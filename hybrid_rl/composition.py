@@ -1,5 +1,6 @@
 """Around Hydra's composition (config.py): what conf/ offers, errors, a user's task file."""
 
+import difflib
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -20,6 +21,7 @@ HERE = Path(__file__).parent
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
 THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the search path
 OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin
+MANY = 40  # names that are too many for a line; tasks are fewer
 GLOBAL = "# @package _global_"
 OF_GYMNASIUM = re.compile(r"(?P<id>-v\d+$)|(?P<make>\w:\w)")  # ids, and MODULE:CLASS
 ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
@@ -47,7 +49,7 @@ def check_choices(texts: Iterable[str]) -> None:
         if all(isinstance(overrides.value_of(one), (str, list)) for one in each):
             continue
         if known := options(key.partition("@")[0]):
-            raise UsageError(f"{text}: choose one of {', '.join(known)}")
+            raise UsageError(f"{text}: {_choice(value, known)}")
 
 
 def file(group: str, name: str) -> Path:
@@ -83,10 +85,10 @@ def explain(error: Exception) -> str:
         deep = 2 if parts[0] == "hydra" else 1
         group, value = "/".join(parts[:deep]), "/".join(parts[deep:])
         known = sorted({*options(group), *(error.options or ())})  # theirs: of --config-dir too
-        close = overrides.meant(value, known)
+        close = overrides.meant(value, known) if len(known) < MANY else ""
         if group == "task" and (kind := OF_GYMNASIUM.search(value)):
             close = f"; did you mean task=gymnasium env.{kind.lastgroup}={value}?"
-        return f"{group}={value}: unknown; choose one of {', '.join(known)}{close}"
+        return f"{group}={value}: unknown; {_choice(value, known)}{close}"
     cause, text = error.__cause__, str(error)
     if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
         return overrides.unknown(cause.parent_node, str(cause.full_key))
@@ -104,6 +106,15 @@ def explain(error: Exception) -> str:
         key = absent[1] if absent else "a key"
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
     return _sentences(f"{text}\n{cause or ''}")
+
+
+def _choice(word: str, known: Sequence[str]) -> str:
+    """What to choose in place of a word: one of all names, or of MANY one of the nearest."""
+    if len(known) < MANY:
+        return f"choose one of {', '.join(known)}"
+    close = difflib.get_close_matches(word, known, n=overrides.MOST, cutoff=0.4)
+    nearest = f"; nearest: {', '.join(close)}" if close else ""
+    return f"choose one of the {len(known)} in `python -m hybrid_rl.list`{nearest}"
 
 
 def _no_yaml(error: yaml.YAMLError) -> str:

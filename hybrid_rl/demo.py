@@ -25,7 +25,7 @@ from pathlib import Path
 from hybrid_rl import __version__
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, output, read
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, install
 from hybrid_rl.view import __main__ as view
 
 ARGUMENTS = (
@@ -37,7 +37,7 @@ EXTRAS = {"view": "viser", "onnx": "onnx", "warp": "warp", "wandb": "wandb", "sl
 SHOWN = 200  # decisions of the video
 NEXT = """
 Next:
-  python -m hybrid_rl.view policy=halfcheetah reward=speed   # another goal, live{install}
+  python -m hybrid_rl.view policy=halfcheetah reward=speed   # another goal, live{hint}
   python -m hybrid_rl.render policy=halfcheetah reward=speed reward.target=-2   # it runs backwards
   python -m hybrid_rl.train task=pendulum algo=sac settings=light   # train
   python -m hybrid_rl.list   # all tasks and methods
@@ -102,15 +102,15 @@ def main() -> None:
     out = Path(given["out"] or f"{Path(policy).stem}.mp4")
     window = windowed(given["window"])
     print(installed(), flush=True)
-    install = "" if find_spec("mjviser") else '; pip install "hybrid_rl[view]"'
+    hint = "" if find_spec("mjviser") else f"; {install('view')}"
     if not window:
         print(f"drawing {policy}, half a minute without a graphics card", flush=True)
         print(film(policy, out))
-        print(NEXT.format(install=install))
+        print(NEXT.format(hint=hint))
         return
     if given["out"]:
         raise UsageError(f"out={given['out']}: is of a video; give it with window=false")
-    print(NEXT.format(install=install), flush=True)
+    print(NEXT.format(hint=hint), flush=True)
     shown = {**{each.name: each.default for each in view.ARGUMENTS}, "policy": policy}
     view.show(shown, {}, webbrowser.open if given["window"] == "auto" else None)
 

@@ -44,6 +44,14 @@ class MisfitError(CheckpointError):
     """A checkpoint is intact but belongs to another run."""
 
 
+def install(extra: str) -> str:
+    """The command that installs an extra of this package, of a checkout or a wheel, in any folder.
+
+    In quotes, as zsh reads brackets as a pattern.
+    """
+    return f'pip install "hybrid_rl[{extra}]"'
+
+
 def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str | None:
     """FILE:LINE of the user's, what was raised there and a hint; None if no such file took part.
 

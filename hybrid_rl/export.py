@@ -14,7 +14,7 @@ with action = f.call(obs) for a policy. A controller that plans is
 state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at each decision. The
 other formats hold the layers of a multilayer perceptron, or of a linear policy: a .npz, with a
 Python file next to it that has act(obs) in NumPy; an .onnx, obs [N, o] -> action [N, m]
-(`pip install hybrid_rl[onnx]`); a .h, a function of C99. All include the parameters and the
+(`pip install "hybrid_rl[onnx]"`); a .h, a function of C99. All include the parameters and the
 normalisation of the observations [o]. Actions are [m] in [-1, 1], without exploration.
 """
 
@@ -37,7 +37,7 @@ from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, who
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, install
 from hybrid_rl.networks import Perceptron, precision
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import chosen
@@ -150,7 +150,7 @@ def _saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
     try:
         save_onnx(out, task, spec, net)
     except ImportError as error:
-        raise UsageError(f"out={out}: needs onnx; pip install hybrid_rl[onnx]") from error
+        raise UsageError(f"out={out}: needs onnx; {install('onnx')}") from error
     return f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs}})'
 
 

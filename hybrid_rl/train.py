@@ -166,7 +166,8 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     members = together.expanded(config, typed)
     config = members[0].config
     output = launch.Output(None if on_row is None else loggers.Function(on_row))
-    summary = launch.train(members, overrides.given(typed), interrupt.answered, output)
+    given = overrides.given(typed)
+    summary = launch.train(members, given, interrupt.answered, output)
     if output.on_row is not None and output.on_row.problem is not None:
         raise output.on_row.problem
     if summary["signal"] is None:
@@ -185,7 +186,7 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
         raise DivergenceError(divergence.line(summary["diverged"], left, None))
     if config.resume is None and config.total_steps <= config.random_steps:
         print(f"nothing but random actions: random_steps={config.random_steps}", flush=True)
-    if config.resume is None and not config.eval_modes:
+    if config.resume is None and "eval_modes" in given and not config.eval_modes:  # no task's
         print("nothing was evaluated: eval_modes=[]", flush=True)
     return summary
 

@@ -38,10 +38,10 @@ def with_demonstrations(composed: DictConfig, folder: Path) -> DictConfig:
 
 
 def load(algo: str, *overrides: str) -> DictConfig:
-    """The configuration of two learners of small parts."""
+    """The configuration of two learners of this method, of small parts."""
     linear = algo.startswith(LINEAR)
     small = ["total_steps=200"] if linear else SMALL
-    composed = config.load([*overrides, "num_seeds=2", *small])
+    composed = config.load([f"algo={algo}", *overrides, "num_seeds=2", *small])
     if linear:
         put(composed.controllers, horizon=2, size=4)
         put(composed.learners, horizon=2, size=4)

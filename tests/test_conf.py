@@ -75,7 +75,7 @@ RUN = {  # methods that run here, one of a kind; test_learning.py runs four, the
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite; of some only shapes of one."""
-    composed = small.with_demonstrations(small.load(algo, f"task={task}", f"algo={algo}"), tmp_path)
+    composed = small.with_demonstrations(small.load(algo, f"task={task}"), tmp_path)
     run = config.build(composed)
     if algo in RUN:
         small.learn(run)

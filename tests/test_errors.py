@@ -19,13 +19,14 @@ COUNT = "must be a whole number, 1 or more"
 
 USAGE = [  # overrides of train, words of the line
     ("task=cartpool", "task=cartpool: unknown; choose one of ant, cart_double_pendulum"),
-    ("algo=sacc", "algo=sacc: unknown; choose one of analytic, bayesopt, bc, "),
+    ("algo=ppo", " in `python -m hybrid_rl.list`; nearest: mppi, nn_mppi, mapping"),
+    ("algo=dqn", "algo=dqn: unknown; choose one of the 6"),
     ("task=null", "task=null: choose one of ant, cart_double_pendulum"),
     ("constraint=3", "constraint=3: choose one of height, limit, pitch"),
     ("reward=3", "reward=3: choose one of aim, height, level"),
     ("reward_model=true", "reward_model=true: choose one of known, network, "),
     ("controller@planner=3", "controller@planner=3: choose one of adjoint, "),
-    ("experiment=null", "experiment=null: choose one of arrangements/first, "),
+    ("experiment=null", "experiment=null: choose one of the 4"),
     ("env=null", "env=null: must be a group of keys"),
     (
         "task=pendulum,cartpole",
@@ -44,8 +45,8 @@ USAGE = [  # overrides of train, words of the line
         "objective=foo",
         "objective=foo: unknown; choose one of disagreement, fisher, fourier_ergodic, ",
     ),
-    ("experiment=foo", "experiment=foo: unknown; choose one of arrangements/first"),
-    ("experiment=thesis/foo", "experiment=thesis/foo: unknown; choose one of arrangements/first"),
+    ("experiment=foo", "experiment=foo: unknown; choose one of the 4"),
+    ("experiment=thesis/fig_33", "`python -m hybrid_rl.list`; nearest: thesis/fig_3_3, "),
     ("task=gymnasium algo=mppi", "Pendulum-v1: mppi plans on the true dynamics, and this task st"),
     ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
     ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),

@@ -153,7 +153,7 @@ def test_a_world_that_cannot_be_drawn_is_one_line(trained, monkeypatch, capsys, 
     assert call(monkeypatch, f"run={tmp_path}") == 2
     printed = capsys.readouterr().err
     assert printed.count("\n") == 1
-    assert "has no `scene` and no `pose`: the world cannot be drawn" in printed
+    assert "has no `scene` and no `pose`: the world cannot be drawn; write `scene(self)`" in printed
 
 
 def test_a_picture_is_no_larger_than_the_framebuffer(trained, monkeypatch, capsys, can_draw):

@@ -35,6 +35,20 @@ def test_a_workflow_takes_actions_by_commit(path):
     assert "pipx" not in text
 
 
+def test_extras_are_installed_in_quotes():
+    """On the pages and in docstrings; zsh reads brackets as a pattern. Messages have `install`."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    files = [file for top in ("hybrid_rl", "envs") for file in (ROOT / top).rglob("*.py")]
+    texts = [file.read_text(encoding="utf-8") for file in (*pages, *files)]
+    found = [one for text in texts for one in re.findall(r"pip install ((?:-e )?\S+\[\S+)", text)]
+    quoted = [re.match(r'(?:-e )?"(?:\.|hybrid_rl)\[([\w,{}]+)\]"', one) for one in found]
+    assert len(found) > 10
+    assert [one for one, match in zip(found, quoted, strict=True) if match is None] == []
+    named = {name for match in quoted if match for name in match[1].split(",")}
+    assert named - {"{extra}"} <= set(project["optional-dependencies"])
+
+
 @pytest.mark.parametrize("name", ["pip", "setuptools"])
 def test_the_tools_of_the_set_up_are_locked_with_hashes(name):
     lines = bootstrap.locked(name).splitlines()

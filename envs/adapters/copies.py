@@ -14,6 +14,8 @@ from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
 
 Numbers = np.ndarray | Array
 SILENT = 100  # level of Gymnasium's log
+PICTURE = "for a video, give it `def __init__(self, render_mode=None)` and a method `render` that "
+PICTURE += "returns a picture, an array [height, width, 3] of uint8"
 
 
 class Outcome(NamedTuple):
@@ -95,9 +97,17 @@ class Copies:
         Raises:
             WorldError: if it gives none.
         """
-        found = self._call("render", lambda: self._vector.render()[0])
+
+        def drawn() -> Any:
+            try:
+                return self._vector.render()[0]
+            except NotImplementedError as error:  # Gymnasium's own `render`
+                raise WorldError(f"{self.env.name}: {PICTURE}") from error
+
+        found = self._call("render", drawn)
         if not (isinstance(found, np.ndarray) and found.ndim == 3):
-            raise WorldError(f"{self.env.name}: render: gives no picture, but {type(found)}")
+            line = f"{self.env.name}: render: returns {type(found).__name__}"
+            raise WorldError(f"{line}; {PICTURE}")
         return found[: found.shape[0] // 2 * 2, : found.shape[1] // 2 * 2]
 
     def _next(self, obs: np.ndarray, done: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ from gymnasium.spaces import Box
 from gymnasium.wrappers import FlattenObservation
 from jax import Array
 
-from hybrid_rl.envs.adapters.copies import Copies
+from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, imported
 from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
@@ -30,7 +30,6 @@ from hybrid_rl.types import EnvState, Spec
 KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
 KINDS += "that Gymnasium flattens (Box, Discrete, Dict, Tuple)"
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
-PICTURE = "for a video, give it `def __init__(self, render_mode=None)` and a method `render`"
 RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
 HUGE = 100_000  # entries; an image has as many
 

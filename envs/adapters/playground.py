@@ -7,7 +7,7 @@ taken, without Playground's wrapper for training: episodes, resets and time limi
 Playground marks an episode as done where a number is NaN, too. Then the last observation and a
 reward of 0 stand in for it, and the episode terminates.
 
-Source: MuJoCo Playground's `mjx_env.MjxEnv`; task=playground needs `pip install hybrid_rl[bench]`.
+Source: MuJoCo Playground's `mjx_env.MjxEnv`; task=playground needs the extra `bench`.
 """
 
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.adapters.unstepped import Items
-from hybrid_rl.errors import UsageError, gist
+from hybrid_rl.errors import UsageError, gist, install
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -83,7 +83,7 @@ def _loaded(env: Playground) -> Any:
     try:
         registry = import_module("mujoco_playground").registry
     except ImportError as error:
-        line = f"task=playground needs MuJoCo Playground ({error}); pip install hybrid_rl[bench]"
+        line = f"task=playground needs MuJoCo Playground ({error}); {install('bench')}"
         raise UsageError(line) from error
     if env.name not in registry.ALL_ENVS:
         names = ", ".join(registry.ALL_ENVS)

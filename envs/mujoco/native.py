@@ -23,6 +23,7 @@ from mujoco.batch import Batch
 
 from hybrid_rl.envs.mujoco import mjcf, xla_callback
 
+NAME = "hybrid_rl.native:"  # begins the names of the foreign calls
 _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
 _ALL = mujoco.mjtStage.mjSTAGE_ACC.value  # also forces
 
@@ -112,7 +113,7 @@ def _call(
     width += sum(prod(mjcf.shape(asset, name)) for name in reads)
     out = jax.ShapeDtypeStruct((width,), np.float32)
     advance = partial(_advance, asset, threads, n, reads)
-    name = f"hybrid_rl.native:{asset}:{threads}:{n}:{','.join(reads)}"
+    name = f"{NAME}{asset}:{threads}:{n}:{','.join(reads)}"
     xla_callback.register(name, advance)
 
     def callback(x: jax.Array) -> np.ndarray:
@@ -128,6 +129,14 @@ def _call(
         return jax.ffi.ffi_call(name, out, vmap_method="broadcast_all")(x)
 
     return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
+
+
+def steps_of(name: str) -> tuple[str, int] | None:
+    """The model and the number of physics steps of a foreign call; None for others' calls."""
+    if not name.startswith(NAME):
+        return None
+    asset, _, n, _ = name.removeprefix(NAME).rsplit(":", 3)
+    return asset, int(n)
 
 
 def step(asset: str, threads: int, n: int, x: jax.Array, reads: tuple[str, ...] = ()) -> jax.Array:

@@ -31,6 +31,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf, native
+from hybrid_rl.errors import install
 
 NATIVE_PER_CORE = 40  # environments per core of the host up to which auto is native
 IMPLEMENTATIONS = ("auto", "native", "mjx", "warp")
@@ -62,7 +63,8 @@ def check(implementation: str) -> None:
     if implementation != "warp":
         return
     if find_spec("warp") is None:
-        raise ValueError("physics='warp' needs the package warp-lang: install it, or use mjx")
+        line = "physics='warp' needs the package warp-lang"
+        raise ValueError(f"{line}: {install('warp')}, or use mjx")
     if jax.default_backend() != "gpu":
         raise ValueError(
             f"physics='warp' needs an NVIDIA GPU, and JAX runs on {jax.default_backend()}: "

@@ -24,6 +24,7 @@ ROBOT, GROUND = (0.91, 0.62, 0.24, 1.0), (0.40, 0.46, 0.52, 1.0)  # instead of i
 LAMP = (0.0, 0.45, -1.0)  # direction of its light
 ELEVATION = -15.0  # [degrees] of the free camera, instead of MuJoCo's -45
 MARGIN = 1.1  # of the free camera's distance
+DRAWN = "write `scene(self)`, MJCF text or its file, and `pose(self, state)`, its qpos at a state"
 
 
 def scene_of(env: Any) -> str:
@@ -58,9 +59,8 @@ def _first(env: Any) -> PhysicsState:
     found = simulated(jax.eval_shape(env.reset, jax.random.key(0)))
     if not found:
         missing = [f"`{name}`" for name in ("scene", "pose") if not hasattr(env, name)]
-        raise ValueError(
-            f"{type(env).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
-        )
+        line = f"{type(env).__name__} has no {' and no '.join(missing)}: the world cannot be drawn"
+        raise ValueError(f"{line}; {DRAWN}")
     return found[0]
 
 

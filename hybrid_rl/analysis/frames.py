@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.analysis.results import RunFolder, find
+from hybrid_rl.errors import install
 from hybrid_rl.run.folder import members
 
 
@@ -38,5 +39,5 @@ def pandas() -> Any:
     try:
         return import_module("pandas")
     except ImportError as error:
-        line = 'needs pandas, which is not installed; pip install "hybrid_rl[pandas]"'
+        line = f"needs pandas, which is not installed; {install('pandas')}"
         raise ImportError(line) from error

@@ -20,13 +20,13 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import overrides
 from hybrid_rl.cli import study, sweep
 from hybrid_rl.composition import options
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.lock import locked
 
-INSTALL = 'hydra/sweeper=tuned: Optuna is not installed; pip install "hybrid_rl[tune]"'
+INSTALL = f"hydra/sweeper=tuned: Optuna is not installed; {install('tune')}"
 OWN = ("resume", "distributed")  # keys that trials cannot have
 HINT = "write KEY=choice(A,B), KEY=interval(0.1,0.5), or KEY=tag(log,interval(1e-4,1e-2))"
 

@@ -39,9 +39,10 @@ class Duration:
             return None
         speed, self.trial = self.trial.rate, None
         whole = so_far + left / speed
-        note = f"about {clock(whole)} for the whole run at {rate(speed)} decisions/s, "
+        note = f"about {clock(whole)} for the whole run, without the evaluations to come, "
+        note += f"by the speed of its first learning, {rate(speed)} decisions/s"
         hint = f"; {self.instead} takes less" if self.on_cpu and whole > LONG else ""
-        return note + "without the evaluations to come" + hint
+        return note + hint
 
 
 def instead(config: DictConfig) -> str:

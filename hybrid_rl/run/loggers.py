@@ -20,7 +20,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, Protocol
 
-from hybrid_rl.errors import CheckpointError, UsageError
+from hybrid_rl.errors import CheckpointError, UsageError, install
 from hybrid_rl.run.reading import appended, lines, text
 from hybrid_rl.run.records import COORDINATES, Row, row_of
 
@@ -281,8 +281,7 @@ def check(given: Any) -> tuple[str, ...]:
         try:
             import_module(name)
         except ImportError as error:
-            line = f'logger={name}: not installed; pip install "hybrid_rl[{name}]"'
-            raise UsageError(line) from error
+            raise UsageError(f"logger={name}: not installed; {install(name)}") from error
     return names
 
 

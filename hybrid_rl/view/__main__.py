@@ -34,7 +34,7 @@ from typing import Any
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import ROBOT, ROBOT_CHANGES, Argument, read, robot, whole
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, install
 
 
 def port(name: str, given: str) -> int:
@@ -49,7 +49,6 @@ ARGUMENTS = (
     Argument("port", 8080, "of the address, or the next one that is free", port),
     Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
 )
-INSTALL = 'needs viser and mjviser; pip install "hybrid_rl[view]"'
 
 
 def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: Any) -> Any:
@@ -125,7 +124,7 @@ def installed() -> Any:
         import_module("mjviser")
         return import_module("viser")
     except ImportError as error:
-        raise UsageError(f"view: {INSTALL}") from error
+        raise UsageError(f"view: needs viser and mjviser; {install('view')}") from error
 
 
 def show(

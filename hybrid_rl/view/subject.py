@@ -12,7 +12,7 @@ from typing import Any, get_args
 
 from hybrid_rl.config import PAID
 from hybrid_rl.demonstrate import scripted
-from hybrid_rl.fields import NotNegative, Positive, choices
+from hybrid_rl.fields import Must, choices, plain
 from hybrid_rl.goals import changed
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained
@@ -22,7 +22,7 @@ from hybrid_rl.types import Params
 DISTURBED = {"delay": 5.0, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
 EFFORT = ("samples", "elites", "refined", "iterations")  # fields of a planner
 QUICK = 4  # times fewer of them
-SPAN = 5.0  # a slider ends at so many times its value, or at so many
+SPAN = 5.0  # a slider ends at so many times its value; at so many, of what is 0 or has a sign
 
 
 @dataclass(frozen=True)
@@ -81,16 +81,24 @@ def sliders(group: str, part: Any) -> list[Slider]:
         value = getattr(part, field.name)
         if isinstance(value, bool) or not isinstance(value, int | float):
             continue
-        whole, most = field.type is int, SPAN * max(1.0, abs(value))
+        whole = any(plain(kind) is int for kind in choices(field.type))
+        signed = not whole and group != "episode" and _allowed(field.type, -1.0)
+        most = SPAN * (abs(value) if value and not signed else max(1.0, abs(value)))
         if group == "episode":
             most = max(DISTURBED.get(field.name, most), value)
-        rules = [get_args(kind)[1:] for kind in choices(field.type)]
-        above = get_args(Positive)[1:] in rules
-        signed = not (above or whole or get_args(NotNegative)[1:] in rules or group == "episode")
+        most = next((x for x in (most, 1.0, 0.99) if _allowed(field.type, x)), value)
         step = 1.0 if whole else most / 100
-        least = -most if signed else step if above else 0.0
+        lows = -most if signed else 0.0, 0.0, step
+        least = next((x for x in lows if _allowed(field.type, x)), value)
         found.append(Slider(f"{group}.{field.name}", value, least, most, step))
     return found
+
+
+def _allowed(kind: Any, value: float) -> bool:
+    """Whether the rules of a field's type hold for a number; whole where one must be."""
+    number = int(value) if value.is_integer() else value
+    rules = [rule for each in choices(kind) for rule in get_args(each) if isinstance(rule, Must)]
+    return all(rule.hold(number) for rule in rules)
 
 
 def with_goals(whole: Any, episode: Episode, numbers: Mapping[str, Any]) -> Any:

@@ -51,7 +51,7 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
     ("given", "words"),
     [
         ("policy_learner.tau=0.005,3", "tau=3: must lie in (0, 1] (job 1: policy_learner.tau=3)"),
-        ("algo=sac,scal", "algo=scal: unknown; choose one of"),
+        ("algo=sac,scal", "algo=scal: unknown; choose one of the "),
         ("algo=sac,nn_mppi adjoint_planner.horizon=3,4", "sac, nn_mppi do not use it"),
         (
             "task=pendulum,halfcheetah algo=kle3",

@@ -71,7 +71,7 @@ def test_effort_counts_the_action_that_arrives() -> None:
 def test_learners_are_paid_less_and_the_return_stays() -> None:
     """In the memory of a run, by the pendulum's own reward of each decision."""
     given = ["task=pendulum", "constraint=speed", "constraint.most=2", "constraint.price=7"]
-    built = config.build(small.load("sac", *given, "algo=sac"))
+    built = config.build(small.load("sac", *given))
     loop = loop_of(built.agent, built.seeds, stride=20)
     state = loop.init()
     state, metrics = loop.compile(state)(state, jnp.int32(0), jnp.int32(20))

@@ -475,6 +475,22 @@ def test_a_world_may_keep_keys_flags_of_numpy_and_information_of_its_own(folder)
     assert check(world(folder, odd)) == ()
 
 
+@pytest.mark.parametrize(
+    ("step", "sure"),
+    [
+        ("Physics(ASSET, self.physics).step(state.data, action, 4)", True),
+        ("jax.lax.fori_loop(0, 4, lambda i, x: PHYSICS.step(x, action, 1), state.data)", False),
+    ],
+)
+def test_physics_of_another_time_than_a_decision_is_one_line(folder, step, sure):
+    """Where it is certain: a loop hides how often it steps."""
+    text = changed(CRANE, "Physics(ASSET, self.physics).step(state.data, action, 10)", step)
+    text = changed(text, "import jax.numpy", "import jax\nimport jax.numpy")
+    notes = check(world(folder, changed(text, "\n\n\n@", "\nPHYSICS = Physics(ASSET)\n\n\n@")))
+    says = "makes 4 physics steps of 0.005 s, 0.02 s in all, and spec.dt is 0.05 s; write dt=0.02"
+    assert [says in note for note in notes] == ([True] if sure else [])
+
+
 def test_a_state_needs_no_metrics_and_no_info(folder):
     assert check(world(folder, changed(WORLD, STATE, "EnvState(x, x, reward, no, no)"))) == ()
 

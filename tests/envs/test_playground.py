@@ -101,5 +101,5 @@ def test_what_playground_does_not_have_is_one_line(monkeypatch):
     with pytest.raises(UsageError, match=r"^env\.name=Slide: not in Playground, which has Slider$"):
         Playground("Slide")
     monkeypatch.setitem(sys.modules, "mujoco_playground", None)
-    with pytest.raises(UsageError, match=r"pip install hybrid_rl\[bench\]"):
+    with pytest.raises(UsageError, match=r'pip install "hybrid_rl\[bench\]"'):
         Playground("Other")

@@ -33,7 +33,7 @@ def _numbers(leaf: Any) -> np.ndarray:
 )
 def test_by_hand_they_are_a_step(algo: str, resets_itself: bool) -> None:
     """Three programs, with the world on the host between them, for two environments."""
-    given = "task=point_mass", f"algo={algo}", "num_envs=2", f"episode.steps={STEPS}"
+    given = "task=point_mass", "num_envs=2", f"episode.steps={STEPS}"
     agent = config.build(small.load(algo, *given)).agent
     world: Any = jax.jit(jax.vmap(agent.episode.step))
     parts = agent.decide, agent.observe, agent.learn, agent.step

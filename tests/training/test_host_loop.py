@@ -264,6 +264,22 @@ def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs(
         copies.reset()
 
 
+@pytest.mark.parametrize(
+    ("render", "line"),
+    [
+        (gymnasium.Env.render, "Wrong: for a video, give it `def __init__"),
+        (lambda self: None, "Wrong: render: returns NoneType; for a video, give it `def __init__"),
+    ],
+)
+def test_a_video_of_an_environment_without_a_picture_says_what_it_needs(render, line):
+    kind = type("Wrong", (Count,), {"render": render})
+    copies = External(make=kind).copies([1], STEPS)
+    copies.reset()
+    with pytest.raises(WorldError) as error:
+        copies.picture()
+    assert str(error.value).startswith(line)
+
+
 def test_planning_on_the_environment_itself_is_refused():
     env = counting()
     with pytest.raises(UsageError, match="steps on the host"):

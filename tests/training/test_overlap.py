@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import jax
@@ -14,6 +14,7 @@ from test_host_loop import ROUNDS, STEPS, counting
 
 from hybrid_rl import config
 from hybrid_rl.errors import WorldError
+from hybrid_rl.learners.return_scale import ReturnScale
 from hybrid_rl.training import sending
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loops import loop_of
@@ -24,22 +25,32 @@ E = 2  # environments of each of the two learners
 
 
 @cache
-def compiled(algo: str, fail: str, early: bool) -> tuple[Any, Any]:
-    """A loop in `Count`, and its program."""
-    given = "task=point_mass", f"algo={algo}", f"num_envs={E}"
-    agent = config.build(small.load(algo, *given)).agent
-    loop = loop_of(replace(agent, episode=Episode(counting(fail=fail), STEPS)), (0, 1), ROUNDS)
+def compiled(algo: str, early: bool, latest: bool) -> tuple[Any, Any, Any]:
+    """A loop in `Count`, its first state and its program.
+
+    latest: with one more learner, of the latest decision.
+    """
+    agent = config.build(small.load(algo, "task=point_mass", f"num_envs={E}")).agent
+    if latest:
+        agent = replace(agent, learners={"scale": ReturnScale(num_envs=E), **agent.learners})
+    loop = loop_of(replace(agent, episode=Episode(counting(), STEPS)), (0, 1), ROUNDS)
     loop.early &= early
-    return loop, loop.compile(loop.init())
+    first = loop.init()
+    return loop, first, loop.compile(first)
 
 
 def run(
-    algo: str, fail: str = "", early: bool = True, calls: tuple[int, ...] = (ROUNDS,)
+    algo: str,
+    fail: str = "",
+    early: bool = True,
+    latest: bool = False,
+    calls: tuple[int, ...] = (ROUNDS,),
 ) -> tuple[Any, Any]:
     """State and metrics [rounds, ...] after calls of so many rounds each."""
-    loop, program = compiled(algo, fail, early)
-    program.copies = None
-    state, parts, step = loop.init(), [], 0
+    loop, first, program = compiled(algo, early, latest)
+    loop.agent = replace(loop.agent, episode=Episode(counting(fail=fail), STEPS))
+    program.copies = None  # new ones
+    state, parts, step = jax.jit(partial(jax.tree.map, jnp.copy))(first), [], 0  # it is donated
     for rounds in calls:
         state, metrics = program(state, jnp.int32(step), jnp.int32(rounds))
         parts.append(jax.tree.map(lambda m, n=rounds: m[:n], metrics))
@@ -56,20 +67,20 @@ def numbers(*leaves: Any) -> Iterator[Any]:
 @pytest.mark.parametrize(("algo", "loss"), [("sac", "sac/critic_loss"), ("nn_mppi", "model/loss")])
 def test_it_learns_what_it_learns_after_the_step(algo, loss):
     """From the first update on; what is not known yet is NaN in the memory, which would spread."""
-    assert compiled(algo, "", True)[0].early
+    assert compiled(algo, True, False)[0].early
     (early, metrics), (late, _) = (run(algo, early=each) for each in (True, False))
     for a, b in zip(*map(jax.tree.leaves, (early, late)), strict=True):
         np.testing.assert_allclose(*numbers(a, b), rtol=1e-5, atol=1e-6)
     assert np.isfinite(metrics[loss][2:]).all()
 
 
-@pytest.mark.parametrize(("algo", "closed"), [("sac", 1), ("flash_sac", 3)])
-def test_only_a_learner_of_the_latest_decision_waits_for_it(algo, closed, monkeypatch):
-    """After each of three decisions; the scale of returns of flash_sac is such a learner."""
-    program, calls = compiled(algo, "", True)[1], []
+@pytest.mark.parametrize(("latest", "closed"), [(False, 1), (True, 3)])
+def test_only_a_learner_of_the_latest_decision_waits_for_it(latest, closed, monkeypatch):
+    """After each of three decisions; the scale of returns, as flash_sac has it, is one."""
+    program, calls = compiled("sac", True, latest)[2], []
     close = program.close
     monkeypatch.setattr(program, "close", lambda *given: (calls.append(1), close(*given))[1])
-    run(algo, calls=(3,))
+    run("sac", latest=latest, calls=(3,))
     assert len(calls) == closed
 
 

@@ -18,6 +18,7 @@ from hybrid_rl.envs.ant import Ant
 from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.mujoco import scenery
+from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.quadcopter import Quadcopter
 from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.envs.sawyer_torque import SawyerTorque
@@ -75,6 +76,14 @@ def test_sliders_have_the_range_of_their_field():
     assert found["reward.effort"].least == 0
     (mass,) = [one for one in sliders("env", HalfCheetah()) if one.key == "env.mass"]
     assert mass.least > 0
+    stack = {one.key: one for one in sliders("env", PandaStack())}
+    distance = stack["env.success_distance"]
+    assert 0 < distance.least < distance.value < distance.most < 1  # [m]
+    assert all(one.least >= 0 for one in stack.values())
+    fault = {one.key: one for one in sliders("env", QuadcopterSE3())}
+    assert (fault["env.rotor_loss"].least, fault["env.rotor_loss"].most) == (0, 1)
+    rounds = {one.key: one for one in sliders("env", SawyerTorque())}["env.rounds"]
+    assert (rounds.least, rounds.most, rounds.step) == (1, 10, 1)
     for world in (Quadcopter(), QuadcopterSE3()):
         (wind,) = [one for one in sliders("env", world) if one.key == "env.wind"]
         assert (wind.value, wind.least, wind.most) == (0, -5, 5)

@@ -84,7 +84,7 @@ def test_a_comment_says_which_tasks_the_parts_of_a_method_need(algo: str) -> Non
 @pytest.mark.parametrize("algo", sorted({*RUN, *listed.listing(THESIS)["algo"]}))
 def test_every_method_learns(algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite; of some only shapes of one."""
-    composed = small.load(algo, f"task={of_task(algo)}", f"algo={algo}")
+    composed = small.load(algo, f"task={of_task(algo)}")
     run = config.build(small.with_demonstrations(composed, tmp_path))
     if algo in RUN:
         small.learn(run)

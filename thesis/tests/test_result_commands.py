@@ -14,7 +14,7 @@ RUN_ELSEWHERE = {(test_methods.of_task(algo), algo) for algo in test_methods.RUN
     ("pendulum", "sac"),
 }
 OWN = (  # what a small run has of its own
-    *("settings=", "num_envs=", "num_seeds=", "run_dir=", "resume=", "hydra/", "hydra."),
+    *("algo=", "settings=", "num_envs=", "num_seeds=", "run_dir=", "resume=", "hydra/", "hydra."),
     *("random_steps=", "total_steps=", "policy_learner.updates=", "map=", "map.file="),
 )
 
