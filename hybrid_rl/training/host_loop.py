@@ -102,13 +102,15 @@ class HostLoop(Loop):
         the row, the decision of the run, whether there is one before, and the ticket.
         """
         row, step, made, ticket = at
-        state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
+        if self.early:
+            state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
+            rows = put(rows, led, row - 1)
         u, state, metrics = jax.vmap(self.agent.decide, (0, None))(state, step)
         state = jax.vmap(self._expecting)(state, send(u, ticket, *SEEDS))
         if self.early:
             state, learned = jax.vmap(self.agent.learn, (0, None))(state, step)
             metrics |= learned
-        return state, put(put(rows, led, row - 1), metrics, row)
+        return state, put(rows, metrics, row)
 
     def _close(self, state: Any, rows: Any, u: Array, got: Outcome, at: Array) -> tuple[Any, Any]:
         """All learners after u [S, E, m], the decision of `at`, led to `got` [S, E, ...]."""
