@@ -107,6 +107,8 @@ def test_what_moves_back_is_noise_only_if_it_does_so_at_rest():
     assert observed.noise(evidence(x + noise, action, rest=noisy)).startswith("obs 1 moves")
     for rest in (still, none):
         assert observed.noise(evidence(x + noise, action, rest=rest)) is None
+    short = evidence(x[:1, :2], action[:1, :1])  # too few decisions to say anything
+    assert observed.noise(evidence(x + noise, action, rest=short)).startswith("obs 1 moves")
 
 
 def test_a_velocity_that_is_missing_is_missed():

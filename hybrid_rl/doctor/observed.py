@@ -146,8 +146,9 @@ def noise(run: Evidence) -> str | None:
         return None
     noise, share, sure = _taken_back(run)
     found = (share > NOISE) & sure
-    if found.any() and run.at_rest is not None:
-        noise_at_rest, share_at_rest, _ = _taken_back(run.at_rest)
+    rest = run.at_rest if found.any() else None
+    if rest is not None and len(rest.at(2)[0]) >= ENOUGH:
+        noise_at_rest, share_at_rest, _ = _taken_back(rest)
         found &= (share_at_rest > NOISE) & (2 * noise_at_rest > noise)
     at = np.flatnonzero(found)
     if not len(at):

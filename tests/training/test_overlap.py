@@ -27,10 +27,11 @@ E = 2  # environments of each of the two learners
 
 @cache
 def compiled(algo: str, fail: str, early: bool) -> tuple[Any, Any]:
-    """A loop in `Count`, and its program."""
+    """A loop in `Count` with a memory of five rounds, and its program."""
     given = "task=point_mass", f"algo={algo}", f"num_envs={E}"
     agent = config.build(small.load(algo, *given)).agent
-    loop = loop_of(replace(agent, episode=Episode(counting(fail=fail), STEPS)), (0, 1), ROUNDS)
+    replay, episode = replace(agent.replay, capacity=5 * E), Episode(counting(fail=fail), STEPS)
+    loop = loop_of(replace(agent, replay=replay, episode=episode), (0, 1), ROUNDS)
     loop.early &= early
     return loop, loop.compile(loop.init())
 
@@ -81,6 +82,7 @@ def test_a_run_does_not_depend_on_where_its_calls_end(monkeypatch):
     whole, parts = run("sac"), run("sac", calls=(1, 4, ROUNDS - 5))
     for a, b in zip(*map(jax.tree.leaves, (whole, parts)), strict=True):
         np.testing.assert_array_equal(*numbers(a, b))
+    assert np.isfinite(whole[0].memory.rows).all()
 
 
 def test_an_error_in_the_environment_ends_the_call():
