@@ -77,8 +77,10 @@ def test_a_delay_is_counted(delay):
 
 def test_a_slow_motor_and_one_that_is_off_have_different_lines():
     assert "older actions act more" in observed.action(evidence(*oscillator(lag=20.0)))
-    none_arrives = oscillator(delay=STEPS)
-    assert "no action changed" in observed.action(evidence(*none_arrives))
+    x, action = oscillator(delay=STEPS)
+    assert "no action changed" in observed.action(evidence(x, action))
+    clock = np.broadcast_to(np.arange(STEPS + 1.0), x.shape[:2])  # its change is always the same
+    assert "no action changed" in observed.action(evidence(np.dstack((x, clock)), action))
 
 
 def test_limits_and_sensors_that_are_off_are_named_with_their_entries():

@@ -72,7 +72,8 @@ def effects(run: Evidence) -> tuple[np.ndarray, np.ndarray, tuple[float, float]]
     none, best = squared([]), squared(every)
     most = np.argmax((none - best).mean(0) / none.mean(0))
     loss = [squared([j for j in every if j != k])[:, most] - best[:, most] for k in every]
-    size, left = none[:, most].mean(), best.mean(0) / y.var(0)
+    size, spread = none[:, most].mean(), y.var(0)
+    left = best.mean(0) / np.where(spread > 0, spread, np.inf)  # what changes evenly is predicted
     return (
         np.array([each.mean() for each in loss]) / size,
         np.array([each.std() for each in loss]) / size / np.sqrt(len(y)),
