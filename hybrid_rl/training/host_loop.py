@@ -98,7 +98,8 @@ class HostLoop(Loop):
         """All learners after a decision that is sent, and its metrics in a row of `rows`.
 
         u [S, E, m], got [S, E, ...]: of the decision before, if it is still to be observed. at:
-        the row, the decision of the run, whether there is one before, and the ticket.
+        the row, the decision of the run, whether there is one before, and the ticket. If there is
+        none, the last row of the call is written, as it will be again.
         """
         row, step, made, ticket = at
         if self.early:
