@@ -77,8 +77,10 @@ def test_a_delay_is_counted(delay):
 
 def test_a_slow_motor_and_one_that_is_off_have_different_lines():
     assert "older actions act more" in observed.action(evidence(*oscillator(lag=20.0)))
-    none_arrives = oscillator(delay=STEPS)
-    assert "no action changed" in observed.action(evidence(*none_arrives))
+    x, action = oscillator(delay=STEPS)
+    assert "no action changed" in observed.action(evidence(x, action))
+    clock = np.broadcast_to(np.arange(STEPS + 1.0), x.shape[:2])  # its change is always the same
+    assert "no action changed" in observed.action(evidence(np.dstack((x, clock)), action))
 
 
 def test_limits_and_sensors_that_are_off_are_named_with_their_entries():
@@ -107,6 +109,8 @@ def test_what_moves_back_is_noise_only_if_it_does_so_at_rest():
     assert observed.noise(evidence(x + noise, action, rest=noisy)).startswith("obs 1 moves")
     for rest in (still, none):
         assert observed.noise(evidence(x + noise, action, rest=rest)) is None
+    short = evidence(x[:1, :2], action[:1, :1])  # too few decisions to say anything
+    assert observed.noise(evidence(x + noise, action, rest=short)).startswith("obs 1 moves")
 
 
 def test_a_velocity_that_is_missing_is_missed():

@@ -72,7 +72,8 @@ def effects(run: Evidence) -> tuple[np.ndarray, np.ndarray, tuple[float, float]]
     none, best = squared([]), squared(every)
     most = np.argmax((none - best).mean(0) / none.mean(0))
     loss = [squared([j for j in every if j != k])[:, most] - best[:, most] for k in every]
-    size, left = none[:, most].mean(), best.mean(0) / y.var(0)
+    size, spread = none[:, most].mean(), y.var(0)
+    left = best.mean(0) / np.where(spread > 0, spread, np.inf)  # what changes evenly is predicted
     return (
         np.array([each.mean() for each in loss]) / size,
         np.array([each.std() for each in loss]) / size / np.sqrt(len(y)),
@@ -146,8 +147,9 @@ def noise(run: Evidence) -> str | None:
         return None
     noise, share, sure = _taken_back(run)
     found = (share > NOISE) & sure
-    if found.any() and run.at_rest is not None:
-        noise_at_rest, share_at_rest, _ = _taken_back(run.at_rest)
+    rest = run.at_rest if found.any() else None
+    if rest is not None and len(rest.at(2)[0]) >= ENOUGH:
+        noise_at_rest, share_at_rest, _ = _taken_back(rest)
         found &= (share_at_rest > NOISE) & (2 * noise_at_rest > noise)
     at = np.flatnonzero(found)
     if not len(at):

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import EnvState, Params, Spec, Transition
@@ -61,7 +61,7 @@ def episodes(
 
     params: [learners, ...].
     """
-    if isinstance(episode.env, External):
+    if isinstance(episode.env, Unstepped):
         return None
     steps = longer * episode.steps
     number = min(max(DECISIONS // steps, FEWEST), EPISODES)

@@ -16,7 +16,6 @@ the end of a call.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -31,7 +30,7 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop
+from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.rollout import act
 from hybrid_rl.training.sending import letters, send
@@ -65,7 +64,7 @@ class HostLoop(Loop):
         u, _, planned = jax.eval_shape(jax.vmap(agent.decide, (0, None)), state, at[0])
         led = jax.eval_shape(jax.vmap(self._observed, (0, 0, 0, None)), state, u, got, at[0])[1]
         learned = jax.eval_shape(jax.vmap(agent.learn, (0, None)), state, at[0])[1]
-        self.rows = jax.tree.map(self._row, {**planned, **learned, **led})
+        self.rows = self.rows_of({**planned, **learned, **led})
         parts = (SEEDS, METRICS, SEEDS, SEEDS, REPLICATED), (SEEDS, METRICS)
         traced, self.closing = (
             self.shard(each, *parts, donate_argnums=(0, 1)).trace(state, self.rows, u, got, at)
@@ -99,16 +98,19 @@ class HostLoop(Loop):
         """All learners after a decision that is sent, and its metrics in a row of `rows`.
 
         u [S, E, m], got [S, E, ...]: of the decision before, if it is still to be observed. at:
-        the row, the decision of the run, whether there is one before, and the ticket.
+        the row, the decision of the run, whether there is one before, and the ticket. If there is
+        none, the last row of the call is written, as it will be again.
         """
         row, step, made, ticket = at
-        state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
+        if self.early:
+            state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
+            rows = put(rows, led, row - 1)
         u, state, metrics = jax.vmap(self.agent.decide, (0, None))(state, step)
         state = jax.vmap(self._expecting)(state, send(u, ticket, *SEEDS))
         if self.early:
             state, learned = jax.vmap(self.agent.learn, (0, None))(state, step)
             metrics |= learned
-        return state, put(put(rows, led, row - 1), metrics, row)
+        return state, put(rows, metrics, row)
 
     def _close(self, state: Any, rows: Any, u: Array, got: Outcome, at: Array) -> tuple[Any, Any]:
         """All learners after u [S, E, m], the decision of `at`, led to `got` [S, E, ...]."""
@@ -136,10 +138,6 @@ class HostLoop(Loop):
         env, control = where(jnp.asarray(made) > 0, *both)
         memory = seen.memory.replace(count=count)
         return state.replace(env=env, control=control, memory=memory), outcome(u, now)
-
-    def _row(self, metric: Any) -> jax.ShapeDtypeStruct:
-        """Of a metric [S, ...] in each round of a call, [stride, S, ...]."""
-        return jax.ShapeDtypeStruct((self.stride, *metric.shape), metric.dtype)
 
 
 class HostProgram:
@@ -175,12 +173,6 @@ class HostProgram:
                 if not made:
                     state, rows = self.close(state, rows, u, got, at)
         return state, jax.device_get(rows)
-
-
-def put(rows: Any, metrics: dict[str, Array], i: Array) -> Any:
-    """The rows with `metrics` [S, ...] in row i."""
-    at = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
-    return rows | {name: at(rows[name], metric) for name, metric in metrics.items()}
 
 
 def _standing(env: EnvState) -> Outcome:

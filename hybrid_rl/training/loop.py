@@ -159,13 +159,25 @@ class Loop:
     ) -> tuple[AgentState, dict[str, Array]]:
         """The state after `rounds` rounds, and their metrics [:rounds] of [stride, S, ...]."""
         step = trace_once(jax.vmap(self.step, in_axes=(0, None)))
-        shapes = jax.eval_shape(step, state, start)[1]
-        rows = jax.tree.map(lambda m: jnp.zeros((self.stride, *m.shape), m.dtype), shapes)
+        shapes = self.rows_of(jax.eval_shape(step, state, start)[1])
+        rows = {name: jnp.zeros(row.shape, row.dtype) for name, row in shapes.items()}
 
         def body(i: Array, carry: tuple[AgentState, Any]) -> tuple[AgentState, Any]:
             state, rows = carry
             state, metrics = step(state, start + i * self.agent.num_envs)
-            put = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
-            return state, jax.tree.map(lambda row, m: put(row, m), rows, metrics)
+            return state, put(rows, metrics, i)
 
         return jax.lax.fori_loop(0, rounds, body, (state, rows))
+
+    def rows_of(self, metrics: dict[str, Any]) -> dict[str, jax.ShapeDtypeStruct]:
+        """The shapes [stride, S, ...] of the metrics of a call, of which a round has [S, ...]."""
+        return {
+            name: jax.ShapeDtypeStruct((self.stride, *metric.shape), metric.dtype)
+            for name, metric in metrics.items()
+        }
+
+
+def put(rows: dict[str, Array], metrics: dict[str, Array], i: Array) -> dict[str, Array]:
+    """The rows with `metrics` [S, ...] in row i."""
+    at = partial(jax.lax.dynamic_update_index_in_dim, index=i, axis=0)
+    return rows | {name: at(rows[name], metric) for name, metric in metrics.items()}

@@ -25,8 +25,8 @@ from hybrid_rl.envs.adapters.copies import Outcome
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.training.actor import check_one
 from hybrid_rl.training.agent import AgentState
-from hybrid_rl.training.host_loop import HostLoop, put, states
-from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS
+from hybrid_rl.training.host_loop import states
+from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.robot_process import RobotProcess
 
@@ -36,16 +36,16 @@ POLL_S = 5e-4  # [s]
 
 
 @dataclass
-class RobotLoop(HostLoop):
+class RobotLoop(Loop):
     """Trains one learner on one robot, whose files are in `folder`."""
 
     folder: Path = field(default_factory=Path)
     cut: bool = False  # whether a call ends early
     observing: Any = field(default=None, init=False)  # the trace of the first program
+    rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     def __post_init__(self) -> None:
         """Check the counts."""
-        super().__post_init__()
         check_one(self.agent, self.seeds)
 
     @property
@@ -61,7 +61,7 @@ class RobotLoop(HostLoop):
         action = jnp.zeros((*env.obs.shape[:-1], self.agent.spec.act))
         now = jax.eval_shape(jax.vmap(self._observed), state, action, got)[1]
         learned = jax.eval_shape(jax.vmap(self.agent.learn, (0, None)), state, zero)[1]
-        self.rows = jax.tree.map(self._row, {**now, **learned})
+        self.rows = self.rows_of({**now, **learned})
         parts = (SEEDS, METRICS, SEEDS, SEEDS, *[REPLICATED] * 3), (SEEDS, METRICS)
         observe = self.shard(self._observe, *parts, donate_argnums=(0, 1))
         self.observing = observe.trace(state, self.rows, action, got, no, no, zero)
@@ -79,8 +79,8 @@ class RobotLoop(HostLoop):
 
     def halves(self, state: AgentState) -> tuple[Any, Any]:
         """The compiled programs that observe and that learn; both donate state and rows."""
-        learn = super(HostLoop, self).compile(state, self.trace(state))
-        return super(HostLoop, self).compile(state, self.observing), learn
+        learn = super().compile(state, self.trace(state))
+        return super().compile(state, self.observing), learn
 
     def empty(self) -> dict[str, np.ndarray]:
         """Rows [stride, S, ...] for the metrics of a call."""

@@ -17,6 +17,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from jax.experimental import io_callback
 
 from hybrid_rl.envs.mujoco import xla_callback
 
@@ -27,21 +28,21 @@ _tickets = count()
 
 
 def send(u: Array, ticket: Array, axis: str) -> Array:
-    """`u` [S, E, m], once the host has it; axis: of the mesh, over which S is sharded."""
-    _registered()
+    """`u` [S, E, m], once the host has it; axis: of the mesh, over which S is sharded.
+
+    On a CPU the program must use the result, or XLA drops the call: JAX does not know its effect,
+    with which a call of the program would take a millisecond longer.
+    """
     m = u.shape[-1]
     marks = jnp.stack([jax.lax.axis_index(axis), ticket]).astype(u.dtype)
     flat = u.reshape(-1, m)
     x = jnp.concatenate([flat, jnp.broadcast_to(marks, (len(flat), 2))], axis=1)
     like = jax.ShapeDtypeStruct(x.shape, x.dtype)
-
-    def on_accelerator(x: Array) -> Array:
-        return jax.pure_callback(_posted, like, x)
-
-    def on_cpu(x: Array) -> Array:
-        return jax.ffi.ffi_call(TARGET, like)(x)
-
-    y = jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
+    if jax.default_backend() == "cpu":
+        _registered()
+        y = jax.ffi.ffi_call(TARGET, like)(x)
+    else:
+        y = io_callback(_posted, like, x)
     return y[:, :m].reshape(u.shape)
 
 
@@ -57,6 +58,7 @@ class Letters:
 
         Raises:
             Exception: what the program raised before it sent.
+            RuntimeError: if it ended without sending.
         """
         parts: list[np.ndarray] = []
         while len(parts) < self.parts:
@@ -66,6 +68,7 @@ class Letters:
                 leaves = jax.tree.leaves(result)
                 if all(leaf.is_ready() for leaf in leaves) and self._box.empty():
                     jax.block_until_ready(leaves)
+                    raise RuntimeError("a program ended without sending its actions") from None
         parts.sort(key=lambda part: part[0, -1])
         return np.concatenate(parts)[:, :-1]
 

@@ -10,6 +10,7 @@ import pytest
 
 import hybrid_rl
 from hybrid_rl.data.row_log import RowLog
+from hybrid_rl.doctor.__main__ import CHECKS, examine
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.types import Spec
 
@@ -49,6 +50,7 @@ def test_a_run_on_a_robot(port, tmp_path):
         assert np.abs(row["action"]).max() <= 1
         sound += 1
     assert sound >= 150
+    assert set(examine(folder)) <= set(CHECKS)  # without episodes of its own
     moved = subprocess.run(
         [sys.executable, "-m", "hybrid_rl.robot", f"run={folder}", "seconds=1"],
         capture_output=True,

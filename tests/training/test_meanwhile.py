@@ -10,14 +10,16 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import small
-from test_host_loop import ROUNDS, STEPS, counting
+from test_host_loop import ROUNDS, STEPS, agents, counting
 
 from hybrid_rl import config
 from hybrid_rl.errors import WorldError
 from hybrid_rl.learners.return_scale import ReturnScale
 from hybrid_rl.training import sending
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.loop import REPLICATED, SEEDS
 from hybrid_rl.training.loops import loop_of
+from hybrid_rl.training.sending import letters, send
 
 pytestmark = pytest.mark.turns(3)
 
@@ -26,14 +28,15 @@ E = 2  # environments of each of the two learners
 
 @cache
 def compiled(algo: str, early: bool, latest: bool) -> tuple[Any, Any, Any]:
-    """A loop in `Count`, its first state and its program.
+    """A loop in `Count` with a memory of five rounds, its first state and its program.
 
     latest: with one more learner, of the latest decision.
     """
     agent = config.build(small.load(algo, "task=point_mass", f"num_envs={E}")).agent
     if latest:
         agent = replace(agent, learners={"scale": ReturnScale(num_envs=E), **agent.learners})
-    loop = loop_of(replace(agent, episode=Episode(counting(), STEPS)), (0, 1), ROUNDS)
+    replay, episode = replace(agent.replay, capacity=5 * E), Episode(counting(), STEPS)
+    loop = loop_of(replace(agent, replay=replay, episode=episode), (0, 1), ROUNDS)
     loop.early &= early
     first = loop.init()
     return loop, first, loop.compile(first)
@@ -66,12 +69,12 @@ def numbers(*leaves: Any) -> Iterator[Any]:
 
 @pytest.mark.parametrize(("algo", "loss"), [("sac", "sac/critic_loss"), ("nn_mppi", "model/loss")])
 def test_it_learns_what_it_learns_after_the_step(algo, loss):
-    """From the first update on; what is not known yet is NaN in the memory, which would spread."""
+    """From the first update on, with its metrics; the NaN of what is not known yet would spread."""
     assert compiled(algo, True, False)[0].early
-    (early, metrics), (late, _) = (run(algo, early=each) for each in (True, False))
+    early, late = (run(algo, early=each) for each in (True, False))
     for a, b in zip(*map(jax.tree.leaves, (early, late)), strict=True):
         np.testing.assert_allclose(*numbers(a, b), rtol=1e-5, atol=1e-6)
-    assert np.isfinite(metrics[loss][2:]).all()
+    assert np.isfinite(early[1][loss][2:]).all()
 
 
 @pytest.mark.parametrize(("latest", "closed"), [(False, 1), (True, 3)])
@@ -90,6 +93,7 @@ def test_a_run_does_not_depend_on_where_its_calls_end(monkeypatch):
     whole, parts = run("sac"), run("sac", calls=(1, 4, ROUNDS - 5))
     for a, b in zip(*map(jax.tree.leaves, (whole, parts)), strict=True):
         np.testing.assert_array_equal(*numbers(a, b))
+    assert np.isfinite(whole[0].memory.rows).all()
 
 
 def test_an_error_in_the_environment_ends_the_call():
@@ -98,7 +102,10 @@ def test_an_error_in_the_environment_ends_the_call():
     assert not sending._boxes
 
 
-def test_nothing_is_awaited_from_a_program_that_failed(monkeypatch):
+@pytest.mark.parametrize(
+    ("raised", "line"), [(ArithmeticError("of deciding"), "of deciding"), (None, "without sending")]
+)
+def test_nothing_is_awaited_from_a_program_that_ended(raised, line, monkeypatch):
     """Before it sent; the first time it is asked, it still runs."""
 
     class Result:
@@ -109,8 +116,29 @@ def test_nothing_is_awaited_from_a_program_that_failed(monkeypatch):
             return self.asked > 1
 
         def block_until_ready(self) -> None:
-            raise ArithmeticError("of deciding")
+            if raised:
+                raise raised
 
     monkeypatch.setattr(sending, "POLL_S", 0.01)
-    with pytest.raises(ArithmeticError, match="of deciding"), sending.letters(1) as sent:
+    with pytest.raises((ArithmeticError, RuntimeError), match=line), sending.letters(1) as sent:
         sent.next(Result())
+
+
+@pytest.mark.parametrize("backend", ["cpu", "gpu"])
+def test_the_host_gets_what_a_program_sends_once(backend, monkeypatch):
+    """By either way of sending; what an accelerator sends also if the program does not use it."""
+    monkeypatch.setattr(jax, "default_backend", lambda: backend)
+    loop = loop_of(agents(1)[1], (0,), ROUNDS)
+    u = np.arange(6, dtype=np.float32).reshape(1, 3, 2)
+
+    def program(u, ticket):
+        sent = send(u, ticket, *SEEDS)
+        return 2 * (sent if backend == "cpu" else u)
+
+    compiled = loop.shard(program, (SEEDS, REPLICATED), SEEDS)
+    with letters(1) as sent:
+        for _ in range(3):
+            result = compiled(u, np.int32(sent.ticket))
+            np.testing.assert_array_equal(sent.next(result), u[0])
+            np.testing.assert_array_equal(result, 2 * u)
+        assert sent._box.empty()
