@@ -51,7 +51,7 @@ def single(tmp_path_factory):
 def test_learners_on_two_devices_equal_those_on_one(single, tmp_path):
     """And a run on one device continues on two."""
     output = on_two_devices(*TINY, *SHORT, f"run_dir={tmp_path / 'two'}")
-    assert "of its" not in output
+    assert "devices only" not in output
     wanted, got = rows(single), rows(tmp_path / "two")
     assert wanted.keys() == got.keys()
     assert len({seed for _, seed, _ in got}) == 2
