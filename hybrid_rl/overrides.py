@@ -271,7 +271,7 @@ def _refuse_words(raw: dict[str, Any]) -> None:
     named = raw["controllers"] if isinstance(raw["controllers"], dict) else {}
     for path in (f"controllers.{name}" for name in named):
         at, node = source(raw, path), select(raw, path)
-        for _ in raw:  # and not for ever, where keys refer to each other
+        for _ in raw:  # at most once for each key: references may form a circle
             if link := REFERENCE.fullmatch(str(node)):
                 at, node = source(raw, link[1]), select(raw, link[1])
         if not (isinstance(node, str) or node is LACKING):

@@ -101,7 +101,7 @@ class Copies:
         def drawn() -> Any:
             try:
                 return self._vector.render()[0]
-            except NotImplementedError as error:  # Gymnasium's own `render`
+            except NotImplementedError as error:  # from `gymnasium.Env.render`: the user wrote none
                 raise WorldError(f"{self.env.name}: {PICTURE}") from error
 
         found = self._call("render", drawn)

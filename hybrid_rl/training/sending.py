@@ -1,7 +1,7 @@
 """Actions that leave a compiled program before it ends.
 
-    u = send(u, ticket)        in the program
-    u = letters.next(state)    on the host, meanwhile
+    u = send(u, ticket, axis)    in the program
+    u = sent.next(result)        on the host, meanwhile
 
 The program does not wait for the host. Each device sends those of its own learners.
 """
