@@ -294,7 +294,8 @@ def test_evaluations_have_environments_and_seeds_of_their_own():
     params, keys = jax.vmap(agent.params)(state), jax.random.split(jax.random.key(0), (2, 3))
     evaluator = HostEvaluator(episode, agent.controller.greedy(), params, keys)
     first, second = (evaluator(params, keys)["return"] for _ in range(2))
-    assert first.shape == (2, 3) and len(np.unique(first)) == 6
+    assert first.shape == (2, 3)
+    assert len(np.unique(first)) == 6
     np.testing.assert_allclose(first, second)
     assert evaluator(params, keys, lambda: True) is None
     assert len({seed_of(s, i) for s in range(9) for i in range(9)}) == 81
