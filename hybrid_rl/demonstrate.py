@@ -10,9 +10,10 @@ conf/expert, such as babble (random actions); in the task with its defaults or w
 episode.KEY=VALUE, expert.KEY=VALUE. With run=DIR it is the trained controller (mode: full, policy
 or planner; the first seed), without exploration. Episode i starts from key i of `seed`.
 
-With policy=FILE it writes no episodes but the parameters of the run's policy (the first seed),
-which expert=trained, policy=trained and policy=started read, and `evaluate`, `render` and `export`
-with policy=FILE. It holds command=TEXT and what `evaluate run=DIR mode=policy` wrote.
+With policy=FILE it writes no episodes but the parameters of the run's policy (learner: its seed, or
+else the first), which expert=trained, policy=trained and policy=started read, and `evaluate`,
+`render` and `export` with policy=FILE. It holds command=TEXT and what `evaluate run=DIR
+mode=policy` wrote.
 """
 
 if __name__ == "__main__":
@@ -53,6 +54,7 @@ ARGUMENTS = (
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
     Argument("policy", "", "with run=DIR: the file for its policy's parameters"),
     Argument("models", False, "with policy=FILE: also model and reward, to plan with", flag),
+    Argument("learner", None, "with policy=FILE: its seed; empty: the first", whole(least=0)),
     Argument("command", "", "with policy=FILE: how it was trained, kept in the file"),
     Argument("episodes", 10, "how many", whole()),
     Argument("seed", 0, "of the first states", whole(least=0)),
@@ -132,11 +134,14 @@ def _write_policy(given: dict[str, Any], changes: dict[str, str]) -> None:
     _check(given, changes)
     folder = Path(given["run"])
     run = load(folder)
-    params: Any = jax.tree.map(lambda leaf: leaf[0], run.params)
+    seed = run.seeds[0] if given["learner"] is None else given["learner"]
+    if seed not in run.seeds:
+        raise UsageError(f"learner={seed}: the run has {', '.join(map(str, run.seeds))}")
+    params: Any = jax.tree.map(lambda leaf: leaf[run.seeds.index(seed)], run.params)
     if not jax.tree.leaves(params.policy):
         raise UsageError(f"run={folder}: has no policy with parameters")
     try:
-        about = description(folder, run, given["command"])
+        about = description(folder, run, given["command"], seed)
         models = _models(folder, run, params, about) if given["models"] else {}
         save_policy(file, run.task, run.episode.spec, params.policy, about, models)
     except ValueError as error:
@@ -159,11 +164,14 @@ def _models(
     if about is None or not all(nodes.values()) or params.model is None or params.reward is None:
         raise UsageError(f"models=true: {folder} has no policy with a learned model and reward")
     about |= {name: OmegaConf.to_container(node) for name, node in nodes.items()}
+    rule = about["reward_model"].get("rule")  # an environment, or None
+    if rule and isinstance(rule.get("physics"), str):
+        rule["physics"] = "auto"
     return {"model": params.model, "reward_model": params.reward}
 
 
-def description(folder: Path, trained: Trained, command: str) -> dict[str, Any] | None:
-    """`about` of the policy of the first seed of the run in `folder`.
+def description(folder: Path, trained: Trained, command: str, seed: int) -> dict[str, Any] | None:
+    """`about` of the policy of the learner of `seed` of the run in `folder`.
 
     None if its controller `policy` is not a policy of observations alone.
     """
@@ -182,19 +190,22 @@ def description(folder: Path, trained: Trained, command: str) -> dict[str, Any] 
     }
     if isinstance(parts["env"].get("physics"), str):
         parts["env"]["physics"] = "auto"
-    about = {**parts, "algo": config.algo, "seed": trained.seeds[0], "step": trained.step}
+    number = trained.seeds.index(seed)
+    about = {**parts, "algo": config.algo, "seed": seed, "step": trained.step}
     summary = RunFolder(folder).summary
     made = {key: summary.get(key) for key in ("device", "versions", "git_commit")}
-    return {**about, "command": command, "evaluation": _evaluation(folder, trained.step), **made}
+    evaluation = _evaluation(folder, trained.step, number)
+    return {**about, "command": command, "evaluation": evaluation, **made}
 
 
-def _evaluation(folder: Path, step: int) -> dict[str, Any] | None:
-    """Mean and returns of the first seed in evaluation_policy.json of this step, if there are."""
+def _evaluation(folder: Path, step: int, number: int) -> dict[str, Any] | None:
+    """Mean and returns of a seed in evaluation_policy.json of this step, if there are."""
     file = folder / "evaluation_policy.json"
     if not file.exists() or (values := json_file(file)).get("step") != step:
         return None
     try:
-        return {"mean": float(values["mean"][0]), "returns": list(map(float, values["returns"][0]))}
+        mean, returns = values["mean"][number], values["returns"][number]
+        return {"mean": float(mean), "returns": list(map(float, returns))}
     except (TypeError, ValueError, LookupError) as error:
         raise UsageError(f"{file}: is no evaluation that `evaluate` wrote") from error
 

@@ -17,7 +17,7 @@ anything acts (training.imagined).
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
@@ -27,6 +27,7 @@ import jax
 import jax.numpy as jnp
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
+from jax import Array
 from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
@@ -41,6 +42,7 @@ from hybrid_rl.trained import chosen as named
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import COMPILER_OPTIONS
+from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
@@ -86,8 +88,16 @@ def retargeted(
         UsageError: for a name, a key or a value that does not exist or does not fit the task, or a
             planner or imagination where no model was learned.
     """
+    now, before = aimed(trained, overrides, config_dir)
+    return now if before is None else _taught(now, before)
+
+
+def aimed(
+    trained: Trained, overrides: Sequence[str], config_dir: str | Path | None = None
+) -> tuple[Trained, Imagination | None]:
+    """What `retargeted` gives, with its errors, before a policy learns, and what it will learn by."""
     if not overrides:
-        return trained
+        return trained, None
     if not any(text.startswith("reward=") for text in overrides):
         for text in (each for each in overrides if each.startswith("reward.")):
             raise UsageError(f"{text}: is a key of a reward; give reward=NAME with it")
@@ -108,15 +118,19 @@ def retargeted(
         controllers={**trained.controllers, **controllers},
         config=changed,
     )
-    return now if before is None else _taught(now, before)
+    return now, before
+
+
+def imagining(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
+    """What `one` gives for the parameters and the key of each learner: [S, ...]."""
+    keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
+    options = COMPILER_OPTIONS.get(jax.default_backend())
+    return jax.jit(jax.vmap(one), compiler_options=options)(trained.params, keys)
 
 
 def _taught(trained: Trained, before: Imagination) -> Trained:
     """`trained` with the policies that `before` gives, which takes seconds, and a note about it."""
-    keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
-    options = COMPILER_OPTIONS.get(jax.default_backend())
-    program = jax.jit(jax.vmap(partial(before.learned, trained.episode)), compiler_options=options)
-    params, new = program(trained.params, keys)
+    params, new = imagining(trained, partial(before.learned, trained.episode))
     old = [str(seed) for seed, gained in zip(trained.seeds, new, strict=True) if not gained]
     note = f"imagine: {before.updates:,} updates in the models"
     note += f"; by these no gain, so the old policy acts: seed {', '.join(old)}" if old else ""

@@ -1,13 +1,13 @@
-"""Milliseconds from an observation to an action, of policies and planners, on one core.
+"""Milliseconds from an observation to an action, of policies and planners, on one core or a GPU.
 
     taskset -c 0 python -m scripts.decision_ms out=docs/results/decision_ms.json
     taskset -c 1 python -m scripts.decision_ms of=goals out=docs/results/planner_ms.json
 
-As the robot's process decides (training.decider.Decider), after a warm-up, with XLA in one thread.
-Parameters are the first ones: the time does not depend on them. For machines that do other work:
-`best` is the fastest decision, `processor` the time of the core in the fastest block. of=goals:
-who acts in scripts.new_goals, `planner=refits`, and the live window's quick planner, on a reward
-that no run was trained on.
+As the robot's process decides (training.decider.Decider), after a warm-up, with XLA in one thread;
+where there is a GPU, it computes. Parameters are the first ones: the time does not depend on them.
+For machines that do other work: `best` is the fastest decision, `processor` the time of the core in
+the fastest block. of=goals: who acts in scripts.new_goals, `planner=refits`, and the live window's
+quick planner, on a reward that no run was trained on.
 """
 
 import json
@@ -36,6 +36,7 @@ from scripts.new_goals import overrides, rows
 
 ARGUMENTS = (
     Argument("of", "methods", "or goals: planners for a new reward", one_of("methods", "goals")),
+    Argument("only", "", "of these tasks, with ; between them; empty: all"),
     Argument("out", "decision_ms.json", "the numbers"),
 )
 CALLS, BLOCK = {"methods": 500, "goals": 100}, 10
@@ -66,16 +67,17 @@ WHO = (
 )
 
 
-def methods() -> Iterator[tuple[str, str, Agent]]:
+def methods(only: list[str]) -> Iterator[tuple[str, str, Agent]]:
     """(task, name, agent) of each method as it trains."""
-    for task in TASKS:
+    for task in only or TASKS:
         for name, words in METHODS.items():
             yield task, name, _agent([f"task={task}", *words])
 
 
-def goals() -> Iterator[tuple[str, str, Agent]]:
+def goals(only: list[str]) -> Iterator[tuple[str, str, Agent]]:
     """(robot, who acts, agent) of each planner for a new reward."""
-    for robot, (words, goal) in GOALS.items():
+    for robot in only or GOALS:
+        words, goal = GOALS[robot]
         run = configuration.build(configuration.load([*words, "algo=hybrid_stochastic"]))
         agent, now = run.agent, run.controllers
         trained = Trained(robot, agent.episode, now, Params(), (0,), 0, (), run.config)
@@ -94,9 +96,9 @@ def _agent(words: list[str]) -> Agent:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    of = given["of"]
+    of, only = given["of"], [each.strip() for each in given["only"].split(";") if each.strip()]
     found: dict[str, Any] = {"device": device(), "calls": CALLS[of], "block": BLOCK, "tasks": {}}
-    for task, name, agent in methods() if of == "methods" else goals():
+    for task, name, agent in (methods if of == "methods" else goals)(only):
         row = measured(agent, CALLS[of]) | {"period": 1e3 * agent.spec.dt}
         found["tasks"].setdefault(task, {})[name] = row
         print(f"{task}, {name}: {row['processor']:.2f} ms, best {row['best']:.2f}", flush=True)

@@ -23,7 +23,7 @@ from hybrid_rl.cli.arguments import Argument, read, whole
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import retargeted
+from hybrid_rl.goals import aimed, imagining, retargeted
 from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
@@ -183,31 +183,42 @@ def main() -> None:
     given: Any = read(__doc__, ARGUMENTS)[0]
     run = load(given["run"])
     named = [each.strip() for each in given["goals"].split(";")]
-    aimed = [retargeted(run, overrides(name)) for name in named]
-    first = replace(aimed[0], episode=replace(aimed[0].episode, steps=given["steps"]))
-    goals = [each.episode.reward for each in aimed]
+    there = [retargeted(run, overrides(name)) for name in named]
+    first = replace(there[0], episode=replace(there[0].episode, steps=given["steps"]))
+    goals = [each.episode.reward for each in there]
+    known = rows(there[0])
+    wanted = given["rows"].split(";") if given["rows"] else list(known)
+    params, gained = imagined(run, named, goals) if IMAGINED in str(wanted) else (None, None)
     if given["env"]:
         first, goals = in_another(first, goals, given["env"])
-    known = rows(first)
-    wanted = given["rows"].split(";") if given["rows"] else list(known)
-    learned = replace(first, params=imagined(run, named)) if IMAGINED in str(wanted) else first
+        known = rows(first)
+    by_name = dict(zip(named, goals, strict=True))
 
     def each() -> Iterator[Row]:
+        if gained is not None:
+            yield f"{IMAGINED}: gained", dict(zip(named, gained.T, strict=True))
         for name in wanted:
             controller = known.get(name) or varied(first.controllers["full"], name)
-            by_name, own = dict(zip(named, goals, strict=True)), name.startswith(IMAGINED)
-            acts = learned if own else first
+            own = name.startswith(IMAGINED)
+            acts = replace(first, params=params) if own else first
             yield name, measured(acts, by_name, controller, given["episodes"], own)
 
     write(given["out"], first, {"steps": given["steps"], "goals": named}, each())
 
 
-def imagined(run: Trained, goals: list[str]) -> Params:
-    """The parameters [S, G, ...] whose policies learned each goal in the models."""
-    each = [retargeted(run, [*overrides(name), "imagine=policy"]) for name in goals]
-    for name, taught in zip(goals, each, strict=True):
-        print(f"{name}: {taught.notes[-1]}", flush=True)
-    return jax.tree.map(lambda *leaves: jnp.stack(leaves, 1), *(taught.params for taught in each))
+def imagined(run: Trained, names: list[str], goals: list[Any]) -> tuple[Params, Array]:
+    """Parameters [S, G, ...] whose policies learned each goal in the models, and if it gained."""
+    after, before = aimed(run, [*overrides(names[0]), "imagine=policy"])
+    known = tuple(goals)
+
+    def each(params: Params, key: Array) -> Any:
+        def on(index: Array) -> Any:
+            learning = swapped(before, known[0], OneOf(known, index))
+            return learning.learned(after.episode, params, key)
+
+        return jax.vmap(on)(jnp.arange(len(known)))
+
+    return imagining(run, each)
 
 
 def overrides(name: str) -> list[str]:
