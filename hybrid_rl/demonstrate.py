@@ -42,7 +42,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.reading import json_file
-from hybrid_rl.trained import Trained, load
+from hybrid_rl.trained import OBJECTIVES, Trained, load
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Transition
@@ -53,7 +53,7 @@ ARGUMENTS = (
     Argument("run", "", "instead: folder of a trained run"),
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
     Argument("policy", "", "with run=DIR: the file for its policy's parameters"),
-    Argument("models", False, "with policy=FILE: also model and reward, to plan with", flag),
+    Argument("models", False, "with policy=FILE: also model, reward, critic, to plan with", flag),
     Argument("learner", None, "with policy=FILE: its seed; empty: the first", whole(least=0)),
     Argument("command", "", "with policy=FILE: how it was trained, kept in the file"),
     Argument("episodes", 10, "how many", whole()),
@@ -160,14 +160,25 @@ def _models(
         UsageError: for a run that learned none.
     """
     config: Any = run.config
-    nodes = {name: config.get(name) for name in ("model", "reward_model")}
-    if about is None or not all(nodes.values()) or params.model is None or params.reward is None:
+    parts = {"model": params.model, "reward_model": params.reward}
+    if about is None or any(value is None or not config.get(n) for n, value in parts.items()):
         raise UsageError(f"models=true: {folder} has no policy with a learned model and reward")
-    about |= {name: OmegaConf.to_container(node) for name, node in nodes.items()}
-    rule = about["reward_model"].get("rule")  # an environment, or None
-    if rule and isinstance(rule.get("physics"), str):
-        rule["physics"] = "auto"
-    return {"model": params.model, "reward_model": params.reward}
+    known = [*parts]
+    if params.critic is not None and not config.get("constraint"):  # whose price the critic has
+        parts["critic"] = params.critic
+        known += ["critic", *(name for name in OBJECTIVES if name in config)]
+    about |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in known}
+    return parts
+
+
+def _anywhere(node: Any) -> Any:
+    """`node` of a configuration, with the physics of whatever machine reads it."""
+    if isinstance(node, list):
+        return list(map(_anywhere, node))
+    if not isinstance(node, dict):
+        return node
+    own = {"physics": "auto"} if isinstance(node.get("physics"), str) else {}
+    return {key: _anywhere(value) for key, value in node.items()} | own
 
 
 def description(folder: Path, trained: Trained, command: str, seed: int) -> dict[str, Any] | None:
@@ -184,12 +195,10 @@ def description(folder: Path, trained: Trained, command: str, seed: int) -> dict
     if not is_identity(controller.model, model, trained.episode.spec.obs):
         return None
     parts: Any = {
-        "env": OmegaConf.to_container(config.env),
+        "env": _anywhere(OmegaConf.to_container(config.env)),
         "episode": OmegaConf.to_container(config.episode),
         "policy": OmegaConf.to_container(node.policy),
     }
-    if isinstance(parts["env"].get("physics"), str):
-        parts["env"]["physics"] = "auto"
     number = trained.seeds.index(seed)
     about = {**parts, "algo": config.algo, "seed": seed, "step": trained.step}
     summary = RunFolder(folder).summary

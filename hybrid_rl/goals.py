@@ -95,7 +95,7 @@ def retargeted(
 def aimed(
     trained: Trained, overrides: Sequence[str], config_dir: str | Path | None = None
 ) -> tuple[Trained, Imagination | None]:
-    """What `retargeted` gives, with its errors, before a policy learns, and what it will learn by."""
+    """What `retargeted` gives, with its errors, before a policy learns, and how it will learn."""
     if not overrides:
         return trained, None
     if not any(text.startswith("reward=") for text in overrides):
@@ -121,7 +121,7 @@ def aimed(
     return now, before
 
 
-def imagining(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
+def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
     """What `one` gives for the parameters and the key of each learner: [S, ...]."""
     keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
     options = COMPILER_OPTIONS.get(jax.default_backend())
@@ -130,7 +130,7 @@ def imagining(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
 
 def _taught(trained: Trained, before: Imagination) -> Trained:
     """`trained` with the policies that `before` gives, which takes seconds, and a note about it."""
-    params, new = imagining(trained, partial(before.learned, trained.episode))
+    params, new = by_learner(trained, partial(before.learned, trained.episode))
     old = [str(seed) for seed, gained in zip(trained.seeds, new, strict=True) if not gained]
     note = f"imagine: {before.updates:,} updates in the models"
     note += f"; by these no gain, so the old policy acts: seed {', '.join(old)}" if old else ""

@@ -38,7 +38,8 @@ from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
 PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
-ACTING = ("episode", "policy", "model", "reward_model")  # of `about`, which a planner needs
+OBJECTIVES = ("objective", "model_objective")  # with a critic, and without
+ACTING = ("episode", "policy", "model", "reward_model", *OBJECTIVES)  # of `about`, to plan with
 UNFIT = (TypeError, AttributeError, LookupError, ArithmeticError, AssertionError, RecursionError)
 
 
@@ -218,20 +219,26 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
 
 
 def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) -> dict[str, Any]:
-    """The parameters of model and reward in `file`, by their field of Params; {} without them."""
+    """Parameters of model, reward and critic in `file`, by their field of Params; {} without."""
     if not {"model", "reward_model"} <= set(about):
         return {}
     model, reward = (part(prefix, file, about[name]) for name in ("model", "reward_model"))
     spec, key = env.spec, jax.random.key(0)
+    lifted = lifted_spec(model, spec)
     like = {
         "model": jax.eval_shape(lambda: model.init(key, spec)),
-        "reward_model": jax.eval_shape(lambda: reward.init(key, lifted_spec(model, spec))),
+        "reward_model": jax.eval_shape(lambda: reward.init(key, lifted)),
     }
+    more = {
+        name: part(prefix, file, about[name]) for name in (*OBJECTIVES, "critic") if name in about
+    }
+    if critic := more.get("critic"):
+        like["critic"] = jax.eval_shape(lambda: critic.init(key, lifted))
     found = {
         name: archive.policy(file, shapes, task, env, about["episode"], name)
         for name, shapes in like.items()
     }
-    return {"model": found["model"], "reward": found["reward_model"]}
+    return {"reward": found.pop("reward_model"), **found}
 
 
 def _described(prefix: str, text: str) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from hybrid_rl.cli.arguments import Argument, read, whole
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import aimed, imagining, retargeted
+from hybrid_rl.goals import aimed, by_learner, retargeted
 from hybrid_rl.proposals.knots import KnotsProposal
 from hybrid_rl.proposals.mixture import MixtureProposal
 from hybrid_rl.proposals.noise import NoiseProposal
@@ -218,7 +218,7 @@ def imagined(run: Trained, names: list[str], goals: list[Any]) -> tuple[Params, 
 
         return jax.vmap(on)(jnp.arange(len(known)))
 
-    return imagining(run, each)
+    return by_learner(run, each)
 
 
 def overrides(name: str) -> list[str]:

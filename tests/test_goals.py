@@ -83,10 +83,13 @@ def test_a_file_with_models_plans_as_the_run_does(trained: Path, tmp_path, capsy
     assert main(f"run={trained}", f"policy={file}", "models=true") == 0
     assert main(f"run={trained}", f"policy={bare}") == 0
     assert "policy and models of" in capsys.readouterr().out
-    goals = [retargeted(each, [*AT, *SMALL]) for each in (load(trained), read(str(file)))]
     obs = np.array([0.1, 0.0, 0.9, 0.1, 0.0], np.float32)
-    of_run, of_file = (goal.policy()(obs) for goal in goals)
-    np.testing.assert_allclose(of_run, of_file, atol=0.02)
+    for words in (AT, ["planner=gradient"]):  # the second has the critic of the training
+        goals = [retargeted(each, [*words, *SMALL]) for each in (load(trained), read(str(file)))]
+        of_run, of_file = (goal.policy()(obs) for goal in goals)
+        np.testing.assert_allclose(of_run, of_file, atol=0.02)
+    for own in (load(trained), read(str(file))):
+        assert retargeted(own, ["planner=gradient"]).controllers["full"].objective.critic
     assert set(retargeted(read(str(bare)), AT).controllers) == {"full", "policy"}
 
 

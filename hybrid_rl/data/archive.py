@@ -27,7 +27,7 @@ PARENTS = (PACKAGE, PACKAGE.parent)  # of FOLDERS in a wheel and in a checkout
 FOLDERS = ("demonstrations", "policies")
 HEADER = ("task", "sizes", "dt")
 ABOUT = "about"
-PARTS = ("policy", "model", "reward_model")  # whose parameters a policy's file may hold
+PARTS = ("policy", "model", "reward_model", "critic")  # whose parameters a policy's file may hold
 WRITE = "`python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes one"
 WORDS = ("task", ABOUT)  # arrays that hold text
 SMALL, RATIO = 2**26, 100  # [bytes] of all arrays that any file may hold; bytes of one on the disk

@@ -34,8 +34,8 @@ def save(
 ) -> None:
     """Write the parameters of a policy for `task`, whose decisions have `spec`.
 
-    about: what JSON can hold about its origin. models: parameters of `model` and `reward_model`,
-    to plan with, which are written with 16 bits.
+    about: what JSON can hold about its origin. models: parameters of `model`, `reward_model` and
+    perhaps `critic`, to plan with, which are written with 16 bits.
 
     Raises:
         ValueError: for parameters that are not finite.
