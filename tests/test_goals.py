@@ -93,6 +93,21 @@ def test_a_file_with_models_plans_as_the_run_does(trained: Path, tmp_path, capsy
     assert set(retargeted(read(str(bare)), AT).controllers) == {"full", "policy"}
 
 
+def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
+    """Its own parameters and seed; one that the run does not have is one line."""
+    folder, file = tmp_path / "run", tmp_path / "second.npz"
+    run(folder, "task=cartpole", "algo=sac", "seed=3", "num_seeds=2")
+    main = lambda *words: call(lambda: command.guarded(demonstrate.main), *words)  # noqa: E731
+    assert main(f"run={folder}", f"policy={file}", "learner=4") == 0
+    was, now = load(folder), read(str(file))
+    assert now.seeds == (4,)
+    second = jax.tree.map(lambda leaf: leaf[1:], was.params.policy)
+    jax.tree.map(np.testing.assert_array_equal, now.params.policy, second)
+    capfd.readouterr()
+    assert main(f"run={folder}", f"policy={file}", "learner=5") == 2
+    assert "learner=5: the run has 3, 4" in only_line(capfd)
+
+
 def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
     """In its output and in the file's name."""
     main = lambda *words: call(lambda: command.guarded(evaluate.main), *words)  # noqa: E731
