@@ -141,6 +141,9 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     """The parts of `goal` that a run with this configuration can use."""
     goal = goal.copy()
     own = goal.reward is None and "objective" in config
+    if goal.reward is None and not own and {"model", "reward_model"} <= set(config):
+        words = "was shipped without the reward and the critic of its training"
+        raise UsageError(f"policy={config['task']}: {words}; give reward=NAME")
     if own:  # the planner maximises that of the training
         goal.planner.objective = "${objective}"
         alone = "model_objective" if "model_objective" in config else "objective"

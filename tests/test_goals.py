@@ -138,6 +138,13 @@ def test_a_mistake_is_one_line(trained: Path, words: str, line: str, capfd) -> N
     assert line in only_line(capfd)
 
 
+@pytest.mark.parametrize("word", ["planner=gradient", "constraint=speed"])
+def test_a_shipped_planner_needs_a_reward(word: str, capfd) -> None:
+    given = ("policy=halfcheetah", word)
+    assert call(lambda: command.guarded(evaluate.main), *given) == 2
+    assert "policy=halfcheetah: was shipped without the reward and the critic" in only_line(capfd)
+
+
 @pytest.mark.parametrize("word", ["planner.horizon=3", "imagine=policy"])
 def test_a_policy_without_models_refuses_a_planner(word: str, capfd) -> None:
     given = ("policy=cartpole", "reward=speed", word)
