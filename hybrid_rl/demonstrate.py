@@ -164,7 +164,8 @@ def _models(
     if about is None or any(value is None or not config.get(n) for n, value in parts.items()):
         raise UsageError(f"models=true: {folder} has no policy with a learned model and reward")
     known = [*parts]
-    if params.critic is not None and not config.get("constraint"):  # whose price the critic has
+    own = not (config.get("constraint") or config.get("reward"))  # the critic's are not the task's
+    if own and params.critic is not None:
         parts["critic"] = params.critic
         known += ["critic", *(name for name in OBJECTIVES if name in config)]
     about |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in known}
