@@ -17,7 +17,7 @@ apart, do not agree that the best candidate gains on it, that is unless
 
 With a constraint of excess c, indicator width w, price and chance,
 
-    p_t = mean_i sigmoid(c(x_t, u_t, f_i(x_t, u_t)) / w)        over the ensemble's members
+    p_t = mean_i sigmoid(c(x_t, u_t, f_i(x_t, u_t)) / w + margin)    over the ensemble's members
     S = ... - price sum_t p_t            unless J has learned the price with the reward
 
 and candidates with max_t p_t > chance, t < T, rank below all others, by how far they are beyond the
@@ -101,6 +101,7 @@ class GradientController:
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
     doubt: NotNegative | None = 1.0  # std over the members by which a plan must beat the policy
     constraint: Constraint | None = None
+    margin: NotNegative = 0.0  # [widths] that plans keep from the constraint's limit
     priced: bool = False  # whether the objective's reward, learned with it, has its price already
 
     def __post_init__(self) -> None:
@@ -231,7 +232,7 @@ class GradientController:
         limit = self.constraint
         if limit is None:
             return jnp.zeros(()), jnp.zeros(())
-        far = jax.vmap(lambda after: limit.excess(x, u, after) / limit.width)(each)
+        far = jax.vmap(lambda after: limit.excess(x, u, after) / limit.width)(each) + self.margin
         return jax.nn.sigmoid(far).mean(), jax.nn.softplus(far).mean()
 
     def _rank(self, found: Scored) -> Array:

@@ -133,3 +133,6 @@ def test_the_probability_is_the_mean_over_the_members() -> None:
     assert np.std(by_hand) > 0.01
     want = np.mean([1 / (1 + np.exp(-(float(v[0]) - 1) / 0.3)) for v in by_hand])
     assert float(planner._risk(x, u, each)[0]) == pytest.approx(want, rel=1e-4)
+    near = replace(planner, constraint=replace(limit, most=0.4))  # two widths below
+    kept = replace(planner, margin=2.0)._risk(x, u, each)
+    np.testing.assert_allclose(kept, near._risk(x, u, each), rtol=1e-5)
