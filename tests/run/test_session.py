@@ -12,7 +12,7 @@ import pytest
 from tiny import TINY, call_train, run
 
 from hybrid_rl import train
-from hybrid_rl.errors import DivergenceError
+from hybrid_rl.errors import DivergenceError, WorldError
 from hybrid_rl.overrides import quoted
 from hybrid_rl.run import checkpoint, integrity, schedule, session
 from hybrid_rl.run.evaluations import Evaluations
@@ -290,6 +290,26 @@ def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
     break_learner(monkeypatch, 1, 200)
     with jax.debug_nans(True), pytest.raises(DivergenceError, match="seed 0, step 250: "):
         run(tmp_path / "run", *SAC)
+
+
+@pytest.mark.parametrize(("step", "saved"), [(60, False), (150, True)])
+def test_after_a_fault_of_the_world_it_says_how_to_go_on(
+    monkeypatch, tmp_path, capsys, step, saved
+):
+    advance, folder = Session._advance, tmp_path / "it's"
+
+    def broken(self):
+        advance(self)
+        if self.step >= step:
+            raise WorldError("reach.py:3: step: the motor is hot")
+
+    monkeypatch.setattr(Session, "_advance", broken)
+    assert call_train(*TINY, *SAC, f"run_dir={quoted(str(folder))}") == 2
+    printed = capsys.readouterr()
+    assert printed.err == "hybrid_rl: reach.py:3: step: the motor is hot\n"
+    lines = [line for line in printed.out.splitlines() if line.startswith("continue: ")]
+    command = ["python", "-m", "hybrid_rl.train", f"resume={quoted(str(folder))}"]
+    assert [shlex.split(line)[1:] for line in lines] == [command] * saved
 
 
 def test_a_run_says_what_to_expect(tmp_path, capsys):
