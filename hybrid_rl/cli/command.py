@@ -60,6 +60,8 @@ def hydra_main(job: Callable[..., Any]) -> None:
 
     def checked(config: DictConfig) -> None:
         typed = overrides.of_job(HydraConfig.get())
+        if (launcher := HydraConfig.get().runtime.choices["hydra/launcher"]) != "basic":
+            raise UsageError(f"hydra/launcher={launcher}: sends the jobs of a sweep; add -m")
         with as_typed(typed):
             if note := check_task(config, HydraConfig.get(), configuration.READ):
                 print(note, flush=True)
