@@ -100,6 +100,9 @@ def explain(error: Exception) -> str:
         if set(problem) == {" ", "^"}:  # it points at a character
             problem = f"{first[len(problem) - 1]} stands outside quotes"
         return f"{error.override}: {problem}; write key=value, text in quotes"
+    if absent := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):
+        what = f"is not for this method, which has no {absent[3]} to change"
+        return f"{absent[1]}={absent[2]}: {what}"
     if absent := re.match(r"Could not override '([^']+)'", text):
         return f"{absent[1]}: the method has no such part; `python -m hybrid_rl.list` shows methods"
     if several := re.match(r"Ambiguous value for argument '([^']+)'", text):

@@ -9,19 +9,20 @@ import os
 import re
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, NoReturn
 
 import yaml
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.composition import CONF, check_choices, check_task, explain
+from hybrid_rl.composition import CONF, check_choices, check_task, explain, file, options
 from hybrid_rl.errors import UsageError, in_user_code, shown
+from hybrid_rl.overrides import LACKING, plain, select
 from hybrid_rl.run import inherited
 
 FLAGS = {  # of Hydra -> how many words follow
@@ -94,7 +95,17 @@ def as_typed(typed: Sequence[str]) -> Iterator[None]:
     try:
         yield
     except UsageError as error:
-        raise UsageError(overrides.as_typed(str(error), typed)) from error
+        line = overrides.as_typed(str(error), typed)
+        raise UsageError(_of_settings(line, overrides.given(typed))) from error
+
+
+def _of_settings(line: str, given: Mapping[str, str]) -> str:
+    """A message about a field that a part lacks, with the settings that set it, not the user."""
+    field, name = re.match(r"([\w.]+): \w+ has ", line), given.get("settings", "")
+    known = field and field[1] not in given and name in options("settings")
+    if not known or select(plain(OmegaConf.load(file("settings", name))), field[1]) is LACKING:
+        return line
+    return f"settings={name}: is not for this method: {line}"
 
 
 def usage(module: Any) -> str:
