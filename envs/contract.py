@@ -46,7 +46,7 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     simulated = is_dataclass(env) and getattr(env, "physics", None) in IMPLEMENTATIONS
     given: Any = env  # `replace` is typed for dataclasses alone
     if simulated:
-        _check_physics(given.physics)
+        _World(env).blamed("reset", physics.check, given.physics)
     world = _World(replace(given, physics="native") if simulated else env)
     _check_members(world)
     key = jax.random.key(0)
@@ -66,14 +66,6 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
                 "in state.info"
             )
     return (*clock, *(_decide(world, *again, decisions) if decisions else ()))
-
-
-def _check_physics(implementation: str) -> None:
-    """Raise UsageError if it cannot run on this machine."""
-    try:
-        physics.check(implementation)
-    except ValueError as error:
-        raise UsageError(str(error)) from error
 
 
 @dataclass(frozen=True)

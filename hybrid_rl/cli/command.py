@@ -102,8 +102,10 @@ def as_typed(typed: Sequence[str]) -> Iterator[None]:
 def _of_settings(line: str, given: Mapping[str, str]) -> str:
     """A message about a field that a part lacks, with the settings that set it, not the user."""
     field, name = re.match(r"([\w.]+): \w+ has ", line), given.get("settings", "")
-    known = field and field[1] not in given and name in options("settings")
-    if not known or select(plain(OmegaConf.load(file("settings", name))), field[1]) is LACKING:
+    if field is None or field[1] in given or name not in options("settings"):
+        return line
+    sets: Any = OmegaConf.load(file("settings", name))
+    if select(plain(sets), field[1]) is LACKING:
         return line
     return f"settings={name}: is not for this method: {line}"
 
