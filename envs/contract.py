@@ -22,7 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr
 
-from hybrid_rl.envs.mujoco import mjcf, native
+from hybrid_rl.envs.mujoco import mjcf, native, physics
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
 from hybrid_rl.errors import GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
 from hybrid_rl.types import EnvState, Spec
@@ -45,6 +45,8 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     """
     simulated = is_dataclass(env) and getattr(env, "physics", None) in IMPLEMENTATIONS
     given: Any = env  # `replace` is typed for dataclasses alone
+    if simulated:
+        _World(env).blamed("reset", physics.check, given.physics)
     world = _World(replace(given, physics="native") if simulated else env)
     _check_members(world)
     key = jax.random.key(0)

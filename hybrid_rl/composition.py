@@ -13,7 +13,7 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields
-from hybrid_rl.errors import UsageError, relative
+from hybrid_rl.errors import UsageError, install, relative
 from hybrid_rl.parts import part_class
 from hybrid_rl.training.episode import Episode
 
@@ -21,6 +21,7 @@ HERE = Path(__file__).parent
 CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
 THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the search path
 OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin
+SLURM = "submitit_slurm"  # the launcher of an extra
 MANY = 40  # names that are too many for a line; tasks are fewer
 GLOBAL = "# @package _global_"
 OF_GYMNASIUM = re.compile(r"(?P<id>-v\d+$)|(?P<make>\w:\w)")  # ids, and MODULE:CLASS
@@ -88,6 +89,8 @@ def explain(error: Exception) -> str:
         close = overrides.meant(value, known) if len(known) < MANY else ""
         if group == "task" and (kind := OF_GYMNASIUM.search(value)):
             close = f"; did you mean task=gymnasium env.{kind.lastgroup}={value}?"
+        if group == "hydra/launcher" and SLURM not in known:
+            close = f"; submitit_local and {SLURM} need {install('slurm')}"
         return f"{group}={value}: unknown; {_choice(value, known)}{close}"
     cause, text = error.__cause__, str(error)
     if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
@@ -97,6 +100,9 @@ def explain(error: Exception) -> str:
         if set(problem) == {" ", "^"}:  # it points at a character
             problem = f"{first[len(problem) - 1]} stands outside quotes"
         return f"{error.override}: {problem}; write key=value, text in quotes"
+    if absent := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):
+        what = f"is not for this method, which has no {absent[3]} to change"
+        return f"{absent[1]}={absent[2]}: {what}"
     if absent := re.match(r"Could not override '([^']+)'", text):
         return f"{absent[1]}: the method has no such part; `python -m hybrid_rl.list` shows methods"
     if several := re.match(r"Ambiguous value for argument '([^']+)'", text):

@@ -52,11 +52,17 @@ class Must:
     hold: Callable[[Any], bool]
     words: str
     has: str = ""  # the method that the value must have; empty: another rule
+    of: tuple[float, ...] = ()  # all values, where there are few
 
 
 def has(method: str, words: str) -> Must:
     """The rule that a value has this method; `words` is the whole message if it does not."""
     return Must(lambda part: hasattr(part, method), words, method)
+
+
+def among(*values: float) -> Must:
+    """The rule that a value is one of these; for words there is Literal."""
+    return Must(lambda x: x in values, f"be {' or '.join(map(str, values))}", of=values)
 
 
 def _whole(value: Any) -> bool:

@@ -187,7 +187,7 @@ class OnlineLearner:
 
     def _advance(self) -> bool:
         """Take one decision into the memory, or else learn once; False if nothing is left."""
-        with self._lock:
+        with self._lock, jax.debug_nans(False):  # in rows NaN is what does not apply
             if self._waiting:
                 *row, first = self._waiting.popleft()
                 gap = first and self._seen > 0

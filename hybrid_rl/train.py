@@ -22,7 +22,6 @@ if __name__ == "__main__":
     interrupt.install()
 
 import inspect
-import shlex
 import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -178,8 +177,7 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     what = f"{len(summary['runs'])} runs" if "runs" in summary else _result(summary)
     say(f"{what} ({summary['wall_s']:.0f} s, {summary['run_dir']})")
     if summary["signal"] is not None:
-        resume = shlex.quote(f"resume={overrides.quoted(summary['run_dir'])}")
-        say(f"continue: python -m hybrid_rl.train {resume}")
+        say(folder.going_on(summary["run_dir"]))
         sys.exit(128 + summary["signal"])
     if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])

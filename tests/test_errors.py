@@ -52,6 +52,15 @@ USAGE = [  # overrides of train, words of the line
     ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
     ("task=pendulm", "walker2d; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
+    ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
+    (
+        "algo=kle3 settings=light",
+        "settings=light: is not for this method, which has no proposal to change",
+    ),
+    *(
+        (f"algo={name} settings=light", f"settings=light: is not for this method: {key}")
+        for name, key in (("flash_sac", "policy.normalise: Unit"), ("mppi", "policy.hidden: Saved"))
+    ),
     ("sed=3", "sed: unknown key; did you mean seed?"),
     ("setings=light", "setings: unknown key; did you mean settings?"),
     ("experment=thesis/fig_3_3", "experment: unknown key; did you mean experiment, expert?"),

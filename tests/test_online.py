@@ -2,6 +2,7 @@
 
 import time
 
+import jax
 import numpy as np
 import pytest
 
@@ -59,6 +60,13 @@ def test_what_acted_is_remembered_and_a_break_ends_the_decision_before():
     assert rows[0, 2] == 0.25
     assert rows[:, 5].tolist() == [1, 0]
     assert rows[:, 4].tolist() == [0, 1]
+
+
+def test_it_learns_with_debug_nans_though_rows_have_nan():
+    with jax.debug_nans(True):
+        learner = made()
+        drive(learner, 10)
+    assert np.isfinite(learner.metrics["sac/critic_loss"])
 
 
 def test_it_learns_in_the_background():

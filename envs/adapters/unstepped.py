@@ -1,5 +1,6 @@
 """Worlds that step outside JAX, and what makes those of the user."""
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
@@ -71,5 +72,7 @@ def imported(make: Any) -> Callable[..., Any]:
     try:
         return getattr(import_module(module), name)
     except Exception as error:  # whatever the user's module does
-        line = in_user_code(error) or str(error)
+        file = re.fullmatch(r"(?:\./)?(\w+)\.py", module)
+        hint = f"a module has no .py: {file[1]}:{name}" if file else str(error)
+        line = in_user_code(error) or hint
         raise UsageError(f"env.make={make}: cannot be imported ({line})") from error

@@ -19,7 +19,7 @@ has none.
 """
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import jax
 import jax.numpy as jnp
@@ -27,7 +27,7 @@ from jax import Array
 
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.fields import FieldError, part
+from hybrid_rl.fields import among, part
 from hybrid_rl.types import EnvState, Spec
 
 DT = 0.1  # [s] of a decision
@@ -39,19 +39,10 @@ LARGEST = 0.9999  # |a| in the cost of u, which is infinite at 1
 
 @part
 class Lander:
-    """A lander with two thrusters.
-
-    Raises:
-        ValueError: for an unknown task, or turns that are not 0.5 or 1.
-    """
+    """A lander with two thrusters."""
 
     task: Literal["hover", "flip"] = "flip"
-    turns: float = 0.5  # of a flip: 0.5 or 1
-
-    def __post_init__(self) -> None:
-        """Check the number of turns."""
-        if self.turns not in (0.5, 1.0):
-            raise FieldError(self, "turns", "choose 0.5 or 1.0")
+    turns: Annotated[float, among(0.5, 1.0)] = 0.5  # of a flip
 
     @property
     def spec(self) -> Spec:

@@ -104,8 +104,15 @@ class Physics:
         return mjcf.load(self.asset)
 
     def reset(self, qpos: Array, qvel: Array) -> PhysicsState:
-        """The state at qpos [nq], qvel [nv]; all else is zero."""
+        """The state at qpos [nq], qvel [nv]; all else is zero.
+
+        Raises:
+            ValueError: for another number of them.
+        """
         model = self.model
+        for name, q, size in (("qpos", qpos, model.nq), ("qvel", qvel, model.nv)):
+            if jnp.shape(q) != (size,):
+                raise ValueError(f"{name} has the shape {jnp.shape(q)}; the model's has ({size},)")
         sizes = (model.na, model.nv, model.nu, model.nsensordata)
         zeros = [_or_none(jnp.zeros(size, jnp.float32)) for size in sizes]
         moved = (jnp.asarray(q, jnp.float32) for q in (qpos, qvel))

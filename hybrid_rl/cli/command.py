@@ -9,19 +9,20 @@ import os
 import re
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, NoReturn
 
 import yaml
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.composition import CONF, check_choices, check_task, explain
+from hybrid_rl.composition import CONF, check_choices, check_task, explain, file, options
 from hybrid_rl.errors import UsageError, in_user_code, shown
+from hybrid_rl.overrides import LACKING, plain, select
 from hybrid_rl.run import inherited
 
 FLAGS = {  # of Hydra -> how many words follow
@@ -60,6 +61,8 @@ def hydra_main(job: Callable[..., Any]) -> None:
 
     def checked(config: DictConfig) -> None:
         typed = overrides.of_job(HydraConfig.get())
+        if (launcher := HydraConfig.get().runtime.choices["hydra/launcher"]) != "basic":
+            raise UsageError(f"hydra/launcher={launcher}: sends the jobs of a sweep; add -m")
         with as_typed(typed):
             if note := check_task(config, HydraConfig.get(), configuration.READ):
                 print(note, flush=True)
@@ -92,7 +95,19 @@ def as_typed(typed: Sequence[str]) -> Iterator[None]:
     try:
         yield
     except UsageError as error:
-        raise UsageError(overrides.as_typed(str(error), typed)) from error
+        line = overrides.as_typed(str(error), typed)
+        raise UsageError(_of_settings(line, overrides.given(typed))) from error
+
+
+def _of_settings(line: str, given: Mapping[str, str]) -> str:
+    """A message about a field that a part lacks, with the settings that set it, not the user."""
+    field, name = re.match(r"([\w.]+): \w+ has ", line), given.get("settings", "")
+    if field is None or field[1] in given or name not in options("settings"):
+        return line
+    sets: Any = OmegaConf.load(file("settings", name))
+    if select(plain(sets), field[1]) is LACKING:
+        return line
+    return f"settings={name}: is not for this method: {line}"
 
 
 def usage(module: Any) -> str:

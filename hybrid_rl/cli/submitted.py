@@ -13,9 +13,9 @@ from typing import Any
 from hydra.core.utils import JobReturn, JobStatus
 
 from hybrid_rl.cli import interrupt
+from hybrid_rl.composition import SLURM
 from hybrid_rl.errors import UsageError
 
-SLURM = "submitit_slurm"
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
 PATIENCE = 60.0  # [s] for the jobs to end, once the sweep is interrupted

@@ -8,6 +8,7 @@ have, is written once and referenced by a YAML anchor.
 
 import io
 import os
+import shlex
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
@@ -23,6 +24,7 @@ from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, UsageError, WorldError, shown
+from hybrid_rl.overrides import quoted
 from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.anchors import as_yaml
@@ -227,6 +229,12 @@ def members(folder: Path) -> dict[Path, dict[str, float]]:
         raise UsageError(f"{folder / SWEEP}: is not what training writes")
     rows = (dict(zip(columns, row, strict=True)) for row in zip(*lists, strict=True))
     return {folder / str(number): row for number, row in enumerate(rows)}
+
+
+def going_on(folder: str | Path) -> str:
+    """The line with the command that continues a run, or all those of a sweep."""
+    resume = shlex.quote(f"resume={quoted(str(folder))}")
+    return f"continue: python -m hybrid_rl.train {resume}"
 
 
 def words(values: Mapping[str, float]) -> str:

@@ -45,6 +45,11 @@ class Job:
         seeds = run.seeds * len(self.runs)
         return loop_of(run.agent, seeds, stride, self.folders[0], self.axis)
 
+    @property
+    def whole(self) -> Path:
+        """The folder that `resume` continues."""
+        return self.folders[0] if len(self.folders) == 1 else self.folders[0].parent
+
     def logs(self, output: Output, stack: ExitStack) -> list[RunLog]:
         """Their records, open until the end of `stack`."""
         logs = []

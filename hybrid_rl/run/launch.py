@@ -176,6 +176,10 @@ def _run(
             except DivergenceError:
                 job.summaries(session)
                 raise
+            except Exception:  # of the user's world, or of the disk
+                if session.shelf.newest is not None and "agent" not in config:
+                    progress.note(folder.going_on(job.whole))
+                raise
             finally:
                 loop.close()
             return job.summaries(session)

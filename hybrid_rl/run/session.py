@@ -12,6 +12,7 @@ from time import monotonic, perf_counter
 from types import MappingProxyType
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -152,10 +153,13 @@ class Session:
     def _advance(self) -> None:
         """A call of the program, up to the next mark at most, and its rows."""
         plan, worlds, start = self.schedule, self.loop.agent.num_envs, self.step
+        if plan.row_due(start, worlds):
+            self.recent = Speed()
         changes = self.loop.agent.changes()
         rounds = self.pace.rounds(-(-(plan.until(start, changes) - start) // worlds))
         began = perf_counter()
-        self.state, metrics = self.program(self.state, jnp.int32(start), jnp.int32(rounds))
+        with jax.debug_nans(False):  # NaN marks a metric that does not apply, infinity a failure
+            self.state, metrics = self.program(self.state, jnp.int32(start), jnp.int32(rounds))
         metrics = {name: np.asarray(m)[:rounds] for name, m in metrics.items()}
         took, rounds = perf_counter() - began, len(metrics["episode/done"])
         if not rounds:  # a robot gave none before a signal
@@ -185,6 +189,8 @@ class Session:
         """Write the rows that follow from the rounds after `start`."""
         worlds = self.loop.agent.num_envs
         infinite = rows.infinite(metrics, start, worlds)
+        if jax.config.jax_debug_nans:
+            infinite = divergence.unsound(self.state.learners, self.step) | infinite
         ended = self._end(infinite)
         episodes = rows.episodes(metrics, start, worlds, self.diverged.steps)
         for row in episodes:
@@ -198,7 +204,6 @@ class Session:
             means = rows.means(self.gathered.take(), learners, self.step, self.diverged.ends)
             perf = {"perf/compile_s": self.loop.compile_s} | self._speed(len(self.shelf.logs))
             self._write([row | perf for row in means])
-            self.recent = Speed()
 
     def _speed(self, folders: int = 1) -> dict[str, float]:
         """Decisions of all learners per second since the last row; empty before they learn.

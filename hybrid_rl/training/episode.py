@@ -15,6 +15,7 @@ from jax import Array
 from hybrid_rl.core.branching import when_any, where
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.protocols import Constraint, Env, Goal
+from hybrid_rl.training import paid
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
@@ -37,7 +38,8 @@ class Episode:
     by the constraint's price; the return is not.
 
     Raises:
-        ValueError: for counts that are no whole numbers or too small, or noise of another size.
+        ValueError: for counts that are no whole numbers or too small, noise of another size, or
+            a reward or constraint of the user's that gives no number.
     """
 
     env: Env
@@ -56,9 +58,8 @@ class Episode:
             if type(value) is not int or value < least:
                 line = f"must be a whole number, {least} or more"
                 raise ValueError(f"episode.{name}={value}: {line}")
-        if self.reward is not None and not hasattr(self.reward, "reward_of"):
-            kind = type(self.reward).__name__
-            raise ValueError(f"reward={kind}: has no reward_of; a model of it is reward_model")
+        for name in paid.METHODS:
+            paid.check(name, getattr(self, name), self.env.spec)
         if self.action_noise < 0:
             raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
         if not any(self._std):

@@ -90,6 +90,8 @@ def sliders(group: str, part: Any) -> list[Slider]:
         step = 1.0 if whole else most / 100
         lows = -most if signed else 0.0, 0.0, step
         least = next((x for x in lows if _allowed(field.type, x)), value)
+        if few := sorted(x for rule in _rules(field.type) for x in rule.of):
+            least, most, step = few[0], few[-1], few[1] - few[0]
         found.append(Slider(f"{group}.{field.name}", value, least, most, step))
     return found
 
@@ -97,8 +99,12 @@ def sliders(group: str, part: Any) -> list[Slider]:
 def _allowed(kind: Any, value: float) -> bool:
     """Whether the rules of a field's type hold for a number; whole where one must be."""
     number = int(value) if value.is_integer() else value
-    rules = [rule for each in choices(kind) for rule in get_args(each) if isinstance(rule, Must)]
-    return all(rule.hold(number) for rule in rules)
+    return all(rule.hold(number) for rule in _rules(kind))
+
+
+def _rules(kind: Any) -> list[Must]:
+    """Those of a field's type."""
+    return [rule for each in choices(kind) for rule in get_args(each) if isinstance(rule, Must)]
 
 
 def with_goals(whole: Any, episode: Episode, numbers: Mapping[str, Any]) -> Any:

@@ -9,7 +9,10 @@ import sys
 import time
 
 import pytest
+from hydra.errors import MissingConfigException
 from tiny import TINY, call_train
+
+from hybrid_rl import composition
 
 pytestmark = pytest.mark.turns(3)
 
@@ -145,6 +148,13 @@ def test_without_slurm_it_is_one_line(monkeypatch, capfd):
     monkeypatch.setenv("PATH", "")
     assert call_train(*SLURM) == 2
     assert "no sbatch and srun here; start it where Slurm is" in capfd.readouterr().err
+
+
+def test_a_launcher_that_is_not_installed_names_its_extra():
+    error = MissingConfigException("", "hydra/launcher/submitit_slurm", ["basic"])
+    line = composition.explain(error)
+    assert line.startswith("hydra/launcher=submitit_slurm: unknown; choose one of basic; ")
+    assert line.endswith('need pip install "hybrid_rl[slurm]"')
 
 
 def test_an_interrupt_ends_all_of_a_sweep(tmp_path):

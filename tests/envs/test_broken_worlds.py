@@ -236,6 +236,12 @@ SIMULATED = [  # the same of a world in MuJoCo; None: of its model
         r"w\.py:\d+: W\.reset: ValueError: .*/rial\.xml: no such file",
     ),
     (
+        "two joints of one",
+        "reset(jnp.zeros(1),",
+        "reset(jnp.zeros(2),",
+        r"w\.py:19: W\.reset: ValueError: qpos has the shape \(2,\); the model's has \(1,\)",
+    ),
+    (
         "an unknown sensor",
         "-x[0] ** 2",
         'Physics(ASSET).sensor(data, "hand")[0]',

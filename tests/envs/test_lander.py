@@ -116,7 +116,7 @@ def test_the_scene_shows_the_angle() -> None:
     ("fields", "words"),
     [
         ({"task": "land"}, "task=land: choose one of hover, flip"),
-        ({"turns": 0.7}, "turns=0.7: choose 0.5"),
+        ({"turns": 0.7}, "turns=0.7: must be 0.5 or 1.0"),
     ],
 )
 def test_other_tasks_are_refused(fields: dict, words: str) -> None:

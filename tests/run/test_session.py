@@ -12,10 +12,11 @@ import pytest
 from tiny import TINY, call_train, run
 
 from hybrid_rl import train
-from hybrid_rl.errors import DivergenceError
+from hybrid_rl.errors import DivergenceError, WorldError
 from hybrid_rl.overrides import quoted
-from hybrid_rl.run import checkpoint, integrity, schedule
+from hybrid_rl.run import checkpoint, integrity, schedule, session
 from hybrid_rl.run.evaluations import Evaluations
+from hybrid_rl.run.progress import Progress
 from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
@@ -168,10 +169,11 @@ def break_learner(patch, number, step):
         if self.step == step:
             spoil = self.state.learners["policy"]
             leaves, form = jax.tree.flatten(spoil)
-            leaves = [
-                x.at[number].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
-                for x in leaves
-            ]
+            with jax.debug_nans(False):
+                leaves = [
+                    x.at[number].set(jnp.nan) if jnp.issubdtype(x.dtype, jnp.floating) else x
+                    for x in leaves
+                ]
             learners = self.state.learners | {"policy": jax.tree.unflatten(form, leaves)}
             self.state = self.state.replace(learners=learners)
         advance(self)
@@ -264,6 +266,50 @@ def test_the_speed_is_that_of_learning(whole):
     speed.add(100, 2.0)
     speed.add(50, 1.0)
     assert speed.rate == 50
+
+
+def test_progress_gets_the_speed_of_the_newest_call_where_a_row_ends_too(tmp_path, monkeypatch):
+    given, update = [], Progress.update
+
+    def seen(self, step, scalars, say=None):
+        given.append((step, "perf/env_steps_per_s" in scalars))
+        update(self, step, scalars, say)
+
+    monkeypatch.setattr(Progress, "update", seen)
+    run(tmp_path / "run", *SAC)
+    assert (250, True) in given  # a row
+    assert all(known for step, known in given if step > 100)
+
+
+def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
+    tmp_path, monkeypatch
+):
+    """Metrics that do not apply are NaN, too; here no metric tells what was learned."""
+    monkeypatch.setattr(session.rows, "infinite", lambda *_: {})
+    break_learner(monkeypatch, 0, 200)
+    break_learner(monkeypatch, 1, 200)
+    with jax.debug_nans(True), pytest.raises(DivergenceError, match="seed 0, step 250: "):
+        run(tmp_path / "run", *SAC)
+
+
+@pytest.mark.parametrize(("step", "saved"), [(60, False), (150, True)])
+def test_after_a_fault_of_the_world_it_says_how_to_go_on(
+    monkeypatch, tmp_path, capsys, step, saved
+):
+    advance, folder = Session._advance, tmp_path / "it's"
+
+    def broken(self):
+        advance(self)
+        if self.step >= step:
+            raise WorldError("reach.py:3: step: the motor is hot")
+
+    monkeypatch.setattr(Session, "_advance", broken)
+    assert call_train(*TINY, *SAC, f"run_dir={quoted(str(folder))}") == 2
+    printed = capsys.readouterr()
+    assert printed.err == "hybrid_rl: reach.py:3: step: the motor is hot\n"
+    lines = [line for line in printed.out.splitlines() if line.startswith("continue: ")]
+    command = ["python", "-m", "hybrid_rl.train", f"resume={quoted(str(folder))}"]
+    assert [shlex.split(line)[1:] for line in lines] == [command] * saved
 
 
 def test_a_run_says_what_to_expect(tmp_path, capsys):

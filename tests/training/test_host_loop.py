@@ -224,6 +224,7 @@ def test_spaces_of_any_form_are_flattened():
         ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
         ({"make": Odd, "kwargs": {"obs": Box(0, 255, (300, 400, 3))}}, "must be numbers"),
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
+        ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
         ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
         ({"id": "Pendulum-v1", "timeout_s": 1.0}, "with env.processes=true"),
     ],

@@ -12,6 +12,7 @@ from tiny import call, call_train, only_line, run
 
 from hybrid_rl import trained
 from hybrid_rl.cli import command
+from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.ant import Ant
@@ -84,6 +85,9 @@ def test_sliders_have_the_range_of_their_field():
     assert (fault["env.rotor_loss"].least, fault["env.rotor_loss"].most) == (0, 1)
     rounds = {one.key: one for one in sliders("env", SawyerTorque())}["env.rounds"]
     assert (rounds.least, rounds.most, rounds.step) == (1, 10, 1)
+    for world in (Lander(), Lander(turns=1.0)):
+        (turns,) = sliders("env", world)
+        assert (turns.value, turns.least, turns.most, turns.step) == (world.turns, 0.5, 1, 0.5)
     for world in (Quadcopter(), QuadcopterSE3()):
         (wind,) = [one for one in sliders("env", world) if one.key == "env.wind"]
         assert (wind.value, wind.least, wind.most) == (0, -5, 5)

@@ -1,0 +1,41 @@
+"""A reward or a constraint of one's own that is wrong is one line, before anything is compiled."""
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.training.episode import Episode
+
+
+@dataclass(frozen=True)
+class Mine:
+    """One function as a reward and as a constraint."""
+
+    reward_of: Any = None
+    excess: Any = None
+
+
+GIVES = "it must be float32[]: sum it, or take its entry; a whole number is no float"
+
+
+@pytest.mark.parametrize("name", ["reward", "constraint"])
+@pytest.mark.parametrize(
+    ("function", "words"),
+    [
+        (lambda x, u, after: after[0] - u**2, f"gives float32[1]; {GIVES}"),
+        (lambda x, u, after: 1, f"gives int32[]; {GIVES}"),
+        (lambda x, u, after: None, f"gives NoneType; {GIVES}"),
+        (lambda x, u: x[0], "positional arguments but 3 were given"),
+        (lambda x, u, after: 1.0 if x[0] > 0 else 0.0, "write jnp.where or jax.lax.cond"),
+    ],
+)
+def test_what_is_paid_is_one_number(name, function, words):
+    method = {"reward": "reward_of", "constraint": "excess"}[name]
+    with pytest.raises(ValueError, match=re.escape(words)) as error:
+        Episode(Pendulum(), **{name: Mine(**{method: function})})
+    assert str(error.value).startswith(f"{name}=Mine: {method}: ")
+    assert "\n" not in str(error.value)
+    Episode(Pendulum(), **{name: Mine(**{method: lambda x, u, after: after[0] - u.sum()})})
