@@ -27,8 +27,11 @@ if __name__ == "__main__":
     interrupt.install()
 
 import json
+from collections.abc import Callable
 from functools import partial
+from itertools import count
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import jax
@@ -48,11 +51,13 @@ from hybrid_rl.run import memory
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.progress import say
+from hybrid_rl.run.schedule import Pace
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
 from hybrid_rl.training.host_loop import HostEvaluator
-from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
+from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 
+SILENCE = 10  # [s] between two lines of progress
 ARGUMENTS = (
     Argument("run", "", "folder of the run"),
     POLICY,
@@ -64,26 +69,42 @@ ARGUMENTS = (
 )
 
 
-def evaluate(trained: Trained, mode: str = "full", episodes: int = 10) -> dict[str, np.ndarray]:
+def evaluate(
+    trained: Trained,
+    mode: str = "full",
+    episodes: int = 10,
+    on_decisions: Callable[[int], None] = lambda count: None,
+) -> dict[str, np.ndarray]:
     """Undiscounted `return` [S, episodes] of the same episodes as in training.
 
     If the task measures it, also `success` [S, episodes], 0 or 1; with a constraint also
-    `violations` [S, episodes], in decisions.
+    `violations` [S, episodes], in decisions. on_decisions: is called now and then with the number
+    of decisions that every episode has made.
 
     Raises:
         UsageError: for a mode that the method does not have.
     """
     if mode not in trained.controllers:
         raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
-    modes = [trained.controllers[mode]]
-    memory.episodes("episodes", episodes, len(trained.seeds), trained.episode, modes)
+    episode, controller = trained.episode, trained.controllers[mode]
+    memory.episodes("episodes", episodes, len(trained.seeds), episode, [controller])
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
-    if isinstance(trained.episode.env, External):
-        got = HostEvaluator(trained.episode, modes[0], trained.params, keys)(trained.params, keys)
+    if isinstance(episode.env, External):
+        decisions = count()
+        got = HostEvaluator(episode, controller, trained.params, keys)(
+            trained.params, keys, lambda: bool(on_decisions(next(decisions)))
+        )
         return got or {}
-    one = partial(evaluate_episodes, trained.episode, modes[0])
-    got = jax.jit(jax.vmap(one))(trained.params, keys)
-    return {name: np.asarray(value) for name, value in got.items()}
+    first = jax.vmap(partial(begin, episode, controller))
+    more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
+    carry, more, pace, made = jax.jit(first)(keys), jax.jit(more, donate_argnums=1), Pace(), 0
+    while not np.asarray(carry[0].done).all():
+        rounds, began = pace.rounds(episode.steps), perf_counter()
+        carry = jax.block_until_ready(more(trained.params, carry, jnp.int32(rounds)))
+        pace.took(rounds, perf_counter() - began)
+        made = min(made + rounds, episode.steps)
+        on_decisions(made)
+    return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
 
 
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
@@ -125,7 +146,8 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     for note in trained.notes:
         print(note)
     say(f"compiling, then {episodes} episodes a seed ...")  # of a planner, a minute
-    values = report(trained, given["mode"], evaluate(trained, given["mode"], episodes))
+    got = evaluate(trained, given["mode"], episodes, _saying(trained.episode.steps))
+    values = report(trained, given["mode"], got)
     values |= {"changes": changes, "precision": precision.chosen()}
     where = "".join(f", {key}={value}" for key, value in changes.items())
     print(f"{name}, mode {given['mode']}, step {trained.step:,}{where}")  # whole, also in a pipe
@@ -139,6 +161,19 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
         print(f"{episodes} episodes a seed; written to {out}")
     except OSError as error:  # the run of somebody else, say
         print(f"{episodes} episodes a seed; not written: {out}: {error.strerror}")
+
+
+def _saying(steps: int) -> Callable[[int], None]:
+    """What prints a line, at most every ten seconds, with the decisions so far of `steps`."""
+    last = perf_counter()
+
+    def progress(count: int) -> None:
+        nonlocal last
+        if perf_counter() - last > SILENCE and count < steps:
+            last = perf_counter()
+            say(f"{count:,} of {steps:,} decisions")
+
+    return progress
 
 
 def _table(values: dict[str, Any]) -> Table:

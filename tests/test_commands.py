@@ -154,7 +154,10 @@ def test_evaluate_in_another_world(trained, capsys):
     name = "evaluation_policy_episode.sensor_noise=3.0_episode.delay=1.json"
     values = json.loads((trained / name).read_text())
     assert values["changes"] == dict(change.split("=") for change in changes)
-    plain = evaluate.evaluate(evaluate.load(trained), "policy", 3)["return"]
+    made: list[int] = []
+    plain = evaluate.evaluate(evaluate.load(trained), "policy", 3, made.append)["return"]
+    assert made == sorted(set(made))
+    assert made[-1] == evaluate.load(trained).episode.steps
     assert not np.isclose(values["returns"], plain, rtol=1e-4).any()
 
 
