@@ -14,6 +14,7 @@ SMALL = {  # command -> arguments that make it small
     "evaluate": {"episodes": "1", "episode.steps": "20"},
     "render": {"episode_steps": "2", "width": "64", "height": "48"},
 }
+IN_ITS_WORLD = {"constraint": "speed", "constraint.most": "1"}  # a pendulum has no pitch
 IMAGINED = {"imagine.updates": "2", "imagine.critic_first": "1"}
 FILE_OR_NUMBER = re.compile(r"[\w/]+(?=\.\w+$)|[\d.,]+$")
 METRICS = {"train/return", "eval/return", "eval/policy_return"}  # of the small run
@@ -44,6 +45,7 @@ def programs():
             if name == "evaluate":  # the small run is one of another task
                 given = {key: each for key, each in given.items() if not key.startswith("env.")}
             given |= SMALL.get(name, {})
+            given |= IN_ITS_WORLD if given.get("constraint") == "pitch" else {}
             given |= IMAGINED if "imagine" in given else {}
             kind = {key: FILE_OR_NUMBER.sub("", each) for key, each in given.items()}
             found.setdefault((name, *sorted(kind.items())), (name, given))
