@@ -20,10 +20,10 @@ train: setup
 	$(RUN) hybrid_rl.train $(or $(ARGS),settings=light)
 
 test: setup
-	$(RUN) pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder tests $(ARGS)
+	$(RUN) pytest -n $(WORKERS) --dist loadgroup tests $(ARGS)
 
 test-thesis: setup
-	$(RUN) pytest -n $(WORKERS) --dist loadgroup --no-loadscope-reorder thesis/tests $(ARGS)
+	$(RUN) pytest -n $(WORKERS) --dist loadgroup thesis/tests $(ARGS)
 
 lint: setup
 	$(RUN) ruff check

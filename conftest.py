@@ -67,15 +67,10 @@ def pytest_configure(config):
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
-    """Give the tests of a file one worker, long files first; deselect slow tests and others' turns.
-
-    Long are files of which commits take turns. Workers that end with short ones end together.
-    """
+    """Give the tests of a file one worker; deselect slow tests and those of other commits."""
     for item in items:
         if item.get_closest_marker("xdist_group") is None:
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
-    long = {item.path for item in items if item.get_closest_marker("turns")}
-    items.sort(key=lambda item: item.path not in long)
     if config.getoption("--slow"):
         return
     left = {item for item in items if any(name in item.nodeid for name in SLOW)}
