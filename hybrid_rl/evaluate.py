@@ -48,14 +48,14 @@ from hybrid_rl.goals import chosen
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run import memory
+from hybrid_rl.run.evaluations import in_calls
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.progress import say
-from hybrid_rl.run.schedule import Pace
 from hybrid_rl.trained import Trained
 from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
 from hybrid_rl.training.host_loop import HostEvaluator
-from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
+from hybrid_rl.training.rollout import advance, begin, evaluation_keys
 
 SILENCE = 10  # [s] between two lines of progress
 ARGUMENTS = (
@@ -73,7 +73,7 @@ def evaluate(
     trained: Trained,
     mode: str = "full",
     episodes: int = 10,
-    on_decisions: Callable[[int], None] = lambda count: None,
+    on_decisions: Callable[[int], None] = lambda made: None,
 ) -> dict[str, np.ndarray]:
     """Undiscounted `return` [S, episodes] of the same episodes as in training.
 
@@ -95,16 +95,10 @@ def evaluate(
             trained.params, keys, lambda: bool(on_decisions(next(decisions)))
         )
         return got or {}
-    first = jax.vmap(partial(begin, episode, controller))
+    first = jax.jit(jax.vmap(partial(begin, episode, controller)))
     more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
-    carry, more, pace, made = jax.jit(first)(keys), jax.jit(more, donate_argnums=1), Pace(), 0
-    while not np.asarray(carry[0].done).all():
-        rounds, began = pace.rounds(episode.steps), perf_counter()
-        carry = jax.block_until_ready(more(trained.params, carry, jnp.int32(rounds)))
-        pace.took(rounds, perf_counter() - began)
-        made = min(made + rounds, episode.steps)
-        on_decisions(made)
-    return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
+    more = partial(jax.jit(more, donate_argnums=1), trained.params)
+    return in_calls(first(keys), more, episode.steps, on_decisions) or {}
 
 
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
@@ -169,7 +163,7 @@ def _saying(steps: int) -> Callable[[int], None]:
 
     def progress(count: int) -> None:
         nonlocal last
-        if perf_counter() - last > SILENCE and count < steps:
+        if perf_counter() - last > SILENCE:
             last = perf_counter()
             say(f"{count:,} of {steps:,} decisions")
 

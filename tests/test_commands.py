@@ -157,7 +157,7 @@ def test_evaluate_in_another_world(trained, capsys):
     made: list[int] = []
     plain = evaluate.evaluate(evaluate.load(trained), "policy", 3, made.append)["return"]
     assert made == sorted(set(made))
-    assert made[-1] == evaluate.load(trained).episode.steps
+    assert made[0] == 0 < made[-1] < evaluate.load(trained).episode.steps
     assert not np.isclose(values["returns"], plain, rtol=1e-4).any()
 
 

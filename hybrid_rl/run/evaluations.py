@@ -72,16 +72,30 @@ class Evaluator:
         self, params: Params, keys: Array, cut: Callable[[], bool]
     ) -> dict[str, np.ndarray] | None:
         """The `scores` [S, N]; None once `cut` is true."""
-        carry, pace = self._begin(self.numbers, keys), Pace()
-        while not np.asarray(carry[0].done).all():
-            if cut():
-                return None
-            rounds, began = pace.rounds(self.steps), perf_counter()
-            carry = jax.block_until_ready(
-                self._advance(self.numbers, params, carry, jnp.int32(rounds))
-            )
-            pace.took(rounds, perf_counter() - began)
-        return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
+        more = partial(self._advance, self.numbers, params)
+        return in_calls(self._begin(self.numbers, keys), more, self.steps, lambda made: cut())
+
+
+def in_calls(
+    carry: tuple,
+    more: Callable[[tuple, Array], tuple],
+    steps: int,
+    cut: Callable[[int], bool | None],
+) -> dict[str, np.ndarray] | None:
+    """The `scores` at the end of the episodes of `carry` (rollout.begin); None once `cut` is true.
+
+    more: the carry after so many decisions, of `steps` at most; cut: is called with the decisions
+    made, between calls of a few seconds at most.
+    """
+    pace, made = Pace(), 0
+    while not np.asarray(carry[0].done).all():
+        if cut(made):
+            return None
+        rounds, began = pace.rounds(steps), perf_counter()
+        carry = jax.block_until_ready(more(carry, jnp.int32(rounds)))
+        pace.took(rounds, perf_counter() - began)
+        made += rounds
+    return {name: np.asarray(value) for name, value in scores(carry[0]).items()}
 
 
 def _one(
