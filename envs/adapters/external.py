@@ -24,7 +24,7 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, imported
-from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
 KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
@@ -130,7 +130,7 @@ def _known(env: External) -> Known:
         found = one.reset(seed=0)
     except UsageError:
         raise
-    except Exception as error:
+    except FAULTS as error:
         key = "make" if env.make else "id"
         line = in_user_code(error) or gist(error)
         raise UsageError(f"env.{key}={env.name}: {line}") from error
@@ -163,7 +163,7 @@ def _check_first(name: str, one: gymnasium.Env, found: Any) -> None:
             _check_shape(name, method, word, value, ())
     except WorldError:
         raise
-    except Exception as error:
+    except FAULTS as error:
         raise WorldError(f"{name}: {method}: {in_user_code(error) or gist(error)}") from error
 
 

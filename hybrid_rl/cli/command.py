@@ -206,6 +206,10 @@ def _reported(job: Callable[[], None]) -> None:
         job()
     except Exception as error:
         report(error)
+    except SystemExit as end:
+        if line := in_user_code(end, ours=True):  # it would end without a word
+            _fail(1, line)
+        raise
     except KeyboardInterrupt:
         _interrupted()
 
