@@ -187,14 +187,13 @@ def episodes(config: DictConfig) -> Episode:
 
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
-    env, notes = _instantiate(parts.env, "env"), ()
+    env = _instantiate(parts.env, "env")
+    notes = env.known.notes if isinstance(env, External) else ()
     if not type(env).__module__.startswith("hybrid_rl."):
         notes = check_world(env)
         if "steps" not in parts.episode:
-            notes = (
-                *notes,
-                f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",
-            )
+            line = f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode"
+            notes = (*notes, line)
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
