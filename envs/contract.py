@@ -22,7 +22,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr
 
-from hybrid_rl.envs import indices
+from hybrid_rl.envs.indices import check as check_indices
 from hybrid_rl.envs.mujoco import mjcf, native, physics
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
 from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
@@ -261,7 +261,7 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
         kept = after.replace(info={**state.info, **after.info})
         state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
     for method, examples in (("reset", [(key,) for key in keys[:2]]), ("step", tried[::9])):
-        world.blamed(method, indices.check, getattr(world.env, method), *examples)
+        world.blamed(method, check_indices, getattr(world.env, method), *examples)
     if ended < decisions:
         return ()
     return (f"{world.at('step')}: every episode ended after one decision, of {decisions} tried",)

@@ -36,6 +36,11 @@ USAGE = [  # overrides of train, words of the line
         "task=pendulum algo=sac experiment=thesis/fig_3_2_hopper",
         "experiment=thesis/fig_3_2_hopper: is for task=hopper; env.reward: Pendulum has no fields",
     ),
+    (
+        "task=pendulum algo=localisation",
+        "task=pendulum: has no env.acceleration, env.drag, which localisation (free_body) reads; "
+        "choose one of contact_plane, sawyer_probe, sprk",
+    ),
     ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
     ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
     ("seed=${seeds}", "seed: refers to seeds, which neither this task nor this method sets"),

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.envs import indices
+from hybrid_rl.envs.indices import check as check_indices
 from hybrid_rl.errors import FAULTS, gist, in_user_code
 from hybrid_rl.types import Spec
 
@@ -30,7 +30,7 @@ def check(name: str, part: Any, spec: Spec) -> None:
     x, u = (rng.normal(size=(2, size)).astype(np.float32) for size in sizes)
     try:
         got = jax.eval_shape(call, x[0], u[0], x[1])
-        indices.check(call, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
+        check_indices(call, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
     except FAULTS as error:
         raise ValueError(what + (in_user_code(error) or gist(error))) from error
     if getattr(got, "shape", None) != () or not jnp.issubdtype(got.dtype, jnp.floating):
