@@ -41,6 +41,14 @@ USAGE = [  # overrides of train, words of the line
         "task=pendulum: has no env.acceleration, env.drag, which localisation (free_body) reads; "
         "choose one of contact_plane, sawyer_probe, sprk",
     ),
+    (
+        "task=pendulum algo=mppi policy=tanh_gaussian proposal=policy",
+        "policy=TanhGaussian: PolicyProposal acts by it, and no learner of this method trains it",
+    ),
+    (
+        "task=pendulum algo=mppi model=gaussian",
+        "model=Gaussian: SamplingController acts by it, and no learner of this method trains it; ",
+    ),
     ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
     ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
     ("seed=${seeds}", "seed: refers to seeds, which neither this task nor this method sets"),
