@@ -91,6 +91,7 @@ USAGE = [  # overrides of train, words of the line
     ("task = pendulum", "task: has no value; write task=pendulum"),
     ("--task pendulum", "--task: unknown option; write task=pendulum"),
     ("--total-steps 10", "--total-steps: unknown option; write total_steps=10"),
+    ("algo=sac -m seed=-1,0", "seed=-1: must be a whole number, 0 or more (job 0: seed=-1)"),
     ("eval_modes=[full, policy]", "policy]: has no key; put a list in quotes"),
     ("algo=sac planner.horizon=7", "planner.horizon: sac does not use it"),
     ("algo=nn_mppi proposal=mixture", "proposal: nn_mppi does not use it; it uses model_proposal"),
