@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from scripts.pages import __main__ as command
@@ -23,6 +24,7 @@ DATA = {
     "rows": [{"label": "a/b, c", "kind": "x", "n": 0.25}, {"label": "d", "kind": "y", "n": 0.5}],
     "band": {"iqm": 2, "low": 1, "high": 3},
     "found": [4, None, 6],
+    "after": {"5": [3, 4], "9": [5, 7], "13": [6, 6]},
 }
 SENTENCE = 'it has <!-- = 100 * "made/rows/d/n" -->**40%**<!-- / --> of all'
 TABLE = """<!-- table
@@ -80,6 +82,7 @@ def test_other_words_may_change_freely(results):
         ('range("made/hop/a@end")', [4, 1, 7]),
         ('mean(area("made/hop/a", 5))', [4]),
         ('ahead("made/run/a@5", "made/hop/a@5")', [100, 100, 100]),
+        ('reached("made/after", 6), reached("made/after", 7)', [9, np.inf]),
         ('peak("made/run/a"), peak_at("made/run/a")', [2000.4, 9]),
     ],
 )

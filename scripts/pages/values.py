@@ -121,6 +121,12 @@ def ahead(x: Any, y: Any) -> list[float]:
     return [100 * part for part in improvement(x, y)]
 
 
+def reached(evaluations: dict[str, list[float]], aim: float) -> float:
+    """The first of the decisions, keys of the evaluations [S], whose IQM is `aim`; or infinity."""
+    found = [int(n) for n, each in evaluations.items() if iqm_of(np.array(each)) >= aim]
+    return min(found, default=np.inf)
+
+
 def _iqms(line: dict[str, Any]) -> np.ndarray:
     """[G] IQM over the seeds."""
     return iqm_of(np.array(line["each"]))
@@ -150,6 +156,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "peak_at": lambda line: line["x"][np.argmax(_iqms(line))],
     "p": lambda x, y: float(mannwhitneyu(x, y).pvalue),  # two-sided
     "range": lambda x: [np.mean(x), np.min(x), np.max(x)],  # mean, lowest and highest
+    "reached": reached,
     "sign": lambda x, y: float(binomtest(*_less(x, y)).pvalue),  # p of the sign test, of pairs
     "sort": np.sort,
     "sum": np.sum,
