@@ -39,7 +39,12 @@ SHOWN = {  # method -> its name, ink and marker
 }
 PUBLISHED = "DHMBPO, published (5)"
 ROBOTS = ("half-cheetah", "walker2d")
-FONTS = {"font.size": 11, "axes.titlesize": 12, "legend.fontsize": 11, "legend.handlelength": 2}
+FONTS: dict[Any, Any] = {
+    "font.size": 11,
+    "axes.titlesize": 12,
+    "legend.fontsize": 11,
+    "legend.handlelength": 2,
+}
 SIZE, DPI = (7.6, 6.2), 210  # [in]
 
 
