@@ -6,7 +6,7 @@
         assert check(MyWorld()) == ()
 
 `reset` and `step` are traced, twice, and their results compared with `spec` and with each other;
-then both are compiled and make ten random decisions. This takes half a second, of which most is
+then both are compiled and make ten random decisions. This takes a second, of which most is
 compiling; a world with a field `physics` is simulated by MuJoCo C, which compiles at once.
 """
 
@@ -22,9 +22,10 @@ import jax.numpy as jnp
 import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr
 
+from hybrid_rl.envs.indices import check as check_indices
 from hybrid_rl.envs.mujoco import mjcf, native, physics
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
+from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
@@ -108,7 +109,7 @@ class _World:
             return call(*arguments)
         except UsageError:
             raise
-        except Exception as error:
+        except FAULTS as error:
             line = in_user_code(error, self.file)
             kind = type(self.env).__name__
             if line is None:
@@ -239,16 +240,17 @@ def _physics(program: Jaxpr, once: bool = True) -> Iterator[tuple[str, int, bool
 def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
     """Make random decisions; notes about their episodes.
 
-    reset, step: traced. Raises UsageError if a number is not finite.
+    reset, step: traced. Raises UsageError if a number is not finite, or an index out of range.
     """
     resetting, stepping = (each.lower().compile() for each in (reset, step))
     rng, keys = np.random.default_rng(0), jax.random.split(jax.random.key(0), decisions + 1)
-    state, ended = world.blamed("reset", resetting, keys[0]), 0
+    state, ended, tried = world.blamed("reset", resetting, keys[0]), 0, []
     if not np.isfinite(state.obs).all():
         raise WorldError(f"{world.at('reset')}: returned obs {state.obs}; it must be finite")
     for i in range(1, decisions + 1):
         action = rng.uniform(-1, 1, world.env.spec.act).astype(np.float32)
         after = world.blamed("step", stepping, state, action)
+        tried.append((state, action))
         for name in ("reward", "obs"):
             value = np.asarray(getattr(after, name))
             if not np.isfinite(value).all():
@@ -258,6 +260,8 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
         ended += bool(after.terminated)
         kept = after.replace(info={**state.info, **after.info})
         state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
+    for method, examples in (("reset", [(key,) for key in keys[:2]]), ("step", tried[::9])):
+        world.blamed(method, check_indices, getattr(world.env, method), *examples)
     if ended < decisions:
         return ()
     return (f"{world.at('step')}: every episode ended after one decision, of {decisions} tried",)

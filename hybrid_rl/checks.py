@@ -1,11 +1,13 @@
-"""Checks of a configuration before its parts are built: counts, choices, kinds of values."""
+"""Checks of a configuration: counts, choices, kinds of values; of parts: what learns them."""
 
 import inspect
 import math
+from collections.abc import Collection
 from dataclasses import fields, is_dataclass
 from types import NoneType
 from typing import Any, get_origin
 
+import jax
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
@@ -15,7 +17,7 @@ from hybrid_rl.errors import UsageError, relative, shown
 from hybrid_rl.fields import choices, plain
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.overrides import SHOW, meant
-from hybrid_rl.types import NAME
+from hybrid_rl.types import NAME, Spec
 
 COUNTS = (
     "num_seeds",
@@ -29,6 +31,7 @@ COUNTS = (
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 STEPS = 2**31  # decisions, fewer of which are counted
 SEEDS = 2**32  # distinct seeds of JAX's generator
+OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
 MODES = ("full", "policy", "planner")
 KINDS = {  # type of a part's field -> its name in messages
     int: "a whole number",
@@ -102,6 +105,31 @@ def _check_planned(config: DictConfig) -> None:
     if isinstance(kind, type) and issubclass(kind, Unstepped) and planned in str(config):
         line = "plans on the true dynamics, and this task steps outside JAX; choose a method that"
         raise UsageError(f"task={config.task}: {config.algo} {line} learns its model, or sac")
+
+
+def check_owners(parts: Any, owned: Collection[str], spec: Spec) -> None:
+    """Check that what the parts of controllers act by has parameters.
+
+    parts: any parts, in lists, dictionaries and each other. owned: the fields of Params that
+    learners give.
+
+    Raises:
+        ValueError: for a policy, a model or the like that has parameters, which no learner gives.
+    """
+    if isinstance(parts, dict | list | tuple):
+        for each in parts.values() if isinstance(parts, dict) else parts:
+            check_owners(each, owned, spec)
+    if not (is_dataclass(parts) and type(parts).__module__.startswith("hybrid_rl.")):
+        return
+    for name in (field.name for field in fields(parts)):
+        part = getattr(parts, name)
+        init = getattr(part, "init", None) if name in OF_PARAMS - {*owned} else None
+        if init is None:
+            check_owners(part, owned, spec)
+        elif jax.tree.leaves(jax.eval_shape(lambda init=init: init(jax.random.key(0), spec))):
+            line = f"{type(parts).__name__} acts by it, and no learner of this method trains it"
+            remedy = f"leave {name}= out, or choose a method that learns a {name}"
+            raise ValueError(f"{name}={type(part).__name__}: {line}; {remedy}")
 
 
 def countable(config: DictConfig) -> None:

@@ -2,10 +2,11 @@
 
 import difflib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import yaml
 from omegaconf import DictConfig, OmegaConf
@@ -14,6 +15,7 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields
 from hybrid_rl.errors import UsageError, install, relative
+from hybrid_rl.fields import Must
 from hybrid_rl.parts import part_class
 from hybrid_rl.training.episode import Episode
 
@@ -110,8 +112,41 @@ def explain(error: Exception) -> str:
     if isinstance(error, InterpolationKeyError):
         absent = re.search(r"'([^']+)'", text)
         key = absent[1] if absent else "a key"
+        if key.startswith("env.") and (line := _of_other_tasks(error)):
+            return line
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
     return _sentences(f"{text}\n{cause or ''}")
+
+
+def _of_other_tasks(error: InterpolationKeyError) -> str:
+    """Which tasks have what a part of the method reads of the environment; "" if none has it."""
+    part: Any = error.parent_node
+    plain, whole = OmegaConf.to_container(part), part._get_root()
+    keys = re.findall(r"\$\{env\.(\w+)\}", str(plain))
+    tasks = [name for name in options("task") if {*keys} <= {*_env(name)}]
+    for method in _needed(OmegaConf.to_container(whole)):
+        tasks = [name for name in tasks if name in tasks_with(method)]
+    lacking = ", ".join(f"env.{key}" for key in keys if key not in whole.env)
+    reader = f"{whole.get('algo')} ({str(error.full_key).rpartition('.')[0]})"
+    line = f"task={whole.task}: has no {lacking}, which {reader} reads"
+    return f"{line}; choose one of {', '.join(tasks)}" if tasks else ""
+
+
+def _env(task: str) -> Mapping[str, Any]:
+    """The section `env` of a task file of the library, as far as it stands there."""
+    whole: Any = OmegaConf.load(file("task", task))
+    return whole.get("env") or {}
+
+
+def _needed(node: Any) -> set[str]:
+    """The methods that the parts in `node`, which is not resolved, need of the environment."""
+    if not isinstance(node, dict):
+        return set()
+    found = {method for child in node.values() for method in _needed(child)}
+    if node.get("world") == "${env}" and "_target_" in node:
+        kinds = {each.name: each.type for each in fields(part_class(node["_target_"]))}
+        found |= {each.has for each in get_args(kinds["world"]) if isinstance(each, Must)}
+    return found - {""}
 
 
 def _choice(word: str, known: Sequence[str]) -> str:

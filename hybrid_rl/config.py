@@ -16,7 +16,7 @@ from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import renamed
-from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, whole
+from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, check_owners, whole
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
@@ -151,6 +151,8 @@ def build(config: DictConfig) -> Run:
             tuple(config.get("freeze", ())),
         )
         agent.check(rounds * config.num_envs)
+        owned = [name for learner in agent.learners.values() for name in learner.owns]
+        check_owners(controllers, owned, agent.spec)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
 
 
@@ -187,14 +189,13 @@ def episodes(config: DictConfig) -> Episode:
 
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
-    env, notes = _instantiate(parts.env, "env"), ()
+    env = _instantiate(parts.env, "env")
+    notes = env.known.notes if isinstance(env, External) else ()
     if not type(env).__module__.startswith("hybrid_rl."):
         notes = check_world(env)
         if "steps" not in parts.episode:
-            notes = (
-                *notes,
-                f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",
-            )
+            line = f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode"
+            notes = (*notes, line)
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
@@ -228,9 +229,8 @@ def expert(config: DictConfig) -> Controller:
         UsageError: if it has none.
     """
     if config.get("expert") is None:
-        raise UsageError(
-            f"task={config.task}: has no scripted expert; give expert=babble or run=DIR"
-        )
+        line = "has no scripted expert; give expert=babble or run=DIR"
+        raise UsageError(f"task={config.task}: {line}")
     check_kinds(config.expert, "expert.")
     with _usage(config, "its expert"):
         return _instantiate(config.expert, "expert")

@@ -15,8 +15,10 @@ HINTS = {  # kind of error -> what to write instead
     "TracerIntegerConversionError": "an index or a size that an array gives is not known here",
     "ConcretizationTypeError": "write jnp in place of float(), int() and math",
     "NonConcreteBooleanIndexError": "write jnp.where in place of a mask as index",
+    "SystemExit": "raise an error in place of sys.exit()",
     "FrozenInstanceError": "what changes belongs in the EnvState that step returns, as in info",
 }
+FAULTS = (Exception, SystemExit)  # what the user's code may raise; neither ends a run in silence
 
 GYMNASIUM = (  # what an environment of Gymnasium is here
     "a gymnasium.Env, and this must be a class with JAX functions; task=gymnasium "

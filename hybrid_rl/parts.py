@@ -21,7 +21,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.errors import GYMNASIUM, in_user_code, relative, shown
+from hybrid_rl.errors import FAULTS, GYMNASIUM, in_user_code, relative, shown
 from hybrid_rl.fields import FieldError
 
 TARGET, OURS = "_target_", "hybrid_rl."
@@ -78,7 +78,7 @@ def part_class(target: Any, near: Path | None = None) -> Any:
     try:
         home = import_module(module)
         found = getattr(home, name)
-    except Exception as error:  # whatever the user's module does
+    except FAULTS as error:  # whatever the user's module does
         raise ValueError(in_user_code(error) or f"cannot be imported ({error})") from error
     if not isinstance(found, type) or Path(str(home.__file__)).resolve() != source:
         raise ValueError(OTHER)
@@ -117,7 +117,7 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
         raise (error.at(where) if where else error) from None
     except ValueError:
         raise
-    except Exception as error:  # such as a field that it does not have
+    except FAULTS as error:  # such as a field that it does not have
         raise ValueError(in_user_code(error) or str(error)) from error
 
 

@@ -181,6 +181,8 @@ def read(name: str) -> Trained:
     """
     file = Path(name) if name.endswith(".npz") else Path("policies", f"{name}.npz")
     prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
+    if not name.endswith(".npz") and Path(name).exists():
+        raise UsageError(f"{prefix} is no .npz file; a run's folder is run={name}")
     try:
         arrays = archive.read(prefix, file, hint=known)
         if archive.ABOUT not in arrays:

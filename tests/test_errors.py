@@ -36,6 +36,19 @@ USAGE = [  # overrides of train, words of the line
         "task=pendulum algo=sac experiment=thesis/fig_3_2_hopper",
         "experiment=thesis/fig_3_2_hopper: is for task=hopper; env.reward: Pendulum has no fields",
     ),
+    (
+        "task=pendulum algo=localisation",
+        "task=pendulum: has no env.acceleration, env.drag, which localisation (free_body) reads; "
+        "choose one of contact_plane, sawyer_probe, sprk",
+    ),
+    (
+        "task=pendulum algo=mppi policy=tanh_gaussian proposal=policy",
+        "policy=TanhGaussian: PolicyProposal acts by it, and no learner of this method trains it",
+    ),
+    (
+        "task=pendulum algo=mppi model=gaussian",
+        "model=Gaussian: SamplingController acts by it, and no learner of this method trains it; ",
+    ),
     ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
     ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
     ("seed=${seeds}", "seed: refers to seeds, which neither this task nor this method sets"),
@@ -78,6 +91,7 @@ USAGE = [  # overrides of train, words of the line
     ("task = pendulum", "task: has no value; write task=pendulum"),
     ("--task pendulum", "--task: unknown option; write task=pendulum"),
     ("--total-steps 10", "--total-steps: unknown option; write total_steps=10"),
+    ("algo=sac -m seed=-1,0", "seed=-1: must be a whole number, 0 or more (job 0: seed=-1)"),
     ("eval_modes=[full, policy]", "policy]: has no key; put a list in quotes"),
     ("algo=sac planner.horizon=7", "planner.horizon: sac does not use it"),
     ("algo=nn_mppi proposal=mixture", "proposal: nn_mppi does not use it; it uses model_proposal"),

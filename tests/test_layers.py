@@ -47,7 +47,7 @@ ALLOWED = {
     "renamed": {"errors"},
     "overrides": {"errors"},
     "checks": {"types", "errors", "fields", "overrides", "parts", "networks", "envs"},
-    "composition": {"errors", "checks", "overrides", "parts", "training"},
+    "composition": {"errors", "fields", "checks", "overrides", "parts", "training"},
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share

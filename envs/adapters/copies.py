@@ -1,8 +1,10 @@
 """Copies of a Gymnasium environment that step side by side, and what a decision led to."""
 
 import multiprocessing
+import signal
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
+from multiprocessing.connection import wait
 from typing import Any, NamedTuple
 
 import gymnasium
@@ -10,7 +12,7 @@ import numpy as np
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode
 from jax import Array
 
-from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
 
 Numbers = np.ndarray | Array
 SILENT = 100  # level of Gymnasium's log
@@ -135,9 +137,23 @@ class Copies:
             self.close(terminate=True)
             line = f"{self.env.name}: {method}: took longer than env.timeout_s"
             raise WorldError(f"{line}={self.env.timeout_s}") from error
-        except Exception as error:
+        except FAULTS as error:
             line = str(error) if self.env.processes else in_user_code(error) or gist(error)
+            if self.env.processes and isinstance(error, EOFError | ConnectionError):
+                line = self._lost()
             raise WorldError(f"{self.env.name}: {method}: {line}") from error
+
+    def _lost(self) -> str:
+        """End all processes after one of them; how that one ended."""
+        if (vector := vars(self).pop("_vector", None)) is None:
+            return "a process did not begin"
+        wait([process.sentinel for process in vector.processes], timeout=1)
+        codes = [each.exitcode for each in vector.processes if each.exitcode is not None]
+        for process in vector.processes:
+            process.terminate()
+        vector.closed = True  # its own `close` would ask the one that is gone
+        line = f"its process ended with exit code {codes[0] if codes else 'unknown'}"
+        return f"{line}, as after out of memory" if codes == [-signal.SIGKILL] else line
 
     def _observed(self, method: str, obs: Any) -> np.ndarray:
         """A copy of the observations, which an environment may overwrite, as float32 [N, o]."""
@@ -209,5 +225,5 @@ class Located(gymnasium.Wrapper):
     def _located(call: Callable[[], Any]) -> Any:
         try:
             return call()
-        except Exception as error:
+        except FAULTS as error:
             raise RuntimeError(in_user_code(error) or gist(error)) from error

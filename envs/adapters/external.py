@@ -11,7 +11,9 @@ their model train on it; those that plan on the true dynamics do not.
 Source: Gymnasium's documentation, "Env", "AutoresetMode".
 """
 
+import random
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple, NoReturn
@@ -24,7 +26,7 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, imported
-from hybrid_rl.errors import UsageError, WorldError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
 KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
@@ -121,16 +123,17 @@ class Known(NamedTuple):
     spec: Spec
     steps: int | None  # the time limit [steps of the environment]
     space: Box  # of actions
+    notes: tuple[str, ...]  # what is allowed and seldom meant
 
 
 @cache
 def _known(env: External) -> Known:
     try:
-        one = env.one()
+        one, before = env.one(), _generators()
         found = one.reset(seed=0)
     except UsageError:
         raise
-    except Exception as error:
+    except FAULTS as error:
         key = "make" if env.make else "id"
         line = in_user_code(error) or gist(error)
         raise UsageError(f"env.{key}={env.name}: {line}") from error
@@ -143,11 +146,39 @@ def _known(env: External) -> Known:
     if not dt:
         raise UsageError(f"{env.name}: does not say its time step; {DT}")
     _check_first(env.name, one, found)
+    notes = _unseeded(env.name, one, before)
     limit = None if env.make else gymnasium.spec(env.id.rpartition(":")[2]).max_episode_steps
     one.close()
     assert isinstance(space, Box)
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
-    return Known(Spec(*sizes, float(dt)), limit, space)
+    return Known(Spec(*sizes, float(dt)), limit, space, notes)
+
+
+def _generators() -> dict[str, Any]:
+    """The states of the generators that a process has."""
+    _, key, *rest = np.random.get_state()
+    return {"np.random": (np.asarray(key).tobytes(), *rest), "random": random.getstate()}
+
+
+def _unseeded(name: str, one: gymnasium.Env, before: dict[str, Any]) -> tuple[str, ...]:
+    """A note if a reset and a step drew from a generator that `reset` does not seed.
+
+    before: their states then. It is silent where they draw only later.
+    """
+    after = _generators()
+    drawn = [each for each in after if after[each] != before[each]]
+    with suppress(*FAULTS):
+        if drawn:
+            one.reset(seed=0)
+            one.step(_middle(one.action_space))
+            drawn = [each for each in drawn if _generators()[each] != after[each]]
+    line = f"draws from {' and '.join(drawn)}, which seed= does not seed; use self.np_random"
+    return (f"{name}: {line}",) if drawn else ()
+
+
+def _middle(space: Any) -> np.ndarray:
+    """The action in the middle of its bounds."""
+    return np.add(space.low / 2, space.high / 2).astype(space.dtype)
 
 
 def _check_first(name: str, one: gymnasium.Env, found: Any) -> None:
@@ -156,14 +187,14 @@ def _check_first(name: str, one: gymnasium.Env, found: Any) -> None:
     try:
         obs, _ = _entries(name, method, found, RESET)
         _check_shape(name, method, "obs", obs, wanted)
-        method, middle = "step", np.add(space.low / 2, space.high / 2).astype(space.dtype)
-        obs, reward, *flags, _ = _entries(name, method, one.step(middle), STEP)
+        method = "step"
+        obs, reward, *flags, _ = _entries(name, method, one.step(_middle(space)), STEP)
         _check_shape(name, method, "obs", obs, wanted)
         for word, value in zip(STEP.split(", ")[1:4], (reward, *flags), strict=True):
             _check_shape(name, method, word, value, ())
     except WorldError:
         raise
-    except Exception as error:
+    except FAULTS as error:
         raise WorldError(f"{name}: {method}: {in_user_code(error) or gist(error)}") from error
 
 

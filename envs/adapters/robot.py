@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, imported
-from hybrid_rl.errors import UsageError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, gist, in_user_code
 from hybrid_rl.types import Spec
 
 METHODS = ("reset", "observe", "apply", "reward", "stop")
@@ -123,6 +123,6 @@ class Robot(Made):
         """
         try:
             return self.kind(**(self.kwargs or {}))
-        except Exception as error:
+        except FAULTS as error:
             line = in_user_code(error) or gist(error)
             raise UsageError(f"env.make={self.name}: {line}") from error

@@ -80,8 +80,7 @@ def hydra_main(job: Callable[..., Any]) -> None:
         return
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
-        _check_form(sys.argv[1:])
-        sys.argv[1:] = overrides.opened(inherited.chosen(sys.argv[1:]))
+        sys.argv[1:] = overrides.opened(inherited.chosen(_ordered(sys.argv[1:])))
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except Exception as error:
         report(error)
@@ -120,15 +119,20 @@ def usage(module: Any) -> str:
     return USAGE.format(doc=inspect.getdoc(module), keys=keys).strip()
 
 
-def _check_form(line: Sequence[str]) -> None:
-    """Raise UsageError for what is neither key=value nor an option of Hydra's."""
+def _ordered(line: Sequence[str]) -> list[str]:
+    """The options, then the overrides; Hydra's parser refuses options between these.
+
+    Raises:
+        UsageError: for what is neither key=value nor an option of Hydra's.
+    """
     renamed.check(line)
     check_choices(line)
-    follow = 0
+    follow, found = 0, []  # words that belong to an option; places of options and their words
     for at, text in enumerate(line):
         name, equals, _ = text.partition("=")
         if follow:
             follow -= 1
+            found.append(at)
         elif name.startswith("-"):
             flags = [flag for flag in FLAGS if flag == name or flag.startswith(f"{name}")]
             if not flags:
@@ -136,10 +140,13 @@ def _check_form(line: Sequence[str]) -> None:
             if flags[0] in NO_FLAGS:
                 raise UsageError(f"{text}: a run has one configuration; choose by experiment=NAME")
             follow = 0 if equals else FLAGS[flags[0]]
+            found.append(at)
         elif not equals and text.count("]") > text.count("["):
             raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
         elif not equals and not text.startswith("~"):
             raise UsageError(f"{text}: has no value; write {arguments.as_pair(line, at)}")
+    rest = [text for at, text in enumerate(line) if at not in found]
+    return [*(line[at] for at in found), *rest]
 
 
 def report(error: BaseException) -> NoReturn:
@@ -206,6 +213,10 @@ def _reported(job: Callable[[], None]) -> None:
         job()
     except Exception as error:
         report(error)
+    except SystemExit as end:
+        if line := in_user_code(end, ours=True):  # it would end without a word
+            _fail(1, line)
+        raise
     except KeyboardInterrupt:
         _interrupted()
 

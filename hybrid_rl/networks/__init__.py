@@ -6,7 +6,6 @@ have a third of the variance of LeCun's. `precision` says in which numbers they 
 """
 
 from collections.abc import Sequence
-from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -16,7 +15,7 @@ from flax import linen as nn
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.networks import layers, precision
+from hybrid_rl.networks import precision
 
 ACTIVATIONS = {
     "relu": nn.relu,
@@ -44,17 +43,13 @@ class MLP(nn.Module):
     def __call__(self, x: Array) -> Array:
         """The outputs y [..., out] for x [..., d]."""
         kind, of_products = precision.of_hidden(), precision.of_products()
-        dense: Any = nn.Dense
-        norm: Any = nn.LayerNorm
-        if jax.default_backend() == "gpu":
-            dense, norm = layers.Dense, partial(layers.LayerNorm, precision=of_products)
         for width in self.hidden:
-            x = dense(width, kernel_init=SPREAD, dtype=kind, precision=of_products)(x)
+            x = nn.Dense(width, kernel_init=SPREAD, dtype=kind, precision=of_products)(x)
             if self.layer_norm:
-                x = norm(use_scale=self.layer_norm != "shift", dtype=kind)(x)
+                x = nn.LayerNorm(use_scale=self.layer_norm != "shift", dtype=kind)(x)
             x = ACTIVATIONS[self.activation](x)
         last = nn.initializers.zeros if self.zero else SPREAD
-        return dense(self.out, kernel_init=last, precision=of_products)(x)
+        return nn.Dense(self.out, kernel_init=last, precision=of_products)(x)
 
 
 class Perceptron(NamedTuple):

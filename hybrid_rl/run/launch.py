@@ -12,7 +12,7 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, whole
 from hybrid_rl.config import Run
-from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, together
 from hybrid_rl.run import start as starting
@@ -176,7 +176,7 @@ def _run(
             except DivergenceError:
                 job.summaries(session)
                 raise
-            except Exception:  # of the user's world, or of the disk
+            except FAULTS:  # of the user's world, or of the disk
                 if session.shelf.newest is not None and "agent" not in config:
                     progress.note(folder.going_on(job.whole))
                 raise

@@ -20,7 +20,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, Protocol
 
-from hybrid_rl.errors import CheckpointError, UsageError, install
+from hybrid_rl.errors import FAULTS, CheckpointError, UsageError, install
 from hybrid_rl.run.reading import appended, lines, text
 from hybrid_rl.run.records import COORDINATES, Row, row_of
 
@@ -237,7 +237,7 @@ class Function(Logger):
     def __init__(self, function: Callable[[Row], Any]) -> None:
         self._function, self._asked = function, False
         self.ask: Callable[[int], None] = lambda number: None
-        self.problem: Exception | None = None
+        self.problem: BaseException | None = None
 
     def of(self, more: Row) -> "Logger":
         """The logger that adds `more` to each row; itself if there is none."""
@@ -249,7 +249,7 @@ class Function(Logger):
             return
         try:
             ends = self._function(dict(row)) is False
-        except Exception as problem:
+        except FAULTS as problem:
             self.problem, ends = problem, True
         if ends and not self._asked:
             self._asked = True

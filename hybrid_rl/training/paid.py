@@ -4,18 +4,21 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
-from hybrid_rl.errors import gist, in_user_code
+from hybrid_rl.envs.indices import check as check_indices
+from hybrid_rl.errors import FAULTS, gist, in_user_code
 from hybrid_rl.types import Spec
 
 METHODS = {"reward": "reward_of", "constraint": "excess"}  # of (x [o], u [m], after [o]) -> []
 
 
 def check(name: str, part: Any, spec: Spec) -> None:
-    """Trace the method of `part`, the reward or the constraint of an episode; None is none.
+    """Trace and try the method of `part`, an episode's reward or constraint; None is none.
 
     Raises:
-        ValueError: in one line, if it has none, fails, or gives something else than a number.
+        ValueError: in one line, if it has none, fails, gives something else than a number, or an
+            index in it is out of range.
     """
     what = f"{name}={type(part).__name__}: "
     if name == "reward" and part is not None and not hasattr(part, METHODS[name]):
@@ -23,10 +26,12 @@ def check(name: str, part: Any, spec: Spec) -> None:
     if part is None or type(part).__module__.startswith("hybrid_rl."):
         return
     what += f"{METHODS[name]}: "
-    x, u = (jax.ShapeDtypeStruct((size,), jnp.float32) for size in (spec.obs, spec.act))
+    call, rng, sizes = getattr(part, METHODS[name]), np.random.default_rng(0), (spec.obs, spec.act)
+    x, u = (rng.normal(size=(2, size)).astype(np.float32) for size in sizes)
     try:
-        got = jax.eval_shape(getattr(part, METHODS[name]), x, u, x)
-    except Exception as error:  # whatever the user's code does
+        got = jax.eval_shape(call, x[0], u[0], x[1])
+        check_indices(call, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
+    except FAULTS as error:
         raise ValueError(what + (in_user_code(error) or gist(error))) from error
     if getattr(got, "shape", None) != () or not jnp.issubdtype(got.dtype, jnp.floating):
         gives = f"{got.dtype}{list(got.shape)}" if hasattr(got, "shape") else type(got).__name__

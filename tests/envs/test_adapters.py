@@ -1,10 +1,6 @@
-"""Environments with the interfaces of Gymnasium and Brax."""
+"""Environments with the interface of Gymnasium."""
 
-import re
-import shutil
-import subprocess
 import sys
-import textwrap
 import warnings
 from functools import partial
 
@@ -17,20 +13,14 @@ from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
-from hybrid_rl import config
-from hybrid_rl.envs import gym
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv, GymnasiumVectorEnv
 from hybrid_rl.envs.adapters.packed import pack, unpack
-from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.two_link import TwoLink
 from hybrid_rl.envs.halfcheetah import HalfCheetah
 from hybrid_rl.envs.hopper import Hopper
 from hybrid_rl.envs.mujoco import offscreen
-from hybrid_rl.errors import UsageError
 
 pytestmark = pytest.mark.turns(2)
-
-ID = "hybrid_rl/"
 
 
 def can_draw():
@@ -49,78 +39,6 @@ def test_gymnasium_accepts_an_environment(name):
     env = gymnasium.make(f"hybrid_rl/{name}", render_mode="rgb_array")
     check_env(env.unwrapped, skip_render_check=not can_draw())
     env.close()
-
-
-def test_every_task_has_an_id_and_its_time_limit():
-    """A decision of the cartpole's task is two of its environment's."""
-    outside = {"gymnasium", "playground", "robot", "online"}
-    files = {path.stem for path in config.CONF.glob("task/*.yaml")} - outside
-    targets = [spec.kwargs["world"] for name, spec in gymnasium.registry.items() if ID in name]
-    assert len(targets) == len(set(targets)) == len(files)
-    assert gymnasium.spec("hybrid_rl/Walker2d").max_episode_steps == 1000
-    assert gymnasium.spec("hybrid_rl/Cartpole").max_episode_steps == 2 * 500
-    assert GymnasiumEnv(TwoLink()).steps == GymnasiumVectorEnv(TwoLink(), 2).steps == 200
-
-
-CRANE = """
-defaults: [{base}_self_]
-task: crane
-env: {{_target_: crane.Crane}}
-episode: {{action_repeat: 3}}
-"""
-
-
-@pytest.fixture
-def limits(tmp_path, monkeypatch):
-    """The limits of the pendulum and of a user's crane, whose `defaults` begin with `base`."""
-
-    def of(base):
-        shutil.copy(config.CONF / "task" / "pendulum.yaml", tmp_path)
-        (tmp_path / "crane.yaml").write_text(CRANE.format(base=base))
-        monkeypatch.setattr(gym, "TASKS", tmp_path)
-        return gym.limits.__wrapped__()
-
-    return of
-
-
-@pytest.mark.parametrize("base", ["/task@_global_: pendulum, ", "pendulum, "])
-def test_a_task_takes_its_time_limit_from_its_defaults(limits, base):
-    """The pendulum's 200 decisions, each of three steps."""
-    found = limits(base)
-    assert found["crane.Crane"] == 3 * 200
-    assert found["hybrid_rl.envs.analytic.pendulum.Pendulum"] == 200
-
-
-def test_a_task_without_the_length_of_an_episode_is_one_line(limits):
-    with pytest.raises(UsageError, match=r"crane.yaml: has no steps; a task needs env._target_"):
-        limits("/noise: white, ")
-    with pytest.raises(UsageError, match=r"crane.yaml: there is no winch.yaml beside it"):
-        limits("winch, ")
-
-
-def test_the_ids_are_registered_without_jax():
-    code = "import sys, hybrid_rl.envs.gym; sys.exit('jax' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
-
-
-def test_an_id_takes_the_fields_of_its_environment():
-    long = {"success_distance": 1.0, "max_episode_steps": 4}
-    env = gymnasium.make("hybrid_rl.envs.gym:hybrid_rl/TwoLink", **long)
-    env.reset(seed=0)
-    ends = [env.step(np.zeros(2, np.float32))[3] for _ in range(4)]
-    assert (env.unwrapped.env.success_distance, ends) == (1.0, [False, False, False, True])
-    envs = gymnasium.make_vec("hybrid_rl/TwoLink", num_envs=2, **long)
-    ended = [truncated.all() for _, _, _, truncated, _ in _play(envs, 0, 4)]
-    assert (envs.env.success_distance, ended) == (1.0, [False, False, False, True])
-
-
-def test_an_environment_of_another_package_needs_a_time_limit():
-    class Mine(TwoLink):
-        pass
-
-    with pytest.raises(ValueError, match="steps: Mine has no time limit of its own; give steps=N"):
-        GymnasiumEnv(Mine())
-    assert GymnasiumEnv(Mine(), steps=7).steps == 7
 
 
 def test_wrong_use_is_refused():
@@ -170,7 +88,7 @@ def test_infos_are_those_of_single_environments():
     make = partial(GymnasiumEnv, world, 4)
     own = gymnasium.vector.SyncVectorEnv([make] * 2, autoreset_mode=AutoresetMode.SAME_STEP)
     ours = GymnasiumVectorEnv(world, 2, steps=4)
-    for (*_, a), (*_, b) in zip(_play(own, 0, 5), _play(ours, 0, 5), strict=True):
+    for (*_, a), (*_, b) in zip(play(own, 0, 5), play(ours, 0, 5), strict=True):
         assert set(a) == set(b)
         assert a["success"].dtype == b["success"].dtype == bool
         np.testing.assert_array_equal(a["_distance"], b["_distance"])
@@ -268,7 +186,7 @@ def test_a_seed_repeats_the_initial_state():
     assert (env.reset()[0] != other).any()
 
 
-def _play(envs, seed, count):
+def play(envs, seed, count):
     envs.reset(seed=seed)
     rng = np.random.default_rng(0)
     for _ in range(count):
@@ -280,7 +198,7 @@ def test_a_vector_environment_resets_in_the_same_step():
     envs = GymnasiumVectorEnv(Hopper("native"), 5, steps=12)
     assert envs.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
     fell = stopped = 0
-    for obs, reward, terminated, truncated, infos in _play(envs, 0, 60):
+    for obs, reward, terminated, truncated, infos in play(envs, 0, 60):
         done = terminated | truncated
         assert reward.shape == (5,)
         assert not (terminated & truncated).any()
@@ -296,9 +214,9 @@ def test_a_vector_environment_resets_in_the_same_step():
 
 def test_environment_i_has_seed_plus_i():
     """And the same seed gives the same episodes."""
-    many = [o for o, *_ in _play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), 4, 30)]
-    again = [o for o, *_ in _play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), 4, 30)]
-    shifted = [o for o, *_ in _play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), [5, 6, 7], 1)]
+    many = [o for o, *_ in play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), 4, 30)]
+    again = [o for o, *_ in play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), 4, 30)]
+    shifted = [o for o, *_ in play(GymnasiumVectorEnv(Hopper("native"), 3, steps=9), [5, 6, 7], 1)]
     np.testing.assert_array_equal(many, again)
     assert (shifted[0] != many[0]).any()
     first, _ = GymnasiumVectorEnv(Hopper("native"), 3).reset(seed=4)
@@ -312,80 +230,8 @@ def test_gymnasium_counts_episodes():
     )
     lengths = [
         n
-        for *_, infos in _play(envs, 0, 12)
+        for *_, infos in play(envs, 0, 12)
         if "episode" in infos
         for n in infos["episode"]["l"][infos["_episode"]]
     ]
     assert lengths == [6] * 8
-
-
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_brax_wrappers_run():
-    from brax.envs import training
-
-    from hybrid_rl.envs.adapters.brax import BraxEnv
-
-    env = training.wrap(BraxEnv(Hopper("native")), episode_length=6, action_repeat=2)
-    state = jax.jit(env.reset)(jax.random.split(jax.random.PRNGKey(0), 3))
-    first, step = state.obs, jax.jit(env.step)
-    ours, own = Hopper("native"), jax.jit(jax.vmap(Hopper("native").step))
-    truth = jax.vmap(ours.reset)(jax.random.split(jax.random.PRNGKey(0), 3))
-    for t in range(3):
-        action = jnp.full((3, 3), 0.1 * t)
-        for _ in range(2):
-            truth = own(truth, action)
-        state = step(state, action)
-        if t < 2:
-            np.testing.assert_allclose(state.obs, truth.obs, atol=1e-5)
-            assert not state.done.any()
-    assert state.done.all()
-    assert state.info["truncation"].all()
-    np.testing.assert_allclose(state.info["episode_metrics"]["length"], 6)
-    np.testing.assert_array_equal(state.obs, first)
-
-
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")  # Brax imports jaxopt
-def test_brax_wrappers_reject_new_style_keys():
-    from brax.envs import training
-
-    from hybrid_rl.envs.adapters.brax import BraxEnv
-
-    env = training.wrap(BraxEnv(Pendulum()), episode_length=6)
-    with pytest.raises(TypeError, match=r"keys of jax\.random\.PRNGKey, not of jax\.random\.key"):
-        env.reset(jax.random.split(jax.random.key(0), 3))
-
-
-@pytest.mark.filterwarnings("ignore::DeprecationWarning")
-def test_brax_trainers_run_with_the_lines_of_the_docstring(monkeypatch):
-    """And not without them: when Brax supports the current JAX, they can be removed."""
-    from brax.training.agents.ppo import networks, train
-    from brax.training.pmap import bcast_local_devices
-
-    from hybrid_rl.envs.adapters import brax
-
-    with pytest.raises(AttributeError, match="device_put_replicated"):
-        bcast_local_devices(0.0)
-    lines = re.findall(r"^    jax\.device_put_replicated = .*?^    \)$", brax.__doc__, re.M | re.S)
-    monkeypatch.setattr(jax, "device_put_replicated", None, raising=False)  # undone at the end
-    exec(textwrap.dedent(lines[0]), {"jax": jax})
-    few = partial(
-        networks.make_ppo_networks,
-        policy_hidden_layer_sizes=(8,),
-        value_hidden_layer_sizes=(8,),
-    )
-    with jax.numpy_rank_promotion("allow"):
-        make, params, _ = train.train(
-            brax.BraxEnv(Pendulum()),
-            num_timesteps=64,
-            episode_length=8,
-            num_envs=4,
-            batch_size=4,
-            num_minibatches=1,
-            unroll_length=4,
-            num_updates_per_batch=1,
-            network_factory=few,
-            run_evals=False,
-        )
-        action, _ = make(params, deterministic=True)(jnp.ones(3), jax.random.PRNGKey(0))
-    assert action.shape == (1,)
-    assert np.isfinite(action).all()

@@ -10,14 +10,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import small
-from gymnasium.spaces import Box, Dict, Discrete
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from hosted import counting
 
 from hybrid_rl import config
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
-from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.training.loop import Loop
@@ -44,44 +43,6 @@ class Glider:
 
     def _state(self, x: jax.Array) -> EnvState:
         return EnvState(x, x, -x @ x, x[0] > 1.3, jnp.zeros((), bool))
-
-
-class Count(gymnasium.Env):
-    """Shows the number of the episode and of the step; each ends after its own number of steps."""
-
-    observation_space = Box(-np.inf, np.inf, (2,))
-    action_space = Box(-2, 4, (1,))
-    metadata: ClassVar = {"render_fps": 10}
-
-    def __init__(self, fail: str = "") -> None:
-        self.fail, self.episode, self.last = fail, 0, np.zeros(1)
-        self.buffer = np.zeros(2)
-
-    def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
-        super().reset(seed=seed)
-        self.episode, self.time = self.episode + 1, 0
-        return self._seen(), {}
-
-    def step(self, action: np.ndarray) -> tuple:
-        self.time, self.last = self.time + 1, action
-        fail = self.fail if self.time == 2 else ""  # the first step is tried before a run
-        if fail == "error":
-            raise ValueError("motor off")
-        obs = self._seen()
-        if fail == "nan":
-            obs[1] = np.nan
-        obs = np.zeros(3) if fail == "size" else obs
-        reward = np.inf if fail == "reward" else float(action[0])
-        return obs, reward, self.time >= self.episode + 1, self.fail == "both", {}
-
-    def _seen(self) -> np.ndarray:
-        """A buffer that the next step overwrites."""
-        self.buffer[:] = self.episode, self.time
-        return self.buffer
-
-
-def counting(**kwargs: Any) -> External:
-    return External(make=Count, kwargs=kwargs)
 
 
 def agents(num_envs: int) -> tuple[Any, Any]:
@@ -146,24 +107,6 @@ def test_a_resumed_run_marks_where_its_episode_was_cut():
     assert rows.obs[3].tolist() == [1, 0]  # a new copy of the environment, at its first step
 
 
-@pytest.mark.parametrize(
-    ("fail", "line"),
-    [
-        ("error", ": ValueError: motor off"),
-        ("nan", "Count: step: entry 1 of obs is not finite"),
-        ("size", "Count: step: "),
-        ("reward", "Count: step: gives a reward that is not finite"),
-    ],
-)
-def test_what_goes_wrong_in_an_environment_is_one_line(fail, line):
-    copies = counting(fail=fail).copies([1, 2], STEPS)
-    copies.reset()
-    with pytest.raises(WorldError) as error:
-        list(map(copies.step, np.zeros((3, 2, 1))))
-    assert line in str(error.value)
-    assert "\n" not in str(error.value)
-
-
 def test_an_end_for_both_reasons_is_an_end_by_the_task():
     copies = counting(fail="both").copies([1], STEPS)
     copies.reset()
@@ -191,100 +134,6 @@ def test_copies_step_as_in_gymnasiums_vector():
         if got.truncated.any():
             obs, _ = vector.reset(options={"reset_mask": got.truncated.copy()})
         np.testing.assert_array_equal(got.following, obs)
-
-
-class Odd(gymnasium.Env):
-    """Spaces that have to be flattened, or refused."""
-
-    observation_space = Dict({"b": Discrete(3), "a": Box(0, 1, (2, 2))})
-    metadata: ClassVar = {"render_fps": 50}
-
-    def __init__(self, actions: Any = None, obs: Any = None) -> None:
-        self.action_space = Box(-1, 1, (2, 1)) if actions is None else actions
-        if obs is not None:
-            self.observation_space = obs
-
-    def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
-        return self.observation_space.sample(), {}
-
-    def step(self, action: np.ndarray) -> tuple:
-        return self.observation_space.sample(), 0.0, False, False, {}
-
-
-def test_spaces_of_any_form_are_flattened():
-    assert External(make=Odd).spec == Spec(obs=7, act=2, dt=0.02)
-
-
-@pytest.mark.parametrize(
-    ("given", "line"),
-    [
-        ({}, "give an id of Gymnasium, or env.make=MODULE:CLASS"),
-        ({"id": "Hoper-v5"}, "env.id=Hoper-v5: NameNotFound: Environment `Hoper` doesn't exist"),
-        ({"id": "CartPole-v1"}, "CartPole-v1: has actions Discrete(2)"),
-        ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
-        ({"make": Odd, "kwargs": {"obs": Box(0, 255, (300, 400, 3))}}, "must be numbers"),
-        ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
-        ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
-        ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
-        ({"id": "Pendulum-v1", "timeout_s": 1.0}, "with env.processes=true"),
-    ],
-)
-def test_what_is_no_usable_environment_is_one_line(given, line):
-    with pytest.raises(UsageError) as error:
-        External(**given)
-    assert line in str(error.value)
-    assert "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("method", "returned", "line"),
-    [
-        ("step", (np.ones(2), 0.0, False, {}), "returns 4 things; it must return obs, reward,"),
-        ("step", (np.ones(3), 0.0, False, False, {}), "obs has the shape [3]; its space says [2]"),
-        ("step", (np.ones(2), np.zeros(1), False, False, {}), "reward has the shape [1]; it must"),
-        ("step", (np.ones(2), np.nan, False, False, {}), "reward is not finite"),
-        ("step", (np.array([0, np.nan]), 0.0, False, False, {}), "entry 1 of obs is not finite"),
-        ("reset", np.ones(2), "returns ndarray; it must return obs, info"),
-    ],
-)
-def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, line):
-    kind = type("Wrong", (Count,), {method: lambda self, *_, **options: returned})
-    with pytest.raises(WorldError) as error:
-        External(make=kind)
-    assert str(error.value).startswith(f"Wrong: {method}: {line}")
-
-
-def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
-    with pytest.raises(UsageError, match=r"add env.dt=0.05, .* or metadata = .* to its class"):
-        External(make=type("Timeless", (Count,), {"metadata": {}}))
-
-
-def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs():
-    copies = counting().copies([1], STEPS, render_mode="rgb_array")
-    with pytest.raises(WorldError, match="Count: for a video, give it `def __init__"):
-        copies.reset()
-
-
-@pytest.mark.parametrize(
-    ("render", "line"),
-    [
-        (gymnasium.Env.render, "Wrong: for a video, give it `def __init__"),
-        (lambda self: None, "Wrong: render: returns NoneType; for a video, give it `def __init__"),
-    ],
-)
-def test_a_video_of_an_environment_without_a_picture_says_what_it_needs(render, line):
-    kind = type("Wrong", (Count,), {"render": render})
-    copies = External(make=kind).copies([1], STEPS)
-    copies.reset()
-    with pytest.raises(WorldError) as error:
-        copies.picture()
-    assert str(error.value).startswith(line)
-
-
-def test_planning_on_the_environment_itself_is_refused():
-    env = counting()
-    with pytest.raises(UsageError, match="steps on the host"):
-        env.step(env.reset(jax.random.key(0)), jnp.zeros(1))
 
 
 def test_evaluations_have_environments_and_seeds_of_their_own():

@@ -14,14 +14,23 @@ from hybrid_rl.errors import WorldError
 pytestmark = pytest.mark.turns(3)
 
 SLEEPER = '''
+import os
+import sys
 import time
 
 import gymnasium
 import numpy as np
 
+FAULTS = {
+    "sleep": lambda: time.sleep(3600),
+    "raise": lambda: 1 / 0,
+    "exit": lambda: sys.exit("gone"),
+    "kill": lambda: os.kill(os.getpid(), 9),
+}
+
 
 class Sleeper(gymnasium.Env):
-    """obs = steps so far; the third step does not return, or raises."""
+    """obs = steps so far; the third step does not return, raises or ends."""
 
     observation_space = gymnasium.spaces.Box(-10, 10, (1,))
     action_space = gymnasium.spaces.Box(-1, 1, (1,))
@@ -38,7 +47,7 @@ class Sleeper(gymnasium.Env):
     def step(self, action):
         self.count += 1
         if self.count == 3:
-            time.sleep(3600) if self.fault == "sleep" else 1 / 0
+            FAULTS[self.fault]()
         return np.full(1, self.count, np.float32), 1.0, False, False, {}
 '''
 
@@ -48,9 +57,11 @@ class Sleeper(gymnasium.Env):
     [
         ("sleep", r"sleeper:Sleeper: step: took longer than env\.timeout_s=1\.0"),
         ("raise", r"sleeper:Sleeper: step: .*sleeper\.py:\d+: ZeroDivisionError"),
+        ("exit", r"sleeper:Sleeper: step: .*sleeper\.py:\d+: SystemExit: gone; raise an error"),
+        ("kill", r"sleeper:Sleeper: step: its process ended with exit code -9, as after out of"),
     ],
 )
-def test_a_step_that_does_not_return_or_raises_is_one_line(tmp_path, monkeypatch, fault, line):
+def test_a_step_that_does_not_return_raises_or_ends_is_one_line(tmp_path, monkeypatch, fault, line):
     (tmp_path / "sleeper.py").write_text(SLEEPER)
     monkeypatch.syspath_prepend(str(tmp_path))
     given = {"make": "sleeper:Sleeper", "kwargs": {"fault": fault}}

@@ -10,7 +10,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import small
-from test_host_loop import ROUNDS, STEPS, agents, counting
+from hosted import counting
+from test_host_loop import ROUNDS, STEPS, agents
 
 from hybrid_rl import config
 from hybrid_rl.errors import WorldError

@@ -1,6 +1,7 @@
 """A reward or a constraint of one's own that is wrong is one line, before anything is compiled."""
 
 import re
+import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +31,8 @@ GIVES = "it must be float32[]: sum it, or take its entry; a whole number is no f
         (lambda x, u, after: None, f"gives NoneType; {GIVES}"),
         (lambda x, u: x[0], "positional arguments but 3 were given"),
         (lambda x, u, after: 1.0 if x[0] > 0 else 0.0, "write jnp.where or jax.lax.cond"),
+        (lambda x, u, after: x[3], "index 3 is out of bounds for axis 0 with size 3; JAX takes"),
+        (lambda x, u, after: sys.exit(), "SystemExit; raise an error in place of sys.exit()"),
     ],
 )
 def test_what_is_paid_is_one_number(name, function, words):

@@ -1,4 +1,4 @@
-"""The live window: its programs, what it draws, its pushes; the page itself in Chromium."""
+"""The live window: its programs, its pushes; the page itself in Chromium."""
 
 import threading
 from importlib.util import find_spec
@@ -16,18 +16,14 @@ from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.envs.ant import Ant
-from hybrid_rl.envs.cartpole import Cartpole
 from hybrid_rl.envs.halfcheetah import HalfCheetah
-from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.envs.panda_stack import PandaStack
 from hybrid_rl.envs.quadcopter import Quadcopter
-from hybrid_rl.envs.sawyer_push import SawyerPush
 from hybrid_rl.envs.sawyer_torque import SawyerTorque
-from hybrid_rl.envs.sprk import Sprk
 from hybrid_rl.rewards.aim import Aim
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.view import __main__ as view
-from hybrid_rl.view import imagined, push
+from hybrid_rl.view import push
 from hybrid_rl.view.following import Follower
 from hybrid_rl.view.history import History
 from hybrid_rl.view.player import Choice, Player
@@ -114,50 +110,6 @@ def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
     assert not one.compiling  # it is not asked for again
     assert one.cast.world.episode.delay == 2
     one.advance()
-
-
-@pytest.mark.parametrize(
-    ("env", "fits"),
-    [
-        (HalfCheetah(), 0.05),
-        (Cartpole(), 1e-5),
-        (Pendulum(), 1e-5),
-        (SawyerTorque(), 1e-5),
-        (Sprk(), None),
-    ],
-)
-def test_positions_follow_from_observations(env, fits):
-    """Of a true path of 20 decisions; not of a ball seen in another frame."""
-    episode = Episode(env)
-    read = imagined.reading(episode)
-    if fits is None:
-        assert read is None
-        return
-    first = episode.reset(jax.random.key(3))
-    action = 0.3 * jnp.ones(env.spec.act)
-    _, states = jax.lax.scan(lambda s, _: (episode.step(s, action),) * 2, first, length=20)
-    obs = jnp.concatenate([first.obs[None], states.obs])
-    apart = np.asarray(read(first, obs))[1:] - jax.vmap(env.pose)(states)
-    assert np.abs((apart + np.pi) % (2 * np.pi) - np.pi).max() < fits  # angles may turn round
-
-
-def test_the_path_of_a_pendulum_is_that_of_its_tip():
-    model = scenery.dressed(scenery.scene_of(Pendulum()))
-    poses = np.array([[[0.0], [np.pi / 2], [np.pi]]])
-    points = imagined.track(model, poses, *imagined.point_of(model))
-    (line,) = imagined.lines(model, poses)
-    np.testing.assert_array_equal(line, points)
-    middle = points[0, [0, 2]].mean(0)
-    away = np.linalg.norm(points[0] - middle, axis=1)
-    np.testing.assert_allclose(away, away[0], rtol=1e-3)
-    assert away[0] == pytest.approx(2 * np.linalg.norm(model.body_ipos[-1]), rel=1e-3)
-
-
-def test_the_drawn_point_is_of_a_torso_a_pole_or_an_arm():
-    models = [scenery.dressed(scenery.scene_of(env)) for env in (Ant(), Cartpole(), SawyerPush())]
-    drawn = [model.body(imagined.point_of(model)[0]).name for model in models]
-    assert drawn[:2] == ["torso", "pole"]
-    assert drawn[2] not in ("block", "target")
 
 
 def test_a_quick_planner_has_a_quarter_of_the_candidates():

@@ -1,0 +1,164 @@
+"""Python and YAML files of a task of one's own that make no run: one line names the file."""
+
+import re
+
+import pytest
+from broken import TASK, WORLD, changed, refused, write
+from tiny import call_train
+
+from hybrid_rl import config
+
+GYMNASIUM = """import gymnasium
+
+
+class W(gymnasium.Env):
+    def __init__(self, gain): ...
+
+    def reset(self, seed=None, options=None): ...
+
+    def step(self, action): ...
+"""
+HOWTO = (
+    r"a gymnasium\.Env, and this must be a class with JAX functions; task=gymnasium env\.make=.*"
+)
+FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the whole line
+    (
+        "a plain class",
+        "py",
+        "@dataclass(frozen=True)\nclass W:\n    gain: float = 1.0",
+        "class W:",
+        r"env\.gain: W in w\.py is no dataclass \(@dataclass\(frozen=True\)\), and has no fields",
+    ),
+    (
+        "an unknown field",
+        "yaml",
+        "gain:",
+        "gian:",
+        r"env\.gian: W in w\.py has gain; did you mean gain\?",
+    ),
+    ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: w\.py has no class V"),
+    (
+        "no such module",
+        "yaml",
+        "w.W",
+        "theirs.W",
+        r"env\._target_=theirs\.W: is no part of hybrid_rl; put its folder on PYTHONPATH .*",
+    ),
+    (
+        "a syntax error",
+        "py",
+        "def step(self, state, action):",
+        "def step(self, state, action:",
+        r"env\._target_=w\.W: w\.py:19: '\(' was never closed",
+    ),
+    (
+        "an import of what is not there",
+        "py",
+        "import numpy",
+        "import torchh",
+        r"env\._target_=w\.W: w\.py:5: ModuleNotFoundError: No module named 'torchh'",
+    ),
+    (
+        "keys at the wrong level",
+        "yaml",
+        "# @package _global_\n",
+        "",
+        r"my_conf/task/broken\.yaml: its first line must be # @package _global_",
+    ),
+    ("no task", "yaml", "task: broken\n", "", r"my_conf/task/broken\.yaml: lacks task; set .*"),
+    (
+        "no env",
+        "yaml",
+        "env: {_target_: w.W, gain: 2.0}\n",
+        "",
+        r"my_conf/task/broken\.yaml: lacks env; .*",
+    ),
+    (
+        "no intervals",
+        "yaml",
+        "eval_every: 50\neval_episodes: 1\n",
+        "",
+        r"my_conf/task/broken\.yaml: lacks eval_every, eval_episodes; set them, or begin with .*",
+    ),
+    (
+        "an unknown key",
+        "yaml",
+        "eval_every",
+        "rewrad_scale: 3\neval_every",
+        r"my_conf/task/broken\.yaml: rewrad_scale: unknown key, which nothing reads.*",
+    ),
+    (
+        "a tab",
+        "yaml",
+        "episode: {steps: 20, action_repeat: 1}",
+        "episode:\n\tsteps: 20",
+        r"my_conf/task/broken\.yaml:\d: is no YAML: .*",
+    ),
+    (
+        "an unknown key of episode",
+        "yaml",
+        "{steps:",
+        "{step:",
+        r"my_conf/task/broken\.yaml: episode\.step: .*mean steps\?",
+    ),
+    (
+        "no class of env",
+        "yaml",
+        "_target_: w.W, ",
+        "",
+        r"my_conf/task/broken\.yaml: env lacks _target_; write .*",
+    ),
+    (
+        "an environment of Gymnasium",
+        "yaml",
+        "_target_: w.W, gain: 2.0",
+        "_target_: gymnasium.make, id: Pendulum-v1",
+        r"env\._target_=gymnasium\.make: makes " + HOWTO,
+    ),
+    ("a class of Gymnasium", "py", WORLD, GYMNASIUM, r"w\.py:4: W is " + HOWTO),
+]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "line"), [c[1:] for c in FILES], ids=[c[0] for c in FILES]
+)
+def test_files_that_make_no_run_are_refused_in_a_line(folder, file, old, new, line):
+    texts = {"py": WORLD, "yaml": TASK}
+    texts[file] = changed(texts[file], old, new)
+    write(folder, texts["py"], texts["yaml"])
+    refused(line, lambda: config.build(config.load(["task=broken", "algo=sac"], "my_conf")))
+
+
+def test_what_is_seldom_meant_is_a_note_of_the_run(folder):
+    ends = changed(WORLD, "EnvState(x, x, reward, no,", "EnvState(x, x, reward, ~no,")
+    write(folder, ends, changed(TASK, "episode: {steps: 20, action_repeat: 1}\n", ""))
+    run = config.build(config.load(["task=broken", "algo=sac"], "my_conf"))
+    assert run.notes == (
+        "w.py:19: W.step: every episode ended after one decision, of 10 tried",
+        "episode.steps is not set by the task: 1,000 decisions an episode",
+    )
+
+
+def test_settings_do_not_change_a_task_silently(folder, capfd):
+    """What is typed is not listed; nothing is, if nothing changes."""
+    write(folder)
+    line = (
+        "settings=light changes what my_conf/task/broken.yaml says: random_steps 10 -> 5000, "
+        "eval_every 50 -> 3000, eval_episodes 1 -> 5, checkpoint_every 50 -> 10000; to keep that, "
+        "add random_steps=10 eval_every=50 eval_episodes=1 checkpoint_every=50"
+    )
+    given = ["task=broken", "settings=light", "total_steps=50"]
+    with pytest.warns(UserWarning, match=f"^{re.escape(line)}$"):
+        config.load(given, "my_conf")
+    assert call_train("--config-dir", "my_conf", *given, "seed=-1") == 2
+    assert capfd.readouterr().out == f"{line}\n"
+    config.load(["task=broken"], "my_conf")
+    config.load(["task=pendulum", "settings=light"], "my_conf")
+
+
+def test_a_task_file_may_set_keys_of_any_method_and_its_own_where_they_are_read(folder):
+    own = (
+        changed(TASK, "gain: 2.0", 'gain: "${strength}"') + "strength: 3.0\nplanner: {samples: 9}\n"
+    )
+    write(folder, task=own)
+    assert config.load(["task=broken", "algo=sac"], "my_conf").env.gain == 3.0

@@ -1,0 +1,75 @@
+"""A world of one's own in MuJoCo that is wrong: one line names its file, and what it must be."""
+
+import pytest
+from broken import CRANE, RAIL, changed, refused, world
+
+from hybrid_rl.envs import check
+
+SIMULATED = [  # the same of a world in MuJoCo; None: of its model
+    (
+        "two actions for one actuator",
+        "act=1",
+        "act=2",
+        r"w\.py:21: W\.step: gives the physics 2 controls, and its model has 1 actuators; .* is 2",
+    ),
+    (
+        "no such file",
+        '"rail.xml"',
+        '"rial.xml"',
+        r"w\.py:\d+: W\.reset: ValueError: .*/rial\.xml: no such file",
+    ),
+    (
+        "two joints of one",
+        "reset(jnp.zeros(1),",
+        "reset(jnp.zeros(2),",
+        r"w\.py:19: W\.reset: ValueError: qpos has the shape \(2,\); the model's has \(1,\)",
+    ),
+    (
+        "an unknown sensor",
+        "-x[0] ** 2",
+        'Physics(ASSET).sensor(data, "hand")[0]',
+        r"""w\.py:26: W\.reset: KeyError: "Invalid name 'hand'\. Valid names: \[\]\"""",
+    ),
+    (
+        "a motor of a joint that is not there",
+        None,
+        ('<motor joint="', '<motor joint="un'),
+        r"w\.py:19: W\.reset: ValueError: .*/rail\.xml: Error: unknown transmission target 'un.*",
+    ),
+    (
+        "a model that resets itself",
+        None,
+        ('<flag autoreset="disable"/>', ""),
+        r"w\.py:19: W\.reset: ValueError: .*/rail\.xml: write <option><flag autoreset=.*",
+    ),
+    (
+        "a model that is no MJCF",
+        None,
+        ('type="slide"', 'kind="slide"'),
+        r"w\.py:19: W\.reset: ValueError: .*/rail\.xml: XML Error: .*, line 3",
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"), [c[1:] for c in SIMULATED], ids=[c[0] for c in SIMULATED]
+)
+def test_a_world_in_mujoco_is_refused_in_a_line_with_its_file(folder, old, new, line):
+    code, model = (CRANE, changed(RAIL, *new)) if old is None else (changed(CRANE, old, new), RAIL)
+    refused(line, check, world(folder, code, model))
+
+
+@pytest.mark.parametrize(
+    ("step", "sure"),
+    [
+        ("Physics(ASSET, self.physics).step(state.data, action, 4)", True),
+        ("jax.lax.fori_loop(0, 4, lambda i, x: PHYSICS.step(x, action, 1), state.data)", False),
+    ],
+)
+def test_physics_of_another_time_than_a_decision_is_one_line(folder, step, sure):
+    """Where it is certain: a loop hides how often it steps."""
+    text = changed(CRANE, "Physics(ASSET, self.physics).step(state.data, action, 10)", step)
+    text = changed(text, "import jax.numpy", "import jax\nimport jax.numpy")
+    notes = check(world(folder, changed(text, "\n\n\n@", "\nPHYSICS = Physics(ASSET)\n\n\n@")))
+    says = "makes 4 physics steps of 0.005 s, 0.02 s in all, and spec.dt is 0.05 s; write dt=0.02"
+    assert [says in note for note in notes] == ([True] if sure else [])

@@ -1,0 +1,80 @@
+"""What a run prints: what to expect, how to go on, how it ended."""
+
+import shlex
+
+import numpy as np
+import pytest
+from test_session import SAC, rows
+from tiny import TINY, call_train, run
+
+from hybrid_rl import train
+from hybrid_rl.errors import WorldError
+from hybrid_rl.overrides import quoted
+from hybrid_rl.run.session import Session
+
+pytestmark = pytest.mark.turns(3)
+
+
+def test_the_result_is_that_of_the_policy_where_only_it_is_evaluated(tmp_path, capsys):
+    result = run(tmp_path / "run", *SAC, "eval_modes=[policy]")
+    last = [row for row in rows(tmp_path / "run") if "eval/policy_return" in row][-1]
+    np.testing.assert_allclose(result["final_eval"][-1], last["eval/policy_return"], rtol=1e-6)
+    assert f"eval {np.mean(result['final_eval']):,.1f}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("step", "saved"), [(60, False), (150, True)])
+def test_after_a_fault_of_the_world_it_says_how_to_go_on(
+    monkeypatch, tmp_path, capsys, step, saved
+):
+    advance, folder = Session._advance, tmp_path / "it's"
+
+    def broken(self):
+        advance(self)
+        if self.step >= step:
+            raise WorldError("reach.py:3: step: the motor is hot")
+
+    monkeypatch.setattr(Session, "_advance", broken)
+    assert call_train(*TINY, *SAC, f"run_dir={quoted(str(folder))}") == 2
+    printed = capsys.readouterr()
+    assert printed.err == "hybrid_rl: reach.py:3: step: the motor is hot\n"
+    lines = [line for line in printed.out.splitlines() if line.startswith("continue: ")]
+    command = ["python", "-m", "hybrid_rl.train", f"resume={quoted(str(folder))}"]
+    assert [shlex.split(line)[1:] for line in lines] == [command] * saved
+
+
+def test_a_run_says_what_to_expect(tmp_path, capsys):
+    run(tmp_path / "a", "algo=sac", "total_steps=40")
+    assert "all 40 decisions are random: random_steps=50" in capsys.readouterr().out
+    result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
+    printed = capsys.readouterr().out
+    assert "random:" not in printed
+    assert printed.count("for the whole run, ") == 1
+    assert "301/301 (100%)" in printed
+    assert result["finished"]
+
+
+def test_the_last_line_has_both_returns():
+    values = {"final_eval": [-19.0, None, -20.0], "final_return": [-36.4, None, -36.4]}
+    assert train._result(values) == (
+        "evaluation -19.5 (mean of 2 seeds: -19.0, -, -20.0); "
+        "training return -36.4 (mean of 2 seeds: -36.4, -, -36.4)"
+    )
+    one = {"final_eval": [1234.5], "final_return": [None]}
+    assert train._result(one) == "evaluation 1,234.5; training return none yet"
+
+
+def test_a_run_of_random_actions_or_without_evaluations_ends_with_a_line(
+    tmp_path, monkeypatch, capsys
+):
+    done = {"signal": None, "run_dir": str(tmp_path), "wall_s": 1.0, "seeds": [0]}
+    monkeypatch.setattr(train.launch, "train", lambda *_: done)
+    assert call_train("task=pendulum", "algo=sac", "total_steps=1000", "eval_modes=[]") == 0
+    first, *rest = capsys.readouterr().out.splitlines()
+    assert first.startswith("evaluation none yet; training return none yet")
+    assert rest == [
+        "nothing but random actions: random_steps=1000",
+        "nothing was evaluated: eval_modes=[]",
+    ]
+    for others in (["task=pendulum", "algo=sac"], ["experiment=thesis/fig_5_6"]):  # it sets []
+        assert call_train(*others, "total_steps=1001") == 0
+        assert len(capsys.readouterr().out.splitlines()) == 1

@@ -1,0 +1,124 @@
+"""A run folder belongs to one process."""
+
+import errno
+import fcntl
+import re
+import signal
+import socket
+import subprocess
+import sys
+
+import pytest
+from tiny import TINY, call_train, contents, only_line
+
+from hybrid_rl.run.lock import locked
+
+pytestmark = pytest.mark.turns(3)
+
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from hybrid_rl.run.lock import locked
+with locked(Path(sys.argv[1]), "run_dir"):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.fixture
+def holder(tmp_path):
+    """A process that has a folder, and the folder."""
+    folder = tmp_path / "held"
+    folder.mkdir()
+    line = [sys.executable, "-c", HOLD, str(folder)]
+    with subprocess.Popen(line, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "held\n"
+        yield process, folder
+        process.kill()
+
+
+def test_a_second_process_is_refused_and_names_the_first(holder, capfd):
+    process, folder = holder
+    before = contents(folder)
+    assert call_train(*TINY, f"run_dir={folder}") == 2
+    who = f"process {process.pid} on {socket.gethostname()}"
+    assert f"{folder}: is being written by {who}; wait for it, or stop it" in only_line(capfd)
+    assert contents(folder) == before
+
+
+def test_a_file_that_a_killed_process_left_is_no_lock(holder):
+    process, folder = holder
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert (folder / "lock").read_text().startswith(f"process {process.pid}")
+    with locked(folder, "run_dir"):
+        pass
+    assert contents(folder) == {}
+
+
+def test_one_at_a_time_has_a_folder(tmp_path):
+    """The file is deleted at each end: the next holder must not lock a deleted one."""
+    code = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from hybrid_rl.run.lock import locked\n"
+        "from hybrid_rl.errors import UsageError\n"
+        "folder, done = Path(sys.argv[1]), 0\n"
+        "while done < 200:\n"
+        "    try:\n"
+        "        with locked(folder, 'run_dir'):\n"
+        "            (folder / 'alone').mkdir()\n"  # raises where another one is inside
+        "            (folder / 'alone').rmdir()\n"
+        "            done += 1\n"
+        "    except UsageError:\n"
+        "        pass\n"
+    )
+    line = [sys.executable, "-c", code, str(tmp_path)]
+    several = [subprocess.Popen(line, stderr=subprocess.PIPE) for _ in range(2)]
+    for process in several:
+        assert (process.communicate()[1], process.returncode) == (b"", 0)
+    assert contents(tmp_path) == {}
+
+
+def test_a_disk_without_locks_is_one_line(tmp_path, monkeypatch, capsys):
+    def none(handle, how):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(fcntl, "flock", none)
+    with locked(tmp_path, "run_dir"):
+        line = capsys.readouterr().out
+    assert line == f"{tmp_path}: this disk has no locks; let no other process write there\n"
+
+
+def test_two_fresh_runs_of_one_folder_do_not_both_begin(tmp_path):
+    """Begun at the same moment: one trains, the other ends with 2; each row is there once."""
+    overrides = [*TINY, "algo=sac", "total_steps=100", f"run_dir={tmp_path / 'run'}"]
+    line = [sys.executable, "-m", "hybrid_rl.train", *overrides]
+    both = [subprocess.Popen(line, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    ends = [(process.communicate()[1], process.returncode) for process in both]
+    (refused, code), (quiet, fine) = sorted(ends, key=lambda end: -end[1])
+    assert (code, fine, quiet) == (2, 0, "")
+    assert re.search("is being written by|holds a run already", refused)
+    rows = (tmp_path / "run" / "metrics.jsonl").read_text().splitlines()
+    assert len(rows) == len(set(rows))
+
+
+def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    with locked(folder, "run_dir"):
+        folder.rename(tmp_path / "moved")
+        folder.mkdir()
+        (folder / "lock").write_text("of another process")
+    assert (folder / "lock").read_text() == "of another process"
+
+
+def test_a_lock_that_fails_is_named(tmp_path, monkeypatch):
+    def fails(handle, how):
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(fcntl, "flock", fails)
+    named = pytest.raises(OSError, match=f"Input/output error: '{tmp_path}/lock'")
+    with named, locked(tmp_path, "run_dir"):
+        pass

@@ -1,0 +1,161 @@
+"""Gymnasium environments that are wrong, or go wrong: one line says what they must be."""
+
+import random
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import gymnasium
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from gymnasium.spaces import Box, Dict, Discrete
+from hosted import Count, counting
+
+from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.types import Spec
+
+STEPS = 5  # decisions of an episode
+
+
+@pytest.mark.parametrize(
+    ("fail", "line"),
+    [
+        ("error", ": ValueError: motor off"),
+        ("exit", ": SystemExit; raise an error in place of sys.exit()"),
+        ("nan", "Count: step: entry 1 of obs is not finite"),
+        ("size", "Count: step: "),
+        ("reward", "Count: step: gives a reward that is not finite"),
+    ],
+)
+def test_what_goes_wrong_in_an_environment_is_one_line(fail, line):
+    copies = counting(fail=fail).copies([1, 2], STEPS)
+    copies.reset()
+    with pytest.raises(WorldError) as error:
+        list(map(copies.step, np.zeros((3, 2, 1))))
+    assert line in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+class Odd(gymnasium.Env):
+    """Spaces that have to be flattened, or refused."""
+
+    observation_space = Dict({"b": Discrete(3), "a": Box(0, 1, (2, 2))})
+    metadata: ClassVar = {"render_fps": 50}
+
+    def __init__(self, actions: Any = None, obs: Any = None) -> None:
+        self.action_space = Box(-1, 1, (2, 1)) if actions is None else actions
+        if obs is not None:
+            self.observation_space = obs
+
+    def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
+        return self.observation_space.sample(), {}
+
+    def step(self, action: np.ndarray) -> tuple:
+        return self.observation_space.sample(), 0.0, False, False, {}
+
+
+def test_spaces_of_any_form_are_flattened():
+    assert External(make=Odd).spec == Spec(obs=7, act=2, dt=0.02)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({}, "give an id of Gymnasium, or env.make=MODULE:CLASS"),
+        ({"id": "Hoper-v5"}, "env.id=Hoper-v5: NameNotFound: Environment `Hoper` doesn't exist"),
+        ({"id": "CartPole-v1"}, "CartPole-v1: has actions Discrete(2)"),
+        ({"make": Odd, "kwargs": {"actions": Box(-np.inf, 1, (1,))}}, "finite bounds"),
+        ({"make": Odd, "kwargs": {"obs": Box(0, 255, (300, 400, 3))}}, "must be numbers"),
+        ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
+        ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
+        ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
+        ({"id": "Pendulum-v1", "timeout_s": 1.0}, "with env.processes=true"),
+    ],
+)
+def test_what_is_no_usable_environment_is_one_line(given, line):
+    with pytest.raises(UsageError) as error:
+        External(**given)
+    assert line in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("method", "returned", "line"),
+    [
+        ("step", (np.ones(2), 0.0, False, {}), "returns 4 things; it must return obs, reward,"),
+        ("step", (np.ones(3), 0.0, False, False, {}), "obs has the shape [3]; its space says [2]"),
+        ("step", (np.ones(2), np.zeros(1), False, False, {}), "reward has the shape [1]; it must"),
+        ("step", (np.ones(2), np.nan, False, False, {}), "reward is not finite"),
+        ("step", (np.array([0, np.nan]), 0.0, False, False, {}), "entry 1 of obs is not finite"),
+        ("reset", np.ones(2), "returns ndarray; it must return obs, info"),
+    ],
+)
+def test_what_the_first_step_returns_is_checked_before_a_run(method, returned, line):
+    kind = type("Wrong", (Count,), {method: lambda self, *_, **options: returned})
+    with pytest.raises(WorldError) as error:
+        External(make=kind)
+    assert str(error.value).startswith(f"Wrong: {method}: {line}")
+
+
+class Drawn(Count):
+    """Draws from a generator of the process; `seeds`: after `reset` has seeded it."""
+
+    def __init__(self, draw: Callable[[], float], seeds: bool = False) -> None:
+        super().__init__()
+        self.draw, self.seeds = draw, seeds
+
+    def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
+        if self.seeds:
+            np.random.seed(seed)
+        self.draw()
+        return super().reset(seed=seed)
+
+
+@pytest.mark.parametrize(
+    ("draw", "seeds", "source"),
+    [
+        (np.random.normal, False, "np.random"),
+        (random.random, False, "random"),
+        (np.random.normal, True, None),
+        (np.random.default_rng(0).normal, False, None),
+    ],
+)
+def test_numbers_that_the_seed_does_not_repeat_are_a_note_of_the_run(draw, seeds, source):
+    env = External(make=Drawn, kwargs={"draw": draw, "seeds": seeds})
+    line = f"Drawn: draws from {source}, which seed= does not seed; use self.np_random"
+    assert env.known.notes == (() if source is None else (line,))
+
+
+def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
+    with pytest.raises(UsageError, match=r"add env.dt=0.05, .* or metadata = .* to its class"):
+        External(make=type("Timeless", (Count,), {"metadata": {}}))
+
+
+def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs():
+    copies = counting().copies([1], STEPS, render_mode="rgb_array")
+    with pytest.raises(WorldError, match="Count: for a video, give it `def __init__"):
+        copies.reset()
+
+
+@pytest.mark.parametrize(
+    ("render", "line"),
+    [
+        (gymnasium.Env.render, "Wrong: for a video, give it `def __init__"),
+        (lambda self: None, "Wrong: render: returns NoneType; for a video, give it `def __init__"),
+    ],
+)
+def test_a_video_of_an_environment_without_a_picture_says_what_it_needs(render, line):
+    kind = type("Wrong", (Count,), {"render": render})
+    copies = External(make=kind).copies([1], STEPS)
+    copies.reset()
+    with pytest.raises(WorldError) as error:
+        copies.picture()
+    assert str(error.value).startswith(line)
+
+
+def test_planning_on_the_environment_itself_is_refused():
+    env = counting()
+    with pytest.raises(UsageError, match="steps on the host"):
+        env.step(env.reset(jax.random.key(0)), jnp.zeros(1))
