@@ -8,6 +8,7 @@ import gc
 import os
 from importlib.metadata import version
 from pathlib import Path
+from threading import local
 
 import pytest
 
@@ -98,6 +99,23 @@ def small_programs():
     import jax
 
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def few_contexts():
+    """Programs of a thread are lowered in one MLIR context: JAX makes one each, for 2 to 4 ms."""
+    from jax._src.interpreters import mlir
+
+    make, kept = mlir.make_ir_context, local()
+
+    def context():
+        if not hasattr(kept, "context"):
+            kept.context = make()
+        return kept.context
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mlir, "make_ir_context", context)
+        yield
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -52,10 +52,11 @@ def test_networks_of_a_gpu_are_those_of_a_cpu(monkeypatch, layer_norm, rows):
     def values(params):
         return (net.apply(params, x) ** 2).sum()
 
-    params = net.init(jax.random.key(0), x)
-    right = jax.value_and_grad(values)(params)
+    params = jax.jit(net.init)(jax.random.key(0), x)
+    right = jax.jit(jax.value_and_grad(values))(params)
     monkeypatch.setattr(jax, "default_backend", lambda: "gpu")
-    assert jax.tree.structure(net.init(jax.random.key(0), x)) == jax.tree.structure(params)
+    on_gpu = jax.eval_shape(lambda: net.init(jax.random.key(0), x))
+    assert jax.tree.structure(on_gpu) == jax.tree.structure(params)
     with networks.precision.using("float32"):
-        got = jax.value_and_grad(values)(params)
+        got = jax.jit(jax.value_and_grad(lambda params: values(params)))(params)
     jax.tree.map(lambda a, b: np.testing.assert_allclose(a, b, rtol=1e-4, atol=1e-5), got, right)
