@@ -6,6 +6,7 @@ have them, too.
 
 import gc
 import os
+from contextlib import suppress
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
@@ -140,13 +141,13 @@ def parsed_once():
         if not hasattr(file, "read"):
             with Path(file).open(encoding="utf-8") as stream:
                 return remembered(stream)
-        start = file.tell()
-        try:
+        start, found = file.tell(), None
+        with suppress(yaml.YAMLError):
             found = parsed(file.read())
-        except yaml.YAMLError:  # the error names the file
-            file.seek(start)
-            return load(file)
-        return OmegaConf.create({} if found is None else found)
+        if isinstance(found, (dict, list)):
+            return OmegaConf.create(found)
+        file.seek(start)  # an error names the file
+        return load(file)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(OmegaConf, "load", staticmethod(remembered))
