@@ -6,8 +6,11 @@ have them, too.
 
 import gc
 import os
+from contextlib import suppress
+from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
+from threading import local
 
 import pytest
 
@@ -98,6 +101,57 @@ def small_programs():
     import jax
 
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def few_contexts():
+    """Programs of a thread share an MLIR context, ten each, as in JAX 0.11; one takes 2 to 4 ms.
+
+    What is lowered while another program is lowered has its own: it would become a part of it.
+    """
+    from jax._src.interpreters import mlir
+    from jaxlib.mlir import ir
+
+    make, kept = mlir.make_ir_context, local()
+
+    def context():
+        if ir.Context.current is not None:
+            return make()
+        if getattr(kept, "left", 0) == 0:
+            kept.context, kept.left = make(), 10
+        kept.left -= 1
+        return kept.context
+
+    with pytest.MonkeyPatch.context() as patch:
+        if version("jax").startswith("0.10."):
+            patch.setattr(mlir, "make_ir_context", context)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def parsed_once():
+    """YAML of a text that was read before is not parsed again: 80 files for each composition."""
+    import yaml
+    from omegaconf import OmegaConf
+    from omegaconf._utils import get_yaml_loader
+
+    parsed, load = cache(partial(yaml.load, Loader=get_yaml_loader())), OmegaConf.load
+
+    def remembered(file):
+        if not hasattr(file, "read"):
+            with Path(file).open(encoding="utf-8") as stream:
+                return remembered(stream)
+        start, found = file.tell(), None
+        with suppress(yaml.YAMLError):
+            found = parsed(file.read())
+        if isinstance(found, (dict, list)):
+            return OmegaConf.create(found)
+        file.seek(start)  # an error names the file
+        return load(file)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(OmegaConf, "load", staticmethod(remembered))
+        yield
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -13,7 +13,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.goals import retargeted
-from hybrid_rl.trained import load, read
+from hybrid_rl.trained import Trained, load, read
 
 pytestmark = pytest.mark.turns(2)
 
@@ -29,23 +29,29 @@ def trained(tmp_path_factory) -> Path:
     return folder
 
 
-def test_the_environment_pays_and_the_planner_plans(trained: Path) -> None:
+@pytest.fixture(scope="module")
+def known(trained: Path) -> Trained:
+    """Its learners, read one time."""
+    return load(trained)
+
+
+def test_the_environment_pays_and_the_planner_plans(known: Trained) -> None:
     """Returns of an episode are those of the new reward, along the cart's own positions."""
-    goal = retargeted(load(trained), [*AT, *SMALL])
+    goal = retargeted(known, [*AT, *SMALL])
     both, alone = goal.controllers["full"], goal.controllers["planner"]
     assert isinstance(both, GradientController)
     assert isinstance(alone, GradientController)
     assert (both.horizon, both.tail, alone.policy) == (3, 2, None)
-    assert goal.controllers["policy"] == load(trained).controllers["policy"]
+    assert goal.controllers["policy"] == known.controllers["policy"]
     got = evaluate.evaluate(goal, "full", 2)["return"]
     assert got.shape == (len(goal.seeds), 2)
     assert (got > -20 * (3 + 0.05)).all()
     assert (got < 0).all()
 
 
-def test_another_planner_keeps_the_reward_and_its_critic(trained: Path) -> None:
+def test_another_planner_keeps_the_reward_and_its_critic(known: Trained) -> None:
     """planner=NAME alone is for the reward of the training."""
-    was, now = load(trained), retargeted(load(trained), ["planner=gradient", *SMALL])
+    was, now = known, retargeted(known, ["planner=gradient", *SMALL])
     assert now.episode == was.episode
     planned, planner = was.controllers["full"], now.controllers["full"]
     assert isinstance(planned, SamplingController)
@@ -60,9 +66,9 @@ def test_a_policy_has_proposals_for_any_planner() -> None:
     assert planner.proposal.strengths == (1.0, 0.8, 0.6, 0.4, 0.2)
 
 
-def test_a_price_that_was_learned_is_not_charged_again(trained: Path) -> None:
+def test_a_price_that_was_learned_is_not_charged_again(known: Trained) -> None:
     """The learned reward has it: of the same limit, and for the reward of the training."""
-    run, near = load(trained), ["constraint=position", "constraint.most=0.5"]
+    run, near = known, ["constraint=position", "constraint.most=0.5"]
     paid = retargeted(run, [*near, "planner=gradient", *SMALL])
     assert not paid.controllers["full"].priced
     for more, priced in (
@@ -76,19 +82,21 @@ def test_a_price_that_was_learned_is_not_charged_again(trained: Path) -> None:
         assert planner.constraint is not None
 
 
-def test_a_file_with_models_plans_as_the_run_does(trained: Path, tmp_path, capsys) -> None:
+def test_a_file_with_models_plans_as_the_run_does(
+    trained: Path, known: Trained, tmp_path, capsys
+) -> None:
     """Up to the 16 bits of its weights; without them it has a policy alone."""
     file, bare = tmp_path / "both.npz", tmp_path / "bare.npz"
     main = lambda *words: call(lambda: command.guarded(demonstrate.main), *words)  # noqa: E731
     assert main(f"run={trained}", f"policy={file}", "models=true") == 0
     assert main(f"run={trained}", f"policy={bare}") == 0
     assert "policy and models of" in capsys.readouterr().out
-    obs = np.array([0.1, 0.0, 0.9, 0.1, 0.0], np.float32)
+    obs, of_file = np.array([0.1, 0.0, 0.9, 0.1, 0.0], np.float32), read(str(file))
     for words in (AT, ["planner=gradient"]):  # the second has the critic of the training
-        goals = [retargeted(each, [*words, *SMALL]) for each in (load(trained), read(str(file)))]
-        of_run, of_file = (goal.policy()(obs) for goal in goals)
-        np.testing.assert_allclose(of_run, of_file, atol=0.02)
-    for own in (load(trained), read(str(file))):
+        goals = [retargeted(each, [*words, *SMALL]) for each in (known, of_file)]
+        one, other = (goal.policy()(obs) for goal in goals)
+        np.testing.assert_allclose(one, other, atol=0.02)
+    for own in (known, of_file):
         assert retargeted(own, ["planner=gradient"]).controllers["full"].objective.critic
     assert set(retargeted(read(str(bare)), AT).controllers) == {"full", "policy"}
 
@@ -132,7 +140,8 @@ def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
         ("imagine=policy imagine.updates=0", "imagine.updates=0: must be a whole number, 1"),
     ],
 )
-def test_a_mistake_is_one_line(trained: Path, words: str, line: str, capfd) -> None:
+def test_a_mistake_is_one_line(trained: Path, known: Trained, words, line, capfd, monkeypatch):
+    monkeypatch.setattr("hybrid_rl.trained.load", lambda folder: known)
     given = f"run={trained}", *words.split()
     assert call(lambda: command.guarded(evaluate.main), *given) == 2
     assert line in only_line(capfd)
@@ -153,11 +162,11 @@ def test_a_policy_without_models_refuses_a_planner(word: str, capfd) -> None:
     assert f"{word}: there is no learned model to {does} with" in only_line(capfd)
 
 
-def test_what_was_imagined_acts_where_it_gained(trained: Path) -> None:
+def test_what_was_imagined_acts_where_it_gained(known: Trained) -> None:
     """Policies change only there, and models nowhere; the note says where not."""
     short = ["imagine.updates=4", "imagine.doubt=0", "imagine.episodes=2", "imagine.starts=8"]
     short += ["imagine.learner.steps=1", "imagine.decisions=5", "imagine.walk=3"]
-    was = load(trained)
+    was = known
     for first in (0, 4):
         words = [*AT, "imagine=policy", *short, f"imagine.critic_first={first}"]
         now = retargeted(was, words)

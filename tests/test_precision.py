@@ -45,12 +45,12 @@ def products(f, *given):
 def test_hidden_layers_have_the_precision_and_outputs_float32(name, hidden, of_products):
     net, x = MLP((8, 8), 3, layer_norm=True), jnp.ones((4, 5))
     with precision.using(name):
-        params = net.init(jax.random.key(0), x)
+        params = jax.eval_shape(net.init, jax.random.key(0), x)
         kinds, at = products(net.apply, params, x)
-        gradient = jax.grad(lambda params: net.apply(params, x).sum())(params)
+        gradient = jax.eval_shape(jax.grad(lambda params: net.apply(params, x).sum()), params)
         assert kinds == Counter({hidden: 2}) + Counter({"f32": 1})
         assert at == {of_products}
-        assert net.apply(params, x).dtype == jnp.float32
+        assert jax.eval_shape(net.apply, params, x).dtype == jnp.float32
     assert {leaf.dtype for leaf in jax.tree.leaves((params, gradient))} == {jnp.dtype("float32")}
 
 
@@ -147,11 +147,11 @@ def test_a_run_keeps_its_precision_and_can_change_it(tmp_path, capfd):
 def test_bf16_learns_other_numbers_than_float32():
     """A step of an optimiser, from the same parameters, is close and not equal."""
     net, x = MLP((32, 32), 3), jax.random.normal(jax.random.key(1), (16, 5))
-    params = net.init(jax.random.key(0), x)
+    params = jax.jit(net.init)(jax.random.key(0), x)
 
     def slope(name):
         with precision.using(name):
-            return jax.grad(lambda params: (net.apply(params, x) ** 2).sum())(params)
+            return jax.jit(jax.grad(lambda params: (net.apply(params, x) ** 2).sum()))(params)
 
     of_bf16, of_float32 = (
         np.concatenate([leaf.ravel() for leaf in jax.tree.leaves(slope(name))])
