@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from broken import TASK, WORLD, changed, refused, write
+from faulty import TASK, WORLD, changed, refused, write
 from tiny import call_train
 
 from hybrid_rl import config

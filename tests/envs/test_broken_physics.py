@@ -1,7 +1,7 @@
 """A world of one's own in MuJoCo that is wrong: one line names its file, and what it must be."""
 
 import pytest
-from broken import CRANE, RAIL, changed, refused, world
+from faulty import CRANE, RAIL, changed, refused, world
 
 from hybrid_rl.envs import check
 

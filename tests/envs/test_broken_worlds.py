@@ -1,7 +1,7 @@
 """A world of one's own that is wrong: one line names its file, and what it must be."""
 
 import pytest
-from broken import LINE, STATE, WORLD, changed, refused, world
+from faulty import LINE, STATE, WORLD, changed, refused, world
 from worlds import TASKS, make
 
 from hybrid_rl.envs import check

@@ -8,7 +8,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
-from omegaconf import OmegaConf
 
 from hybrid_rl import config
 from hybrid_rl.data.replay import Replay, unpack
@@ -149,13 +148,13 @@ def test_two_learners_of_one_field_are_refused() -> None:
 
 def test_a_seed_starts_in_the_same_state_whatever_the_method() -> None:
     """With no, one and two learners, whose keys are split from the same key."""
-    first = []
-    for learners in ("{}", "{policy: null}", None):
-        line = ["task=quadcopter_se3", "algo=koopman_direct", "env.twist=2.0"]
-        composed = config.load(line)
-        if learners is not None:
-            composed.learners = OmegaConf.create(learners)
-        agent = config.build(composed).agent
-        first.append(jax.jit(agent.init)(jax.random.key(3)).env.obs)
+    line = ["task=quadcopter_se3", "algo=koopman_direct", "env.twist=2.0"]
+    agent, first = config.build(config.load(line)).agent, []
+    names = tuple(agent.learners)
+    assert len(names) == 2
+    for count in range(3):
+        some = {name: agent.learners[name] for name in names[:count]}
+        with_some = replace(agent, learners=some)
+        first.append(jax.jit(with_some.init)(jax.random.key(3)).env.obs)
     np.testing.assert_array_equal(first[0], first[2])
     np.testing.assert_array_equal(first[1], first[2])
