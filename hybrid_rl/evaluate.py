@@ -11,7 +11,8 @@ controller does not; the file is then DIR/evaluation_<mode>_<changes>.json.
 
 With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
 model that the run has learned; nothing is trained. planner=NAME is another planner. With
-imagine=policy the policy goes on learning in that model before it acts, for seconds.
+imagine=policy the policy goes on learning in that model before it acts, for seconds. Below the
+table is the return of the policy alone.
 
 With constraint=NAME, of conf/constraint, the world counts the decisions that violate it, and the
 planner keeps it; the return stays as it is.
@@ -146,6 +147,8 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     where = "".join(f", {key}={value}" for key, value in changes.items())
     print(f"{name}, mode {given['mode']}, step {trained.step:,}{where}")  # whole, also in a pipe
     Console().print(_table(values))
+    if line := _policy_alone(trained, given):
+        print(line)
     if not given["run"]:
         return
     stem = "_".join([given["mode"], *(f"{key}={value}" for key, value in changes.items())])
@@ -155,6 +158,20 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
         print(f"{episodes} episodes a seed; written to {out}")
     except OSError as error:  # the run of somebody else, say
         print(f"{episodes} episodes a seed; not written: {out}: {error.strerror}")
+
+
+def _policy_alone(trained: Trained, given: dict[str, Any]) -> str:
+    """What a planner's return on a new goal compares with; empty: nothing."""
+    full, policy = trained.controllers.get("full"), trained.controllers.get("policy")
+    new = any(given[argument.name] for argument in GOAL)
+    if not new or given["mode"] != "full" or policy in (None, full):
+        return ""
+    if isinstance(trained.episode.env, External):
+        return "the policy alone: mode=policy"
+    got = evaluate(trained, "policy", given["episodes"])
+    violations = got.get("violations")
+    more = "" if violations is None else f", {violations.mean():,.1f} violations"
+    return f"the policy alone: {got['return'].mean():,.1f}{more} (mode=policy)"
 
 
 def _saying(steps: int) -> Callable[[int], None]:

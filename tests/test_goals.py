@@ -116,13 +116,32 @@ def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
     assert "learner=5: the run has 3, 4" in only_line(capfd)
 
 
-def test_evaluate_names_the_goal(trained: Path, capsys) -> None:
-    """In its output and in the file's name."""
+def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
+    """In its output and in the file's name; the policy alone has a line beside the planner."""
     main = lambda *words: call(lambda: command.guarded(evaluate.main), *words)  # noqa: E731
-    assert main(f"run={trained}", "episodes=2", "mode=policy", *AT, "env.reward=cos") == 0
-    assert "reward=aim, reward.quantity=position" in capsys.readouterr().out
-    (file,) = trained.glob("evaluation_policy_reward=aim*.json")
-    assert json.loads(file.read_text())["changes"]["reward.target"] == "0.5"
+    policy = {}
+
+    def returns(trained: Trained, mode: str, episodes: int, *_):
+        if mode == "policy" and not policy:
+            policy.update(by_rollout(trained, mode, episodes))
+        # A planner is not what is tested, and slow to compile.
+        return policy if mode == "policy" else {"return": np.full((1, episodes), 7.0)}
+
+    by_rollout, each = evaluate.evaluate, {}
+    monkeypatch.setattr(evaluate, "evaluate", returns)
+    for mode in ("full", "policy"):
+        assert main(f"run={trained}", "episodes=2", f"mode={mode}", *AT, "env.reward=cos") == 0
+        shown = capsys.readouterr().out
+        assert "reward=aim, reward.quantity=position" in shown
+        (file,) = trained.glob(f"evaluation_{mode}_reward=aim*.json")
+        each[mode] = json.loads(file.read_text())
+        assert each[mode]["changes"]["reward.target"] == "0.5"
+        if mode == "full":
+            (line,) = [row for row in shown.splitlines() if "policy alone" in row]
+        else:
+            assert "alone" not in shown
+    alone = np.mean(each["policy"]["returns"])
+    assert line == f"the policy alone: {alone:,.1f} (mode=policy)"
 
 
 @pytest.mark.parametrize(
