@@ -29,6 +29,7 @@ LIBRARY = [  # pages; those of the atlas are copied from other pages
 RESULTS = [f"docs/results/{path.name}" for path in sorted(ROOT.glob("docs/results/*.md"))]
 GROUPS = ("GROUPS", "CHANGES", "ROBOT_CHANGES")  # what commands call their keys KEY.FIELD
 LINE = re.compile(r"python -m hybrid_rl\.([\w.]+\w)([^`#\n]*)")
+SCRIPT = re.compile(r"python -m scripts\.(\w+) ([^`#\n]+)")
 
 
 def commands(page: str) -> list[tuple[str, list[str]]]:
@@ -125,6 +126,10 @@ def check_arguments(page: str) -> None:
             groups = (getattr(module(name), key, {}) for key in GROUPS)
             in_group = dot and any(section in each for each in groups)
             assert in_group or key in known, f"{name}: {word}"
+    for name, words in SCRIPT.findall(text(page)):
+        known = {one.name for one in import_module(f"scripts.{name}").ARGUMENTS}
+        wrong = [word for word in shlex.split(words) if word.partition("=")[0] not in known]
+        assert not wrong, f"{name}: {wrong}"
 
 
 def declared(name: str, words: list[str]) -> list[Argument]:
