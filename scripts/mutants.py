@@ -61,13 +61,13 @@ MUTANTS = {
         "hybrid_rl/core/soft_actor_critic.py",
         "batch.reward + part.discount * (1",
         "batch.reward + part.discount**2 * (1",
-        "tests/learners",
+        "tests/core",
     ),
     "terminal states are bootstrapped": Mutant(
         "hybrid_rl/core/soft_actor_critic.py",
         "part.discount * (1 - batch.terminated) * after",
         "part.discount * after",
-        "tests/learners",
+        "tests/core",
     ),
     "a time limit counts as an end": Mutant(
         "hybrid_rl/training/episode.py",
