@@ -22,7 +22,6 @@ import signal
 import time
 from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -177,31 +176,20 @@ def check(given: Mapping[str, Any]) -> None:
     output("out", given["out"], (".json",))
 
 
-def versions() -> dict[str, str]:
-    """Package -> version, of those that are installed."""
-    found = {}
-    for name in PACKAGES:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return found
-
-
 def main() -> None:
     """The command."""
+    from hybrid_rl.run.integrity import write_text  # here, as a learner's clock starts without JAX
+    from hybrid_rl.run.provenance import versions
+
     given: Any = read(__doc__, ARGUMENTS)[0]
     check(given)
     out = Path(given.pop("out"))
     rows: dict[int, list[Row]] = {}
-    about = {**given, "versions": versions()}
+    about = {**given, "versions": versions(PACKAGES)}
     for seed, row in side_by_side(given):
         rows.setdefault(seed, []).append(row)
         found = {**about, "returns": returns(rows), "clock": clock(rows), "rows": rows}
-        text = json.dumps(found, indent=1) + "\n"
-        part = out.with_suffix(".part")
-        part.write_text(text, encoding="ascii")
-        part.replace(out)
+        write_text(out, json.dumps(found, indent=1) + "\n")
         print(f"seed {seed}: {row}", flush=True)
 
 

@@ -1,6 +1,7 @@
 """Run folders from anybody, and by which line they are refused."""
 
 import json
+import os
 import sys
 from functools import cache
 from pathlib import Path
@@ -36,6 +37,16 @@ def made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for each in (path, path.parent):
         (each / "zz_evil.py").write_text("open('ran', 'w')\nclass World: pass\n")
     return path
+
+
+def no_plain_file(path: Path, kind: str) -> None:
+    """Make a pipe, a link to an endless device, or a folder where a file should be."""
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "device":
+        path.symlink_to("/dev/zero")
+    else:
+        path.mkdir()
 
 
 def refused(folder: Path, read=lambda folder: run_folder.read(folder, "run")) -> str:

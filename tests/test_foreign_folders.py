@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 import pytest
-from foreign import METRIC, ROW, made, refused
+from foreign import METRIC, ROW, made, no_plain_file, refused
 from tiny import call, only_line
 
 from hybrid_rl import figures, report
@@ -60,12 +60,8 @@ def test_what_is_no_plain_file_of_its_size_is_not_read(folder, name, kind):
     """It neither hangs nor fills the memory."""
     file = folder / name
     file.unlink()
-    if kind == "pipe":
-        os.mkfifo(file)
-    elif kind == "device":
-        file.symlink_to("/dev/zero")
-    elif kind == "folder":
-        file.mkdir()
+    if kind != "large":
+        no_plain_file(file, kind)
     else:
         with file.open("wb") as data:
             data.truncate(10**8)  # one line of zeros, which takes no space

@@ -3,6 +3,7 @@
 import os
 import platform
 import subprocess
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -13,13 +14,13 @@ from hybrid_rl import __version__
 PACKAGES = ("jax", "jaxlib", "mujoco", "mujoco-mjx", "flax", "optax")
 
 
-def versions() -> dict[str, str | None]:
-    """Versions of Python and of each package; None if it is not installed."""
+def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str | None]:
+    """Versions of this library, Python and each package; None if it is not installed."""
     installed: dict[str, str | None] = {
         "hybrid_rl": __version__,
         "python": platform.python_version(),
     }
-    for name in PACKAGES:
+    for name in packages:
         try:
             installed[name] = version(name)
         except PackageNotFoundError:

@@ -3,7 +3,6 @@
 import ast
 import io
 import json
-import os
 import warnings
 import zipfile
 from contextlib import suppress
@@ -12,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from foreign import no_plain_file
 from tiny import call, only_line
 
 from hybrid_rl import evaluate, export, trained
@@ -124,12 +124,8 @@ def test_names_of_members_are_no_paths_and_occur_once(tmp_path, policy, name):
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder", "text", "npy", "protected"])
 def test_what_is_no_archive_is_refused(tmp_path, policy, kind):
     file = tmp_path / "a.npz"
-    if kind == "pipe":
-        os.mkfifo(file)
-    elif kind == "device":
-        file.symlink_to("/dev/zero")
-    elif kind == "folder":
-        file.mkdir()
+    if kind in ("pipe", "device", "folder"):
+        no_plain_file(file, kind)
     elif kind == "text":
         file.write_text("hello")
     elif kind == "npy":
