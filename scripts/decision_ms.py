@@ -37,6 +37,7 @@ from scripts.new_goals import overrides, rows
 ARGUMENTS = (
     Argument("of", "methods", "or goals: planners for a new reward", one_of("methods", "goals")),
     Argument("only", "", "of these tasks, with ; between them; empty: all"),
+    Argument("who", "", "of=goals: these planners, with ; between them; empty: all"),
     Argument("out", "decision_ms.json", "the numbers"),
 )
 CALLS, BLOCK = {"methods": 500, "goals": 100}, 10
@@ -74,7 +75,7 @@ def methods(only: list[str]) -> Iterator[tuple[str, str, Agent]]:
             yield task, name, _agent([f"task={task}", *words])
 
 
-def goals(only: list[str]) -> Iterator[tuple[str, str, Agent]]:
+def goals(only: list[str], who: list[str]) -> Iterator[tuple[str, str, Agent]]:
     """(robot, who acts, agent) of each planner for a new reward."""
     for robot in only or GOALS:
         words, goal = GOALS[robot]
@@ -85,7 +86,7 @@ def goals(only: list[str]) -> Iterator[tuple[str, str, Agent]]:
         refits = retargeted(trained, [*overrides(goal), "planner=refits"])
         known["refits"] = refits.controllers["full"]
         known["both: gradient, quick"] = quicker(known["both: gradient"])
-        for name in WHO:
+        for name in who or WHO:
             yield robot, name, replace(agent, controller=known[name])
 
 
@@ -93,12 +94,17 @@ def _agent(words: list[str]) -> Agent:
     return configuration.build(configuration.load(words)).agent
 
 
+def listed(text: str) -> list[str]:
+    """The names in `text`, with ; between them."""
+    return [each.strip() for each in text.split(";") if each.strip()]
+
+
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    of, only = given["of"], [each.strip() for each in given["only"].split(";") if each.strip()]
+    of, only, who = given["of"], listed(given["only"]), listed(given["who"])
     found: dict[str, Any] = {"device": device(), "calls": CALLS[of], "block": BLOCK, "tasks": {}}
-    for task, name, agent in (methods if of == "methods" else goals)(only):
+    for task, name, agent in methods(only) if of == "methods" else goals(only, who):
         row = measured(agent, CALLS[of]) | {"period": 1e3 * agent.spec.dt}
         found["tasks"].setdefault(task, {})[name] = row
         print(f"{task}, {name}: {row['processor']:.2f} ms, best {row['best']:.2f}", flush=True)
