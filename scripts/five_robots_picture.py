@@ -23,8 +23,8 @@ ARGUMENTS = (
     Argument("out", "docs/results/five_robots.png", "the picture"),
 )
 BEFORE = {  # robot -> file of the runs with layer normalisation and the curve, or the task in it
-    "half-cheetah": ("hybrid_halfcheetah", "hybrid_stochastic"),
-    "hopper": ("hybrid_hopper", "hybrid_stochastic"),
+    "half-cheetah": ("bf16", None),
+    "hopper": ("bf16", None),
     "walker2d": ("velocity_walker2d", "all velocities"),
     "ant": ("records_h100", None),
     "humanoid": ("records", None),
@@ -37,7 +37,7 @@ def before(folder: Path, robot: str) -> tuple[np.ndarray, np.ndarray]:
     name, label = BEFORE[robot]
     file = json.loads((folder / f"{name}.json").read_text())
     if label is None:
-        return evaluated(file["tasks"][robot]["both"])
+        return evaluated(file["tasks"][robot].get("both", file["tasks"][robot]))
     (curve,) = (one for one in file["curves"] if one["label"] == label)
     return np.array(curve["x"]), np.array(curve["each"])
 
@@ -55,7 +55,7 @@ def draw(folder: Path) -> Figure:
         for axes, robot in zip(panels, BEFORE, strict=False):
             shown = {
                 "hybrid_stochastic (10 seeds)": (*evaluated(ours[robot]["both"]), VERMILION, "-"),
-                "with layer normalisation, until 0.3 (10)": (*before(folder, robot), BLUE, "--"),
+                "with layer normalisation (10)": (*before(folder, robot), BLUE, "--"),
             }
             for name, (x, each, ink, line) in shown.items():
                 axes.plot(x, iqm(each), line, color=ink, lw=2, label=name)
