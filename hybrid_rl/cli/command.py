@@ -33,6 +33,7 @@ FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-i", "--info"), 1),
 }
 KEYS = (*configuration.READ, "settings", "experiment", "sweep")  # in the help
+MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
 NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
 USAGE = """
 
@@ -127,7 +128,7 @@ def _ordered(line: Sequence[str]) -> list[str]:
     """
     renamed.check(line)
     check_choices(line)
-    follow, found = 0, []  # words that belong to an option; places of options and their words
+    follow, found, modes = 0, [], []  # words that belong to an option; places of all these; modes
     for at, text in enumerate(line):
         name, equals, _ = text.partition("=")
         if follow:
@@ -141,10 +142,13 @@ def _ordered(line: Sequence[str]) -> list[str]:
                 raise UsageError(f"{text}: a run has one configuration; choose by experiment=NAME")
             follow = 0 if equals else FLAGS[flags[0]]
             found.append(at)
+            modes += [text] * (flags[0] in MODES)
         elif not equals and text.count("]") > text.count("["):
             raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
         elif not equals and not text.startswith("~"):
             raise UsageError(f"{text}: has no value; write {arguments.as_pair(line, at)}")
+    if len(modes) > 1:
+        raise UsageError(f"{', '.join(modes)}: give one of them")
     rest = [text for at, text in enumerate(line) if at not in found]
     return [*(line[at] for at in found), *rest]
 

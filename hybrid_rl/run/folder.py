@@ -256,7 +256,8 @@ def parsed(folder: Path, key: str = "runs") -> DictConfig:
         if runs := members(folder):
             each = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
             raise UsageError(f"{key}={folder}: holds a sweep; give one of its runs: {each}")
-        raise UsageError(f"{key}={folder}: no run folder there (no config.yaml in it)")
+        named = "" if folder == Path() else folder  # of an empty variable, too
+        raise UsageError(f"{key}={named}: no run folder there (no config.yaml in it)")
     config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))
     if not isinstance(config, DictConfig):
         raise UsageError(f"{path}: holds no keys")

@@ -61,9 +61,16 @@ def replay(run: Run, learners: int) -> str:
     """A line about the size of the replay memories of so many learners of a run.
 
     Raises:
-        UsageError: if the machine has too little.
+        UsageError: if the machine has too little, or the memory holds less than one batch.
     """
-    replay = run.agent.replay
+    replay, learned = run.agent.replay, run.agent.learners.items()
+    batches = {name: one.batch_size for name, one in learned if one.data == "uniform"}
+    largest = max(batches, key=batches.__getitem__, default="")
+    if batches and run.config.replay.capacity < batches[largest]:
+        raise UsageError(
+            f"replay.capacity={run.config.replay.capacity}: holds less than one batch, "
+            f"{largest}_learner.batch_size={batches[largest]}"
+        )
     each = replay.nbytes(run.agent.spec)
     have = available()
     if each * learners > have:
