@@ -14,7 +14,6 @@ Bagnell 2011 (DAgger). The teacher drives for the `first` decisions (conf/contro
 they are the first demonstration, on which `first_steps` Adam steps are taken at its end.
 """
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import jax
@@ -27,6 +26,7 @@ from hybrid_rl.core import labels, statistics, teaching
 from hybrid_rl.core.branching import when_any
 from hybrid_rl.core.ranges import edge_and_saturation
 from hybrid_rl.core.teaching import Answer
+from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Controller, LearnedPolicy, Model, Target
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -48,77 +48,59 @@ class DAggerState:
     loss: Array  # []
 
 
-@dataclass(frozen=True)
+@part
 class DAgger:
     """Queries to a teacher, and gradient steps on its answers.
 
     Query i begins at row `first` + i `length` of the labels.
 
     Raises:
-        ValueError: without a teacher, for numbers out of range, or for fields that contradict each
-            other.
+        ValueError: without a teacher, or for fields that contradict each other.
     """
 
     policy: LearnedPolicy
     teacher: Controller | None  # without memory: its state is the initial one at each answer
     target: Target | None = None  # of the state to ask at; None: the only candidate
-    candidates: int = 1
-    spread: float = 0.0
+    candidates: Count = 1
+    spread: NotNegative = 0.0
     normalise: bool = True  # spread in standard deviations of the first demonstration
     oracle: bool = False  # asks where the clone errs most
     model: Model | None = None  # of the paths of long answers
-    length: int = 1  # decisions of an answer
-    first: int = 0  # decisions of the first demonstration
-    spacing: int = 1  # decisions between two queries
-    most: int | None = None  # queries; None: no limit
+    length: Count = 1  # decisions of an answer
+    first: Natural = 0  # decisions of the first demonstration
+    spacing: Count = 1  # decisions between two queries
+    most: Count | None = None  # queries; None: no limit
     better: bool = False  # asks only if the target exceeds that at the last query
-    steps: int = 1  # Adam steps per decision
-    first_steps: int = 200  # at the end of the first demonstration
-    learning_rate: float = 3e-3
-    batch_size: int = 64
-    edge: float = 0.99  # bound of the imitated actions
-    capacity: int = 20_000  # labels that are kept
+    steps: Natural = 1  # Adam steps per decision
+    first_steps: Natural = 200  # at the end of the first demonstration
+    learning_rate: Positive = 3e-3
+    batch_size: Count = 64
+    edge: Share = 0.99  # bound of the imitated actions
+    capacity: Count = 20_000  # labels that are kept
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("policy", "labels")
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check the fields."""
+        """Check what depends on two fields."""
         teaching.require(self.teacher)
-        positive = ("candidates", "length", "spacing", "batch_size", "capacity")
-        for name in (*positive, "spread", "first", "steps", "first_steps"):
-            least = 1 if name in positive else 0
-            if getattr(self, name) < least:
-                self._refuse(name, f"must be {least} or more")
-        if self.most is not None and self.most < 1:
-            self._refuse("most", "must be 1 or more, or null")
-        if not self.learning_rate > 0:
-            self._refuse("learning_rate", "must be above 0")
-        if not 0 < self.edge <= 1:
-            self._refuse("edge", "must lie in (0, 1]")
         edge_and_saturation(self, "dagger_learner")
-        self._check_queries()
-
-    def _check_queries(self) -> None:
-        """Raise ValueError for fields that contradict each other."""
         if self.candidates > 1 and self.spread == 0:
-            self._refuse("candidates", "needs spread above 0")
+            raise FieldError(self, "candidates", "needs spread above 0")
         if self.candidates > 1 and self.target is None and not self.oracle:
-            self._refuse("candidates", "needs a target or oracle=true to choose one")
+            raise FieldError(self, "candidates", "needs a target or oracle=true to choose one")
         if self.oracle and self.target is not None:
-            self._refuse("oracle", "needs target=null")
+            raise FieldError(self, "oracle", "needs target=null")
         if self.better and self.target is None:
-            self._refuse("better", "needs a target")
+            raise FieldError(self, "better", "needs a target")
         if self.length > 1 and (self.model is None or self.first):
-            self._refuse("length", "needs a model of the world, and first=0")
+            raise FieldError(self, "length", "needs a model of the world, and first=0")
         if self.spread > 0 and self.normalise and not self.first:
-            self._refuse("normalise", "needs first above 0, the decisions whose deviations it uses")
+            words = "needs first above 0, the decisions whose deviations it uses"
+            raise FieldError(self, "normalise", words)
         if self.capacity % self.length:
-            self._refuse("capacity", f"must be a multiple of length={self.length}")
-
-    def _refuse(self, name: str, why: str) -> None:
-        raise ValueError(f"dagger_learner.{name}={getattr(self, name)}: {why}")
+            raise FieldError(self, "capacity", f"must be a multiple of length={self.length}")
 
     def init(self, key: Array, spec: Spec) -> DAggerState:
         """An untrained clone without labels. The key is consumed.
