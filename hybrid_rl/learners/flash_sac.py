@@ -19,10 +19,9 @@ from typing import Any, ClassVar, Protocol
 import jax
 import jax.numpy as jnp
 import optax
-from flax import struct
 from jax import Array
 
-from hybrid_rl.core.soft_actor_critic import adam
+from hybrid_rl.core.soft_actor_critic import SACState, adam
 from hybrid_rl.fields import Count, Discount, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Params, PyTree, Spec
@@ -60,19 +59,6 @@ class BatchPolicy(LearnedPolicy, Protocol):
         """Parameters with weights projected to those that are allowed, after a gradient step."""
 
 
-@struct.dataclass
-class FlashSACState:
-    """The state of the learner; optimisers are those of "weights"."""
-
-    policy: Any
-    critic: Any
-    target: Any
-    log_alpha: Array  # []
-    policy_optimiser: Any
-    critic_optimiser: Any
-    alpha_optimiser: Any
-
-
 @part
 class FlashSAC:
     """Soft actor-critic on a batch normalised policy and a categorical critic.
@@ -98,12 +84,12 @@ class FlashSAC:
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
     during_random: ClassVar[bool] = False  # starts after the random decisions
 
-    def init(self, key: Array, spec: Spec) -> FlashSACState:
-        """Initial parameters, optimisers and target. The key is consumed."""
+    def init(self, key: Array, spec: Spec) -> SACState:
+        """Initial parameters, optimisers of their "weights", and target. The key is consumed."""
         for_policy, for_critic = jax.random.split(key)
         policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
         log_alpha, rule = jnp.log(jnp.float32(self.alpha)), optax.adam(self.learning_rate)
-        return FlashSACState(
+        return SACState(
             policy,
             critic,
             jax.tree.map(jnp.copy, critic),
@@ -113,13 +99,13 @@ class FlashSAC:
             rule.init(log_alpha),
         )
 
-    def params(self, state: FlashSACState) -> dict[str, Any]:
+    def params(self, state: SACState) -> dict[str, Any]:
         """The policy and the critic."""
         return {"policy": state.policy, "critic": state.critic}
 
     def update(
-        self, state: FlashSACState, params: Params, batch: Batch, key: Array
-    ) -> tuple[FlashSACState, dict[str, Array]]:
+        self, state: SACState, params: Params, batch: Batch, key: Array
+    ) -> tuple[SACState, dict[str, Array]]:
         """A step of policy and temperature, then `batches` of the critic. The key is consumed."""
         acting, *following = jax.random.split(key, 1 + self.batches)
         batch = batch._replace(reward=batch.reward / params.scale, next_action=None)
@@ -133,8 +119,8 @@ class FlashSAC:
         return state, metrics
 
     def _improved(
-        self, state: FlashSACState, batch: Batch, key: Array
-    ) -> tuple[FlashSACState, dict[str, Array]]:
+        self, state: SACState, batch: Batch, key: Array
+    ) -> tuple[SACState, dict[str, Array]]:
         """One step of policy and temperature. The key is consumed."""
         both, b = jnp.concatenate([batch.obs, batch.next_obs]), len(batch.obs)
         noise = jax.random.normal(key, (2 * b, batch.action.shape[-1]))
@@ -166,8 +152,8 @@ class FlashSAC:
         ), metrics
 
     def _evaluated(
-        self, state: FlashSACState, batch: Batch, key: Array
-    ) -> tuple[FlashSACState, dict[str, Array]]:
+        self, state: SACState, batch: Batch, key: Array
+    ) -> tuple[SACState, dict[str, Array]]:
         """One step of the critic and its target. The key is consumed."""
         b, noise = len(batch.obs), jax.random.normal(key, batch.action.shape)
         after, log_prob = self.policy.sample(state.policy, batch.next_obs, noise)
