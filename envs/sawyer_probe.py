@@ -56,7 +56,7 @@ class SawyerProbe:
     """Sawyer among fixed objects; `physics` is native, mjx, warp or auto.
 
     Raises:
-        ValueError: as `ContactPlane`; for an unknown physics, or numbers out of range.
+        ValueError: as `ContactPlane`, or for an unknown physics.
     """
 
     physics: str = "auto"

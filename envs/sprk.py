@@ -52,7 +52,7 @@ class Sprk:
     """A ball among objects; `physics` is native, mjx, warp or auto.
 
     Raises:
-        ValueError: as `ContactPlane`; for an unknown sensor or physics, or numbers out of range.
+        ValueError: as `ContactPlane`, or for an unknown physics.
     """
 
     physics: str = "auto"

@@ -32,11 +32,7 @@ UPRIGHT = 0.9  # least cos th of a success
 
 @part
 class CartSwingUp:
-    """A rod on a cart, to be swung up.
-
-    Raises:
-        ValueError: for numbers out of range.
-    """
+    """A rod on a cart, to be swung up."""
 
     length: Positive = 0.6  # [m] l, to the rod's mass
     acceleration: Positive = 10.0  # [m/s^2] at a = 1

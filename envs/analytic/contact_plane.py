@@ -57,8 +57,7 @@ class ContactPlane:
     """A ball among objects, with a binary contact sensor.
 
     Raises:
-        ValueError: for objects that are no rounded boxes, that lie outside of the box or leave no
-            room to start, or numbers out of range.
+        ValueError: for objects that are no rounded boxes, lie outside or leave no room to start.
     """
 
     objects: tuple[tuple[float, ...], ...] = THREE

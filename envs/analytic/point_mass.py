@@ -25,11 +25,7 @@ MIDDLE = (0.5, 0.5)  # [m]
 
 @part
 class PointMass:
-    """Double integrator on the plane.
-
-    Raises:
-        ValueError: for an acceleration that is not positive, or a drag below 0.
-    """
+    """Double integrator on the plane."""
 
     acceleration: Positive = ACCELERATION  # [m/s^2] a
     drag: NotNegative = 0.0  # [1/s] b

@@ -30,11 +30,7 @@ LIFT_SPEED = 0.02  # [m/s] at the beginning of a lift
 
 @part
 class StackController:
-    """Acts on the observation of `panda_stack`; the fields are those of the environment.
-
-    Raises:
-        ValueError: for a base that is not two numbers, or an unknown grip or observation.
-    """
+    """Acts on the observation of `panda_stack`; the fields are those of the environment."""
 
     base: tuple[float, float] = PandaStack.base  # [m] its position, unless it is observed
     speed: float = PandaStack.speed  # [m/s] at a = 1

@@ -27,7 +27,7 @@ class ComputedTorque:
     """Feedback linearisation of `sawyer_torque`.
 
     Raises:
-        ValueError: for another environment, a frequency that is not positive, a negative integral.
+        ValueError: for another environment.
     """
 
     world: SawyerTorque
@@ -63,7 +63,7 @@ class JointPD:
     """Proportional and derivative feedback at each joint of `sawyer_torque`.
 
     Raises:
-        ValueError: for another environment, or gains that are not 7 numbers, 0 or more.
+        ValueError: for another environment, or gains that are not 7 numbers.
     """
 
     world: SawyerTorque

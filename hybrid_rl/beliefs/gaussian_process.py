@@ -30,11 +30,7 @@ class GPState(NamedTuple):
 
 @part
 class GaussianProcess:
-    """A belief about a function of `size` variables.
-
-    Raises:
-        ValueError: for fields that are not positive.
-    """
+    """A belief about a function of `size` variables."""
 
     size: Count = 1  # v
     capacity: Count = 100  # C

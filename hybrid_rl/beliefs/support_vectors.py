@@ -27,9 +27,6 @@ class SupportVectors:
     """A belief about the probability that a binary measurement is 1.
 
     A full memory adds weight to the nearest measurement instead of a point (`belief/full` is 1).
-
-    Raises:
-        ValueError: for numbers out of range, or an unknown measure of information.
     """
 
     size: Count = 2  # d, coordinates of s

@@ -8,11 +8,7 @@ from hybrid_rl.fields import Inside, NotNegative, Positive, Share, part
 
 @part
 class Effort:
-    """The largest entry of an action that arrives, as a share of what the actuator can.
-
-    Raises:
-        ValueError: for a limit outside (0, 1].
-    """
+    """The largest entry of an action that arrives, as a share of what the actuator can."""
 
     most: Share = 0.8  # of actions in [-1, 1]
     width: Positive = 0.02  # of the planner's indicator

@@ -42,7 +42,7 @@ class AdjointController:
     """A gradient-based planner around a policy, or around zero.
 
     Raises:
-        ValueError: for counts, gains or rates out of range.
+        ValueError: without a gain and without a policy, whose variance is the gain.
     """
 
     model: Model

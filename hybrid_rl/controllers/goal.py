@@ -41,8 +41,7 @@ class GoalController:
     """Drives to the maximum of a target.
 
     Raises:
-        ValueError: for counts that are not positive, or a target that values no ways where `ahead`
-            asks for it.
+        ValueError: for a target that values no ways where `ahead` asks for it.
     """
 
     target: Target  # with `ahead` a PathTarget

@@ -82,7 +82,7 @@ class GradientController:
     """A planner over K candidates and T decisions.
 
     Raises:
-        ValueError: for counts, a noise, a step or a price out of range.
+        ValueError: for the world itself as the model, which has no gradients.
     """
 
     model: Model

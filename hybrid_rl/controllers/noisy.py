@@ -33,11 +33,7 @@ class NoisyState(NamedTuple):
 
 @part
 class NoisyController:
-    """`controller` with noise during training, without noise in evaluation.
-
-    Raises:
-        ValueError: for an unknown kind, or numbers out of range.
-    """
+    """`controller` with noise during training, without noise in evaluation."""
 
     controller: Controller
     kind: Literal["normal", "uniform", "ou", "held"] = "normal"

@@ -27,11 +27,7 @@ class Held(NamedTuple):
 
 @part
 class PolicyController:
-    """Actions of the policy: samples if `explore` is true, else its mean.
-
-    Raises:
-        ValueError: for a `hold` that is not a whole number, 1 or more.
-    """
+    """Actions of the policy: samples if `explore` is true, else its mean."""
 
     policy: Policy
     model: Model | None = None  # lifts observations to planning states; None: they are the same

@@ -37,8 +37,7 @@ class RefitsController:
     """A planner over K candidates, T decisions and several refits.
 
     Raises:
-        ValueError: for counts, a share or a standard deviation out of range, or more elites than
-            candidates.
+        ValueError: for more elites than candidates.
     """
 
     model: Model

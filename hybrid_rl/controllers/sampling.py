@@ -40,8 +40,7 @@ class SamplingController:
     """A planner over K candidates and T decisions.
 
     Raises:
-        ValueError: for a horizon, a count or a temperature that is not positive, an unknown
-            `execute`, or `log_density` of candidates without a density.
+        ValueError: for `log_density` of candidates without a density.
     """
 
     model: Model

@@ -27,11 +27,7 @@ class TrackingEnv(BalancedEnv, Protocol):
 
 @part
 class TrackController:
-    """`controller`, whose policy aims at the reference instead of the equilibrium.
-
-    Raises:
-        ValueError: for a world without a reference.
-    """
+    """`controller`, whose policy aims at the reference instead of the equilibrium."""
 
     controller: Controller
     model: Model

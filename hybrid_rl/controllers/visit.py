@@ -22,11 +22,7 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class VisitController:
-    """`controller`, whose policy aims at a new uncertain state at every decision.
-
-    Raises:
-        ValueError: for counts or lengths that are not positive.
-    """
+    """`controller`, whose policy aims at a new uncertain state at every decision."""
 
     controller: Controller
     model: Uncertain

@@ -29,7 +29,7 @@ class CategoricalQ:
     """`members` independent distributions over returns.
 
     Raises:
-        ValueError: for widths that are not one positive integer, or counts or a bound out of range.
+        ValueError: for widths that are not one positive integer.
     """
 
     hidden: tuple[int, ...] = (256, 256)  # the width, once for each residual block

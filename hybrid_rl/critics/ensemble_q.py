@@ -27,7 +27,7 @@ class EnsembleQ:
     """`members` independent action-value networks.
 
     Raises:
-        ValueError: for invalid widths, activations or counts, or a negative pessimism.
+        ValueError: for invalid widths or activations.
     """
 
     hidden: tuple[int, ...] = (256, 256)

@@ -30,8 +30,7 @@ class Replay:
     """A memory of `capacity` decisions, over all environments of one learner.
 
     Raises:
-        ValueError: for a capacity that is not a positive integer, or too small for the
-            demonstrations.
+        ValueError: for a capacity that is too small for the demonstrations.
     """
 
     capacity: Count = 1_000_000

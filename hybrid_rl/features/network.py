@@ -20,7 +20,7 @@ class Network:
     """Coordinates of the observation, and `size` outputs of a network.
 
     Raises:
-        ValueError: for invalid widths, sizes or activations.
+        ValueError: for invalid widths or activations.
     """
 
     coordinates: tuple[int, ...] | None = None  # of the observation; None: all

@@ -33,11 +33,7 @@ class AnalyticState:
 
 @part
 class AnalyticGradient:
-    """Gradient ascent on the return of imagined paths, one Adam step per decision of the run.
-
-    Raises:
-        ValueError: for counts, a rate or a norm out of range.
-    """
+    """Gradient ascent on the return of imagined paths, one Adam step per decision of the run."""
 
     policy: LearnedPolicy
     model: Model

@@ -44,8 +44,7 @@ class BehaviourCloning:
     Without `demonstrations` it only holds the parameters of a trained policy.
 
     Raises:
-        ValueError: for a rate, an edge, a decay or an average out of range, or a policy whose
-            saturation is above the edge.
+        ValueError: for a policy whose saturation is above the edge.
     """
 
     policy: LearnedPolicy

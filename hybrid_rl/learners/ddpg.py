@@ -37,11 +37,7 @@ class DDPGState:
 
 @part
 class DDPG:
-    """Deterministic policy gradients on the mean of a policy and a critic.
-
-    Raises:
-        ValueError: for rates, a discount or tau out of range.
-    """
+    """Deterministic policy gradients on the mean of a policy and a critic."""
 
     policy: LearnedPolicy
     critic: Critic

@@ -53,7 +53,7 @@ class EmbeddingLearner:
     Features without weights stay as they are, as do all with steps = 0.
 
     Raises:
-        ValueError: for an unknown fit, or numbers out of range.
+        ValueError: for an interval below the window, or a capacity below the interval.
     """
 
     model: LinearModel

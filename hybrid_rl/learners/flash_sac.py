@@ -64,9 +64,6 @@ class FlashSAC:
     """Soft actor-critic on a batch normalised policy and a categorical critic.
 
     Its rewards are divided by `params.scale`, the scale of returns.
-
-    Raises:
-        ValueError: for rates, a discount, tau or counts out of range.
     """
 
     policy: BatchPolicy

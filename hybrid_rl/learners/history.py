@@ -25,11 +25,7 @@ class HistoryState:
 
 @part
 class ModelHistory:
-    """A copy of the model's parameters before decision 0, `every`, 2 `every`, ...
-
-    Raises:
-        ValueError: for counts below 1.
-    """
+    """A copy of the model's parameters before decision 0, `every`, 2 `every`, ..."""
 
     model: Model
     every: Count = 100  # decisions between two copies

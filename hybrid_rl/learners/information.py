@@ -42,7 +42,7 @@ class InformationLearner:
     """The diagonal of the information of all decisions.
 
     Raises:
-        ValueError: for numbers out of range, or a model without weights.
+        ValueError: for a model without weights.
     """
 
     model: Model

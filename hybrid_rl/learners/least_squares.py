@@ -33,11 +33,7 @@ class RegressionState:
 
 @part
 class LeastSquares:
-    """Recursive least squares on a linear model.
-
-    Raises:
-        ValueError: for numbers out of range.
-    """
+    """Recursive least squares on a linear model."""
 
     model: LinearModel
     forgetting: Share = 1.0  # f per decision

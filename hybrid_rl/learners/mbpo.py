@@ -20,11 +20,7 @@ from hybrid_rl.types import Batch, Params, Spec
 
 @part
 class MBPO:
-    """`learner` with data imagined by `model`, `reward` and `policy`.
-
-    Raises:
-        ValueError: for a fraction or a number of steps out of range.
-    """
+    """`learner` with data imagined by `model`, `reward` and `policy`."""
 
     learner: UniformLearner
     model: Trainable

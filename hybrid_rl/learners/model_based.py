@@ -41,7 +41,7 @@ class ModelBased:
     """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model.
 
     Raises:
-        ValueError: for rates, a discount, tau or counts out of range.
+        ValueError: for a value expansion without steps, or a memory that batches do not fill.
     """
 
     policy: LearnedPolicy

@@ -38,7 +38,7 @@ class RegulatorLearner:
     """A linear policy that regulates a model to the equilibrium of `world`.
 
     Raises:
-        ValueError: for weights or counts out of range, or a world without an equilibrium.
+        ValueError: for draws of a model that is not linear.
     """
 
     model: Model

@@ -29,11 +29,7 @@ class ScaleState:
 
 @part
 class ReturnScale:
-    """The running scale of discounted returns.
-
-    Raises:
-        ValueError: for a discount, a bound or a number of environments out of range.
-    """
+    """The running scale of discounted returns."""
 
     discount: Discount = 0.99
     bound: Positive = 5.0  # of scaled returns

@@ -23,11 +23,7 @@ from hybrid_rl.types import Batch, Params, Spec
 
 @part
 class SAC:
-    """Soft actor-critic on a policy and a critic.
-
-    Raises:
-        ValueError: for rates, a discount or tau out of range.
-    """
+    """Soft actor-critic on a policy and a critic."""
 
     policy: LearnedPolicy
     critic: Critic

@@ -24,8 +24,7 @@ class Ensemble:
     """`members` copies of `model`, each with its own "weights", with shared statistics.
 
     Raises:
-        ValueError: for a number of members that is not a positive integer, or of elites that is not
-            between 1 and that.
+        ValueError: for a number of elites that is not between 1 and that of the members.
     """
 
     model: Trainable

@@ -11,11 +11,7 @@ from hybrid_rl.types import Spec
 
 @part
 class Exact:
-    """The environment's own dynamics; the planning state is the observation.
-
-    Raises:
-        ValueError: for an environment that is not analytic.
-    """
+    """The environment's own dynamics; the planning state is the observation."""
 
     world: Analytic
 

@@ -32,7 +32,7 @@ class Gaussian:
     """A one-step Gaussian model; the planning state is the observation.
 
     Raises:
-        ValueError: for invalid widths, activations or a `predict` that is unknown.
+        ValueError: for invalid widths or activations.
     """
 
     hidden: tuple[int, ...] = (200,)

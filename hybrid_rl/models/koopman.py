@@ -20,11 +20,7 @@ from hybrid_rl.types import Spec
 
 @part
 class Koopman:
-    """A linear model of `features`.
-
-    Raises:
-        ValueError: for a bound that is not positive, or indices below 0.
-    """
+    """A linear model of `features`."""
 
     features: Features
     products: tuple[Natural, ...] = ()  # i of the regressors x_i u; (): linear

@@ -17,11 +17,7 @@ from hybrid_rl.types import Spec
 
 @part
 class LocalLinear:
-    """The environment's dynamics to first order.
-
-    Raises:
-        ValueError: for an environment that is not analytic.
-    """
+    """The environment's dynamics to first order."""
 
     world: Analytic
 

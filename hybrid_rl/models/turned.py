@@ -43,11 +43,7 @@ HEADLESS = "has no heading; choose task=sawyer_push, or model=ensemble"
 
 @part
 class Turned:
-    """`model`, a single one or an ensemble, in the frames of `world`.
-
-    Raises:
-        ValueError: for an environment without headings.
-    """
+    """`model`, a single one or an ensemble, in the frames of `world`."""
 
     model: Trainable
     world: Annotated[TurningEnv, has("heading", HEADLESS)]

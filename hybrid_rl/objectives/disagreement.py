@@ -25,11 +25,7 @@ class EnsembleModel(Model, Protocol):
 
 @part
 class Disagreement:
-    """Expected information about an ensemble of models along a path.
-
-    Raises:
-        ValueError: for a model without members, or noise that is not positive.
-    """
+    """Expected information about an ensemble of models along a path."""
 
     model: Annotated[EnsembleModel, has("disagreement", "needs an ensemble; choose model=ensemble")]
     noise: Positive = 0.1  # sigma, in running standard deviations of the change

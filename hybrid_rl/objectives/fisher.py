@@ -29,8 +29,7 @@ class FisherInformation:
     are drawn at every decision: networks with many weights need no derivative by each of them.
 
     Raises:
-        ValueError: for an unknown criterion or sensitivity, numbers out of range, probes with
-            another criterion than T, or a model without weights.
+        ValueError: for probes with another criterion than T, or a model without weights.
     """
 
     model: Model

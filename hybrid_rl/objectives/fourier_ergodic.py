@@ -28,11 +28,7 @@ class FourierState(NamedTuple):
 
 @part
 class FourierErgodic:
-    """Minus the Fourier ergodic metric of a path in a domain.
-
-    Raises:
-        ValueError: for counts below 1, or a negative barrier.
-    """
+    """Minus the Fourier ergodic metric of a path in a domain."""
 
     target: Target
     domain: Box

@@ -21,11 +21,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @part
 class Information:
-    """Information along a path about the model in `Params`.
-
-    Raises:
-        ValueError: for an unknown criterion, or numbers that are not positive.
-    """
+    """Information along a path about the model in `Params`."""
 
     model: LinearModel
     criterion: Literal["gain", "norm"] = "gain"

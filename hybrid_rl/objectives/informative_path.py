@@ -24,11 +24,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @part
 class InformativePath:
-    """The information, by a target, that a path gathers in a domain.
-
-    Raises:
-        ValueError: for counts, a width, a barrier or shares out of range.
-    """
+    """The information, by a target, that a path gathers in a domain."""
 
     target: Target
     domain: Box

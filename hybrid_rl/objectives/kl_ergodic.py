@@ -35,7 +35,7 @@ class KLErgodic:
     """Minus the KL-ergodic measure of a path in a domain.
 
     Raises:
-        ValueError: for counts, a variance, a floor or a barrier out of range.
+        ValueError: for a number of variances that is neither 1 nor v.
     """
 
     target: Target

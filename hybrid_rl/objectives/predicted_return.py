@@ -24,7 +24,7 @@ class PredictedReturn:
     """The discounted sum of `reward` along a path, plus the critic's value of the last state.
 
     Raises:
-        ValueError: for a critic without a policy or the reverse, or a discount outside (0, 1].
+        ValueError: for a critic without a policy or the reverse.
     """
 
     reward: Reward

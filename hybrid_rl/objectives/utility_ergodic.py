@@ -20,11 +20,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @part
 class UtilityErgodic:
-    """Minus the KL-ergodic measure of states and actions under a critic.
-
-    Raises:
-        ValueError: for sizes, a variance or constants that are not positive.
-    """
+    """Minus the KL-ergodic measure of states and actions under a critic."""
 
     model: Trainable  # its parameters hold "state", statistics of the states
     policy: Policy

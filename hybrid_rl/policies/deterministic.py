@@ -35,7 +35,7 @@ class Deterministic:
     Its parameters are the network's "weights" and, with `normalise`, statistics of "state".
 
     Raises:
-        ValueError: for invalid widths, activations, standard deviations, squashing or saturation.
+        ValueError: for invalid widths or activations.
     """
 
     hidden: tuple[int, ...] = (32, 32)
@@ -125,9 +125,6 @@ class Clones(Deterministic):
     """`members` networks that learn from the same data.
 
     Its "weights" have a first axis [members].
-
-    Raises:
-        ValueError: for fewer than two members, or an unknown `acts`.
     """
 
     members: Several = 5

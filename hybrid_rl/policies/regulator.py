@@ -26,7 +26,7 @@ class Regulator:
     """The regulator of `world` around its equilibrium, by the discrete Riccati equation.
 
     Raises:
-        ValueError: for an environment that is not analytic, or weights that are not positive.
+        ValueError: for weights that are neither one nor one for each coordinate or action.
     """
 
     world: Analytic

@@ -22,12 +22,7 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class KnotsProposal:
-    """Candidates around the warm-started plan, smooth over the horizon.
-
-    Raises:
-        ValueError: for a number of knots or a standard deviation that is not positive, or an
-            unknown order.
-    """
+    """Candidates around the warm-started plan, smooth over the horizon."""
 
     knots: Count = 5  # n
     order: Literal["linear", "cubic"] = "linear"

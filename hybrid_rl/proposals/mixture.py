@@ -22,11 +22,7 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class MixtureProposal:
-    """The first `share` of the K candidates from `first`, the others from `second`.
-
-    Raises:
-        ValueError: for a share outside [0, 1].
-    """
+    """The first `share` of the K candidates from `first`, the others from `second`."""
 
     first: Proposal
     second: Proposal

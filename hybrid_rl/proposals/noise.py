@@ -23,11 +23,7 @@ class NoiseState(NamedTuple):
 
 @part
 class NoiseProposal:
-    """Candidates around the warm-started plan.
-
-    Raises:
-        ValueError: for a standard deviation that is not positive or a correlation outside [0, 1).
-    """
+    """Candidates around the warm-started plan."""
 
     std: Positive = 0.3  # of full actuation
     correlation: Discount = 0.0  # of the noise of successive decisions

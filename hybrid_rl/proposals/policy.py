@@ -16,11 +16,7 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class PolicyProposal:
-    """Candidates from the learned policy.
-
-    Raises:
-        ValueError: for strengths that are not positive, or a share outside [0, 1].
-    """
+    """Candidates from the learned policy."""
 
     policy: Policy
     strengths: tuple[Positive, ...] = (1.0,)  # factors on the actions, one for each candidate

@@ -17,8 +17,7 @@ class Aim:
     """A quantity of `world` at its target.
 
     Raises:
-        ValueError: for an environment without quantities, or one that has no such quantity, or
-            another number of entries.
+        ValueError: for an environment without the quantity, or a target of another size.
     """
 
     world: Measured

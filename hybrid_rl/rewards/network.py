@@ -33,7 +33,7 @@ class RewardNetwork:
     """A reward, and with `ends` the probability that the episode ends.
 
     Raises:
-        ValueError: for invalid widths, activations or counts.
+        ValueError: for invalid widths or activations.
     """
 
     hidden: tuple[int, ...] = (200, 200)

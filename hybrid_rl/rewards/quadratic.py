@@ -19,8 +19,7 @@ class QuadraticReward:
     """Minus the squared distance to the equilibrium, for episodes that do not end.
 
     Raises:
-        ValueError: for an environment that is not analytic, one without an equilibrium if there is
-            a model, or weights below 0.
+        ValueError: for an environment that is not analytic, without a model.
     """
 
     world: Balanced  # an AnalyticEnv, if there is no model

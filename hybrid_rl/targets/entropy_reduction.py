@@ -17,11 +17,7 @@ FLOOR = 1e-12  # [nat]
 
 @part
 class EntropyReduction:
-    """Proportional to the expected reduction of entropy.
-
-    Raises:
-        ValueError: for a belief that cannot measure it.
-    """
+    """Proportional to the expected reduction of entropy."""
 
     belief: Annotated[InformedBelief, has("gain_along", "has no entropy of a measurement")]
 

@@ -18,11 +18,7 @@ FLOOR = 1e-12  # of the information
 
 @part
 class Information:
-    """Proportional to the information of a measurement.
-
-    Raises:
-        ValueError: for a belief that cannot measure it.
-    """
+    """Proportional to the information of a measurement."""
 
     belief: Annotated[InformedBelief, has("information", "has no information of a measurement")]
     wait: bool = False  # uniform until the belief is informed

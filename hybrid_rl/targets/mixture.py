@@ -13,7 +13,7 @@ class Mixture:
     """A mixture of any number of Gaussians, of any dimension.
 
     Raises:
-        ValueError: for lists of different lengths, or numbers that are not positive.
+        ValueError: for lists of different lengths.
     """
 
     means: tuple[tuple[float, ...], ...] = ((0.3, 0.3), (0.7, 0.7))  # [J, v]

@@ -15,11 +15,7 @@ from hybrid_rl.types import Params
 
 @part
 class ModelUncertainty:
-    """Proportional to the exponential of the predictive standard deviation.
-
-    Raises:
-        ValueError: for an environment that is not analytic, or a constant that is not positive.
-    """
+    """Proportional to the exponential of the predictive standard deviation."""
 
     model: Uncertain
     world: Analytic

@@ -25,11 +25,7 @@ class Committee(LearnedPolicy, Protocol):
 
 @part
 class PolicyDisagreement:
-    """Proportional to the variance of the clones' actions.
-
-    Raises:
-        ValueError: for a single policy.
-    """
+    """Proportional to the variance of the clones' actions."""
 
     policy: Annotated[Committee, has("each", "needs policy=clones")]
     floor: Positive = 1e-8  # of the variance

@@ -45,8 +45,7 @@ class PolicyInformation:
     equilibrium values.
 
     Raises:
-        ValueError: for an unknown criterion, numbers out of range, or a domain in a world without
-            equilibrium.
+        ValueError: for a domain in a world without equilibrium.
     """
 
     policy: Annotated[UnsquashedPolicy, has("unsquashed", "needs policy=deterministic")]

@@ -19,11 +19,7 @@ from hybrid_rl.types import Params
 
 @part
 class PolicyResidual:
-    """Proportional to the squared difference to a kernel regression of the labels.
-
-    Raises:
-        ValueError: for a bandwidth or a floor that is not positive.
-    """
+    """Proportional to the squared difference to a kernel regression of the labels."""
 
     policy: Policy
     bandwidth: Positive = 0.5  # h, in standard deviations of the first demonstration

@@ -9,11 +9,7 @@ from hybrid_rl.types import Params
 
 @part
 class UpperConfidenceBound:
-    """Proportional to the exponential of the upper confidence bound.
-
-    Raises:
-        ValueError: for constants that are not positive.
-    """
+    """Proportional to the exponential of the upper confidence bound."""
 
     belief: Belief
     kappa: Positive = 2.0

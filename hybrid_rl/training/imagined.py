@@ -69,9 +69,6 @@ class Imagination:
 
     Source: model-based policy optimisation (Janner et al. 2019) in models that no longer learn; the
     doubt is that of `controllers.gradient`.
-
-    Raises:
-        ValueError: for counts or a doubt out of range.
     """
 
     learner: Continuing

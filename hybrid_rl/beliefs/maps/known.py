@@ -35,7 +35,7 @@ class KnownMap:
     """The map of a world whose objects are known.
 
     Raises:
-        ValueError: for a world without a distance to its objects, or numbers out of range.
+        ValueError: for a `low` that is not between 0 and `high`.
     """
 
     world: Annotated[ContactEnv, has("distance", "needs contacts")]

@@ -63,8 +63,7 @@ class PoseParticles:
     A full memory takes no more measurements (`belief/full` is 1).
 
     Raises:
-        ValueError: for numbers out of range, an unknown kind or measure, or a domain that is no
-            plane.
+        ValueError: for a domain that is no plane.
     """
 
     map: ContactMap

@@ -72,8 +72,7 @@ class ModelLearner:
     """Gradient steps on a model and, unless it is None, a reward.
 
     Raises:
-        ValueError: for a model without weights, a rate, a discount or a share out of range, or
-            elites without held-out decisions.
+        ValueError: for elites without held-out decisions, or a discounted reward that sees x'.
     """
 
     model: Annotated[
