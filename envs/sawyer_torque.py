@@ -49,7 +49,7 @@ class SawyerTorque:
     """Sawyer with torques as actions; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
-    damping: Literal["none", "maker"] = "none"  # of the joints: none | maker
+    damping: Literal["none", "maker"] = "none"  # of the joints
     payload: NotNegative = 0.0  # [kg] added to the rod
     learn: Natural = 2000  # decisions before the reference leaves the neutral pose
     rounds: Count = 2  # of the path

@@ -35,9 +35,7 @@ class StackController:
     base: tuple[float, float] = PandaStack.base  # [m] its position, unless it is observed
     speed: float = PandaStack.speed  # [m/s] at a = 1
     grip: Literal["near", "action"] = PandaStack.grip
-    observation: Literal["thesis", "relative", "stage"] = (
-        PandaStack.observation
-    )  # thesis, relative or stage
+    observation: Literal["thesis", "relative", "stage"] = PandaStack.observation
 
     def init(self, spec: Spec) -> tuple[()]:
         """No state."""

@@ -44,9 +44,7 @@ class RegulatorLearner:
     model: Model
     policy: GoalPolicy
     world: Balanced
-    state_weights: tuple[NotNegative, ...] = (
-        1.0,
-    )  # diagonal of Q: of the first entries of x; 1: of all
+    state_weights: tuple[NotNegative, ...] = (1.0,)  # diagonal of Q: one for all, or the first of x
     action_weights: tuple[Positive, ...] = (1.0,)  # diagonal of R: one for all actions, or one each
     horizon: Count = 128  # T [decisions]
     feedforward: bool = True  # false: hold = 0

@@ -13,18 +13,16 @@ which does not enlarge the noise of small changes (Barkley and Fridovich-Keil 20
 Lunch). The loss is the same likelihood in the same units, so the two can be compared by it.
 """
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.fields import FieldError, part
+from hybrid_rl.fields import part
 from hybrid_rl.networks import MLP, check
 from hybrid_rl.types import Spec
-
-PREDICT = ("change", "state")
 
 
 @part
@@ -43,15 +41,13 @@ class Gaussian:
     state_noise: bool = False  # s(x) instead of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
     layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
-    predict: str = "change"  # or "state"
+    predict: Literal["change", "state"] = "change"
 
     members: ClassVar[int] = 1  # an ensemble has more
 
     def __post_init__(self) -> None:
         """Check the network."""
         check("model", self.hidden, self.activation, self.layer_norm)
-        if self.predict not in PREDICT:
-            raise FieldError(self, "predict", f"choose {' or '.join(PREDICT)}")
 
     def _net(self, out: int) -> MLP:
         return MLP(self.hidden, out, self.activation, self.layer_norm)

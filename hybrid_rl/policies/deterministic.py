@@ -13,19 +13,16 @@ so the error counts on one side only (a censored regression, as in Tobin 1958, b
 the mean of their mu (an ensemble: Dietterich 2000, without bootstrap samples).
 """
 
-from typing import Any
+from typing import Any, Literal
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.fields import FieldError, Inside, Positive, Several, part
+from hybrid_rl.fields import Inside, Positive, Several, part
 from hybrid_rl.networks import ACTIVATIONS, MLP, Perceptron, check, perceptron, side_by_side
 from hybrid_rl.types import Spec
-
-SQUASHES = ("tanh", "clip")
-ACTS = ("first", "mean")
 
 
 @part
@@ -41,15 +38,13 @@ class Deterministic:
     hidden: tuple[int, ...] = (32, 32)
     activation: str = "relu"
     sigma: Positive = 1.0  # of z
-    squash: str = "tanh"  # or clip
+    squash: Literal["tanh", "clip"] = "tanh"
     normalise: bool = False
     saturation: Inside | None = None  # [u] actions of this size or more count as clipped
 
     def __post_init__(self) -> None:
         """Check the network."""
         check("policy", self.hidden, self.activation)
-        if self.squash not in SQUASHES:
-            raise FieldError(self, "squash", f"choose {' or '.join(SQUASHES)}")
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters. The key is consumed."""
@@ -128,13 +123,7 @@ class Clones(Deterministic):
     """
 
     members: Several = 5
-    acts: str = "first"  # or mean: mu is the mean over the members
-
-    def __post_init__(self) -> None:
-        """Check the network."""
-        super().__post_init__()
-        if self.acts not in ACTS:
-            raise FieldError(self, "acts", f"choose {' or '.join(ACTS)}")
+    acts: Literal["first", "mean"] = "first"  # mean: mu is the mean over the members
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters, different for each member. The key is consumed."""

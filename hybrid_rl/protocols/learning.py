@@ -17,9 +17,7 @@ class Demonstrations(Protocol):
 class _Learner(Protocol):
     """What both kinds of learners have."""
 
-    owns: tuple[
-        str, ...
-    ]  # fields of `Params` that it learns; an owner of "model" has it as `model`
+    owns: tuple[str, ...]  # fields of `Params` that it learns; that of "model" has a field `model`
 
     def init(self, key: Array, spec: Spec) -> PyTree:
         """Initial state: parameters, optimisers, targets."""

@@ -88,5 +88,5 @@ def test_the_state_is_predicted_in_its_own_units() -> None:
 
 def test_a_prediction_that_is_unknown_is_refused() -> None:
     """One line that names the field."""
-    with pytest.raises(ValueError, match=r"predict=both: choose change or state"):
+    with pytest.raises(ValueError, match=r"predict=both: choose one of change, state"):
         Gaussian(predict="both")
