@@ -5,17 +5,17 @@
 Powers grow fast: scale coordinates to about 1. Source: thesis sections 7.1, 7.3 and 7.5.
 """
 
-from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.lifting import check_coordinates, select
+from hybrid_rl.fields import part
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class Monomials:
     """Coordinates of the observation, a constant, and products of the coordinates.
 
@@ -30,14 +30,10 @@ class Monomials:
     terms: tuple[tuple[int, ...], ...] = ()  # indices into the coordinates; repeated for powers
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        for name in ("scale", "centre"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
-        object.__setattr__(self, "terms", tuple(tuple(term) for term in self.terms))
+        """Check the lists."""
         if not all(len(term) >= 1 and min(term) >= 0 for term in self.terms):
             raise ValueError("features.terms: each must be a list of indices, 0 or more")
         if self.coordinates is not None:
-            object.__setattr__(self, "coordinates", tuple(self.coordinates))
             self._check(len(self.coordinates))
 
     def _check(self, size: int) -> None:

@@ -11,7 +11,6 @@ demonstrations for behaviour cloning, the batches for SAC and DDPG.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import jax
@@ -21,12 +20,13 @@ from jax import Array
 from hybrid_rl.core import statistics
 from hybrid_rl.core.squashing import log_density
 from hybrid_rl.data import archive
+from hybrid_rl.fields import FieldError, part
 from hybrid_rl.networks import MLP, Perceptron, check, outputs, perceptron
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import Spec
 
 
-@dataclass(frozen=True)
+@part
 class TanhGaussian:
     """A stochastic policy on [-1, 1]^m.
 
@@ -42,12 +42,11 @@ class TanhGaussian:
     normalise: bool = False
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "hidden", tuple(self.hidden))
+        """Check the networks and the bounds."""
         check("policy", self.hidden, self.activation)
         check("policy", self.hidden, self.log_std_activation or self.activation)
         if self.log_std_min >= self.log_std_max:
-            raise ValueError(f"policy.log_std_min={self.log_std_min}: must lie below log_std_max")
+            raise FieldError(self, "log_std_min", "must lie below log_std_max")
 
     def _net(self, out: int, activation: str | None = None) -> MLP:
         return MLP(self.hidden, out, activation or self.activation)
@@ -122,7 +121,7 @@ class TanhGaussian:
         return perceptron(net, state, spec.n, spec.act, self.activation, "tanh")
 
 
-@dataclass(frozen=True)
+@part
 class StartedGaussian(TanhGaussian):
     """A policy that learns and begins with the parameters in `file`, of `task` in `world`.
 
@@ -139,7 +138,7 @@ class StartedGaussian(TanhGaussian):
         """Check the fields and the file."""
         super().__post_init__()
         if self.world is None:
-            raise ValueError("policy.world=None: must be the environment")
+            raise FieldError(self, "world", "must be the environment")
         self.init(jax.random.key(0), self.world.spec)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
