@@ -1,13 +1,14 @@
 """One controller after the other within an episode or a run: warm up, explore, then track."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.fields import FieldError, Natural, part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
@@ -19,7 +20,7 @@ class StagesState(NamedTuple):
     count: Array  # [] decisions of the episode so far
 
 
-@dataclass(frozen=True)
+@part
 class StagesController:
     """Each of `stages` acts for its number of `decisions`; the last one acts to the end.
 
@@ -27,22 +28,18 @@ class StagesController:
     acting stage lacks are NaN.
 
     Raises:
-        ValueError: unless every stage but the last has a number of decisions, 0 or more.
+        ValueError: unless every stage but the last has a number of decisions.
     """
 
     stages: Mapping[str, Controller]  # in order
-    decisions: tuple[int, ...] = ()  # of every stage but the last
+    decisions: tuple[Natural, ...] = ()  # of every stage but the last
     of_run: bool = False  # counts decisions of the run; without a run, the last stage acts
 
     def __post_init__(self) -> None:
-        """Check the fields."""
-        object.__setattr__(self, "decisions", tuple(self.decisions))
-        counts = len(self.stages) - 1
-        if len(self.decisions) != counts or not all(n >= 0 for n in self.decisions):
-            raise ValueError(
-                f"stages.decisions={list(self.decisions)}: needs {counts} whole numbers, 0 or "
-                "more, one for each stage but the last"
-            )
+        """Check the number of stages."""
+        if len(self.decisions) != (count := len(self.stages) - 1):
+            words = f"needs a number for each stage but the last, here {count}"
+            raise FieldError(self, "decisions", words)
 
     @property
     def _acting(self) -> tuple[list[str], list[int]]:

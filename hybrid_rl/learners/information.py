@@ -4,8 +4,8 @@
 
 N is the number of decisions before the present ones. The mean is a running one over batches, since
 theta changes; its oldest batches, about 1 / `rate` of them, also had an older unit of the change,
-the model's running deviation. I is kept in `belief`; a method has one. The model is fitted to
-one-step transitions, so F is the derivative by step (core/fisher.py).
+the model's running deviation. The model is fitted to one-step transitions, so F is the derivative
+by step (core/fisher.py).
 """
 
 from typing import Any, ClassVar
@@ -65,7 +65,7 @@ class InformationLearner:
         return InformationState(jnp.zeros(size), jnp.zeros(()), jnp.zeros(()))
 
     def params(self, state: InformationState) -> dict[str, Any]:
-        """The information, as the belief."""
+        """The information."""
         return {"information": state}
 
     def update(

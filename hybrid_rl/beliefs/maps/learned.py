@@ -7,7 +7,6 @@ outside of the box: f changes more slowly than p, so that slopes stay smooth. Th
     f [G, G], first index along x   low, high [2] [m] of the box   slope
 """
 
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.data import archive
+from hybrid_rl.fields import FieldError, part
 
 FIELDS = ("f", "low", "high", "slope")
 WRITE = "`python -m hybrid_rl.figures study=contact_maps view=map` writes one"
@@ -32,7 +32,7 @@ def save(file: Path | str, f: Any, low: Any, high: Any, slope: float) -> None:
         np.savez_compressed(out, **arrays)
 
 
-@dataclass(frozen=True)
+@part
 class LearnedMap:
     """The map in `file`, which must cover the box.
 
@@ -48,11 +48,9 @@ class LearnedMap:
     high: float = 0.96  # hi
 
     def __post_init__(self) -> None:
-        """Check the fields and the file."""
-        for name in ("box_low", "box_high"):
-            object.__setattr__(self, name, tuple(getattr(self, name)))
+        """Check the chances and the file."""
         if not 0 < self.low < self.high < 1:
-            raise ValueError(f"map.low={self.low}: must lie between 0 and map.high={self.high}")
+            raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
         arrays, prefix = _load(self.file), f"map.file={self.file}:"
         box = [*self.box_low, *self.box_high]
         side = 1e-5 * float(np.min(np.subtract(self.box_high, self.box_low)))
