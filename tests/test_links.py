@@ -30,6 +30,12 @@ def test_links_exist(page):
     assert not missing
 
 
+def test_every_picture_is_on_a_page():
+    texts = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    pictures = [p.name for end in ("png", "gif") for p in (ROOT / "docs").rglob(f"*.{end}")]
+    assert not [name for name in pictures if f"/{name})" not in texts and f"({name})" not in texts]
+
+
 def malformed(text):
     """External links of a text that are not https://HOST.DOMAIN, or end with punctuation."""
     links = EXTERNAL.findall(text)
