@@ -226,7 +226,7 @@ def search_path(config_dir: str | Path) -> str:
     return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
 
 
-def refuse_new_keys(overrides: Sequence[str], more: Sequence[str] = ()) -> None:
+def refuse_new_keys(overrides: Sequence[str], more: Sequence[str]) -> None:
     """Raise UsageError for `+key=value` if conf/ has no such key, as nothing would read it.
 
     more: overrides of Hydra's own keys, of which the search path matters here.

@@ -8,9 +8,7 @@ import pytest
 from scripts.pages import __main__ as command
 from scripts.pages import marks, values
 
-LIBRARY = [
-    path for path in command.pages() if path.parent != values.RESULTS
-]  # thesis/tests: others
+LIBRARY = [path for path in command.pages() if path.parent != values.RESULTS]  # others: thesis
 LINE = {
     "label": "a",
     "task": "hop",

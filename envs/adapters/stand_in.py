@@ -92,11 +92,8 @@ class StandIn:
         while True:
             try:
                 data = self._socket.recv(4096)
-            except (
-                BlockingIOError,
-                ConnectionRefusedError,
-            ):  # nothing has arrived, or no stand-in runs
-                return
+            except (BlockingIOError, ConnectionRefusedError):
+                return  # nothing has arrived, or no stand-in runs
             if len(data) != OBSERVED.size + 4 * self.obs:
                 continue  # cut
             episode, k, stamp, _ = OBSERVED.unpack_from(data)

@@ -24,12 +24,7 @@ from hybrid_rl.envs.mujoco import scenery
 
 BACKENDS = ("egl", "osmesa")
 SHADOWS = 1024  # [pixels] of the shadow map; 4096 takes three times as long in software
-RASTERISERS = (
-    "llvmpipe",
-    "softpipe",
-    "swrast",
-    "software",
-)  # names of Mesa's drivers without a card
+RASTERISERS = ("llvmpipe", "softpipe", "swrast", "software")  # Mesa's drivers without a card
 GUARANTEED = 1024  # [pixels] per side in any OpenGL; larger sizes are tested first
 TRIAL = """
 import mujoco

@@ -24,8 +24,6 @@ ACTIVATIONS = {
     "tanh": jnp.tanh,
     "elu": nn.elu,
 }
-
-
 LAYER_NORMS = (False, True, "shift")  # shift: without a learned scale
 SPREAD = nn.initializers.variance_scaling(1 / 3, "fan_in", "uniform")
 

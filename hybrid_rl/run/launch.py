@@ -36,8 +36,6 @@ ONLY = "with resume only total_steps and precision can be changed"
 SLOWER = "precision=bf16: slower than float32 on a CPU (0.5 to 0.7 of its speed); it is for GPUs"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
-
-
 CONSOLE = Output()
 
 
@@ -220,10 +218,8 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
 
 def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
-    now = written(config)
-    then = checkpoint.meta(run_dir / "checkpoints").get("settings") or {
-        **now
-    }  # of an older version
+    now = written(config)  # an older version wrote no settings
+    then = checkpoint.meta(run_dir / "checkpoints").get("settings") or dict(now)
     for key in OF_A_SESSION:
         now.pop(key, None)
         then.pop(key, None)

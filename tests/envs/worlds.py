@@ -34,11 +34,7 @@ from hybrid_rl.envs.sprk import Sprk
 from hybrid_rl.envs.walker2d import Walker2d
 
 DECISIONS = 20
-STATE = {
-    "two_link": 4,
-    "sprk_sand": 4,
-    "sawyer_torque": 14,
-}  # entries of the observation before a reference
+STATE = {"two_link": 4, "sprk_sand": 4, "sawyer_torque": 14}  # entries before a reference
 EULER = ("lander",)  # an action moves velocities now, and positions one decision later
 ANALYTIC = {
     "no_dynamics": NoDynamics,

@@ -101,9 +101,7 @@ def test_frames_have_the_errors_of_the_log(
         got[name] = json.loads((tmp_path / f"{name}.json").read_text())
     (pose,) = contacts.trials(str(contact_runs["pose"]), "frames")
     for name, errors in zip(("position", "angle"), contacts.errors(pose), strict=True):
-        assert got["pose"][name] == pytest.approx(
-            errors[SEED, [4, 11]], rel=1e-3
-        )  # JSON is rounded
+        assert got["pose"][name] == pytest.approx(errors[SEED, [4, 11]], rel=1e-3)  # rounded
     (run,) = contacts.trials(str(contact_runs["map"]), "frames")
     measured = contacts.quality(run, contacts.decisions(run, [5, 12]), [5, 12])
     for name, values in measured.items():
