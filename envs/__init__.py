@@ -1,6 +1,6 @@
 """Environments: one file a task; `analytic` in closed form, the others simulated by `mujoco`.
 
-`check(env)` checks one of your own, in half a second.
+`check(env)` checks one of your own, in a second.
 """
 
 from typing import TYPE_CHECKING, Any

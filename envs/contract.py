@@ -119,7 +119,7 @@ class _World:
 
 
 def _check_members(world: _World) -> None:
-    """Raise UsageError if `spec`, `reset` or `step` is missing or has another form."""
+    """Raise WorldError if `spec`, `reset` or `step` is missing or has another form."""
     env, at = world.env, world.at()
     if any(kind.__module__.split(".")[0] in ("gym", "gymnasium") for kind in type(env).__mro__):
         inner = _World(env.unwrapped)
@@ -153,7 +153,7 @@ def _check_members(world: _World) -> None:
 
 
 def _check_state(world: _World, method: str, state: Any) -> None:
-    """Raise UsageError unless `state`, which `method` returned, is an EnvState of the spec."""
+    """Raise WorldError unless `state`, which `method` returned, is an EnvState of the spec."""
     at, o = world.at(method), world.env.spec.obs
     if not isinstance(state, EnvState):
         got = "None" if state is None else type(state).__name__
@@ -183,7 +183,7 @@ def _check_state(world: _World, method: str, state: Any) -> None:
 
 
 def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
-    """Raise UsageError if `step` and `reset` give states of different form.
+    """Raise WorldError if `step` and `reset` give states of different form.
 
     `info` may lack entries in `step`, as episodes keep them.
     """
@@ -240,7 +240,7 @@ def _physics(program: Jaxpr, once: bool = True) -> Iterator[tuple[str, int, bool
 def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
     """Make random decisions; notes about their episodes.
 
-    reset, step: traced. Raises UsageError if a number is not finite, or an index out of range.
+    reset, step: traced. Raises WorldError if a number is not finite, or an index out of range.
     """
     resetting, stepping = (each.lower().compile() for each in (reset, step))
     rng, keys = np.random.default_rng(0), jax.random.split(jax.random.key(0), decisions + 1)
