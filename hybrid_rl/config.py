@@ -264,8 +264,8 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
 
 def _instantiate(node: Any, where: str) -> Any:
     """The part at the key `where`."""
-    plain = isinstance(node, (DictConfig, ListConfig))
-    return built(OmegaConf.to_container(node, resolve=True) if plain else node, where=where)
+    values = OmegaConf.to_container(node, resolve=True) if OmegaConf.is_config(node) else node
+    return built(values, where=where)
 
 
 @contextmanager

@@ -1,20 +1,18 @@
 """Progress of jobs that Submitit runs in other processes, on this machine or by Slurm."""
 
 import math
-import os
 import shutil
 import signal
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 from hydra.core.utils import JobReturn, JobStatus
 
 from hybrid_rl.cli import interrupt
 from hybrid_rl.composition import SLURM
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, relative
 
 Result = dict[str, Any]  # of a job: code, line
 POLL = 0.5  # [s] between two checks of the jobs
@@ -93,7 +91,7 @@ def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.i
                 continue
             if number not in running and job.paths.stdout.exists():
                 running.add(number)
-                print(f"job {number} begins: log {_relative(job.paths.stdout)}", flush=True)
+                print(f"job {number} begins: log {relative(job.paths.stdout)}", flush=True)
             if job.done():
                 results[number] = _result(job)
                 print(f"job {number} ends: {results[number]['line']}", flush=True)
@@ -106,9 +104,4 @@ def _result(job: Any) -> Result:
         return job.results()[0].return_value
     except Exception as error:
         line = str(error).strip().splitlines()[0]
-        return {"code": 1, "line": f"lost: {line}; see {_relative(job.paths.stderr)}"}
-
-
-def _relative(path: Path) -> str:
-    """A path from the working directory on."""
-    return os.path.relpath(path)
+        return {"code": 1, "line": f"lost: {line}; see {relative(job.paths.stderr)}"}

@@ -3,8 +3,8 @@
     s~ = R(a)' (s - t) + c,   s = R(a) (s~ - c) + t
 
 map positions s to the frame of a map whose middle is c, and back. Three moves keep a posterior
-invariant if they are accepted by `log_ratio` and the ratio of posterior densities; L is the
-shorter side of the box of t:
+invariant if they are accepted by the ratio that `move` returns and that of posterior densities; L
+is the shorter side of the box of t:
 
     walk  t' = t + d L e,  a' = a + 4 d e_3,  d log-uniform in [0.003, 0.3]
     turn  about a contact q: t' = q + R(e) (t - q), a' = a + e; the contact stays one

@@ -102,9 +102,4 @@ def _one(
     f: Callable[..., Any], loop: Loop, controller: Controller, mode: str, numbers: Any, *given: Any
 ) -> Any:
     """`begin` or `advance` of one learner with numbers [] of the loop's axis."""
-    return f(loop.agent.episode, loop.axis.put(controller, mode_path(mode), numbers), *given)
-
-
-def mode_path(mode: str) -> str:
-    """Where an axis has the numbers of the controller of a mode."""
-    return f"controllers.{mode}"
+    return f(loop.agent.episode, loop.axis.put(controller, f"controllers.{mode}", numbers), *given)
