@@ -67,9 +67,8 @@ def measured(trained: Trained, controller: Any, episodes: int) -> dict[str, Any]
 
     def one(params: Any, keys: Array) -> dict[str, Array]:
         carry = begin(trained.episode, controller, keys)
-        env = advance(trained.episode, controller, params, carry, jnp.int32(trained.episode.steps))[
-            0
-        ]
+        steps = jnp.int32(trained.episode.steps)
+        env, *_ = advance(trained.episode, controller, params, carry, steps)
         return {**scores(env), "decisions": env.info["decision"]}
 
     got = every(trained, episodes, one)

@@ -41,7 +41,7 @@ class Gaussian:
     state_noise: bool = False  # s(x) instead of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
     layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
-    predict: Literal["change", "state"] = "change"
+    predict: Literal["change", "state"] = "change"  # what the network predicts
 
     members: ClassVar[int] = 1  # an ensemble has more
 

@@ -33,8 +33,8 @@ class FisherInformation:
     """
 
     model: Model
-    criterion: Literal["A_step", "A", "D", "T", "full"] = "D"
-    sensitivity: Literal["step", "path"] = "step"
+    criterion: Literal["A_step", "A", "D", "T", "full"] = "D"  # what is maximised
+    sensitivity: Literal["step", "path"] = "step"  # of one step, or of the path
     sigma: Positive | None = 0.1  # of the change, in running deviations; None: the model's
     floor: Positive = 0.01  # of the diagonal [1/theta^2]
     past: bool = True  # count the data so far, if a learner does

@@ -38,7 +38,7 @@ class Deterministic:
     hidden: tuple[int, ...] = (32, 32)
     activation: str = "relu"
     sigma: Positive = 1.0  # of z
-    squash: Literal["tanh", "clip"] = "tanh"
+    squash: Literal["tanh", "clip"] = "tanh"  # of z
     normalise: bool = False
     saturation: Inside | None = None  # [u] actions of this size or more count as clipped
 

@@ -49,7 +49,7 @@ class PolicyInformation:
     policy: Annotated[UnsquashedPolicy, has("unsquashed", "needs policy=deterministic")]
     world: BalancedEnv | None = None  # of the equilibrium
     domain: Box | None = None
-    criterion: Literal["trace", "inverse", "gain"] = "gain"
+    criterion: Literal["trace", "inverse", "gain"] = "gain"  # c
     sigma: Positive = 1.0  # of mu
     floor: Positive = 0.01  # [1/weight^2]
 

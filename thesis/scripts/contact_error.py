@@ -119,9 +119,8 @@ def learned(case: Case, data: Episodes, key: Array) -> tuple[Any, Any]:
     def step(state: Any, key: Array) -> tuple[Any, None]:
         i = jax.random.randint(key, (model.members * BATCH,), 0, len(x))
         none = jnp.zeros(len(i))
-        return learner.update(state, Params(), Batch(x[i], u[i], none, none, none, after[i]), key)[
-            0
-        ], None
+        batch = Batch(x[i], u[i], none, none, none, after[i])
+        return learner.update(state, Params(), batch, key)[0], None
 
     keys = jax.random.split(drawing, STEPS)
     state = jax.jit(lambda s: jax.lax.scan(step, s, keys)[0])(learner.init(starting, env.spec))

@@ -72,7 +72,7 @@ class PoseParticles:
     capacity: Count = 400  # C
     moves: Count = 4  # Metropolis steps after a resampling
     every: Count = 10  # measurements between two looks at the effective number
-    kind: Literal["metropolis", "local", "manifold", "jitter"] = "metropolis"
+    kind: Literal["metropolis", "local", "manifold", "jitter"] = "metropolis"  # see above
     trust: Positive = 1.0  # power of the likelihood
     measure: Literal["trace", "det", "mutual"] = "trace"
     subset: Count = 64  # particles in the information
