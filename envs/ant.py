@@ -107,10 +107,6 @@ class Ant(Body):
         """MJCF text of the scene for rendering."""
         return mjcf.text("ant.xml")
 
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [15] for rendering."""
-        return state.data.qpos
-
 
 def _state(data: PhysicsState, reward: Array, terminated: Array, speed: Array) -> EnvState:
     obs = jnp.concatenate((data.qpos[2:], data.qvel))

@@ -69,10 +69,6 @@ class Cartpole(Body):
         """MJCF text of the scene for rendering."""
         return mjcf.text(ASSET)
 
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [2] for rendering."""
-        return state.data.qpos
-
 
 def _dm_control(data: PhysicsState, action: Array) -> Array:
     """Reward [] of the DeepMind Control Suite."""

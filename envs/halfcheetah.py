@@ -77,10 +77,6 @@ class HalfCheetah(Body):
         """MJCF text of the scene for rendering."""
         return mjcf.text("halfcheetah.xml")
 
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [9] for rendering."""
-        return state.data.qpos
-
 
 def _kneels(body: Physics, data: PhysicsState) -> Array:
     """Whether [] the lowest point of any shin or thigh is below the floor."""

@@ -97,7 +97,3 @@ class Humanoid(Body):
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text("humanoid.xml")
-
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [24] for rendering."""
-        return state.data.qpos

@@ -97,7 +97,3 @@ class PlanarLegs(Body):
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""
         return mjcf.text(self.asset)
-
-    def pose(self, state: EnvState) -> Array:
-        """Joint positions qpos [nq] for rendering."""
-        return state.data.qpos
