@@ -9,7 +9,7 @@ states and nothing is trained, but for `imagined`, whose policy goes on learning
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -31,6 +31,7 @@ from hybrid_rl.proposals.policy import PolicyProposal
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
 from hybrid_rl.types import Params
+from hybrid_rl.view.subject import exchanged
 from scripts.seeds import Row, every, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
@@ -106,18 +107,6 @@ class Watched:
         return u, (inner, state[1] + now), metrics
 
 
-def swapped(part: Any, old: Any, new: Any) -> Any:
-    """`part` with `new` in place of every part that equals `old`, at any depth."""
-    if part == old:
-        return new
-    if not is_dataclass(part) or isinstance(part, type):
-        return part
-    inner = {each.name: getattr(part, each.name) for each in fields(part)}
-    changed = {name: swapped(value, old, new) for name, value in inner.items()}
-    changed = {name: value for name, value in changed.items() if value is not inner[name]}
-    return replace(part, **changed) if changed else part
-
-
 def rows(trained: Trained) -> dict[str, Any]:
     """Name -> controller, for the goal of `trained`."""
     both: Any = trained.controllers["full"]
@@ -163,8 +152,8 @@ def measured(
     def one(params: Any, keys: Array) -> Array:
         def on(index: Array, params: Any) -> Array:
             goal = OneOf(known, index)
-            episode = replace(trained.episode, reward=goal)
-            acts = swapped(controller, known[0], goal)
+            episode = exchanged(trained.episode, known[0], goal)
+            acts = exchanged(controller, known[0], goal)
             env, control, _ = advance(
                 episode, acts, params, begin(episode, acts, keys), jnp.int32(episode.steps)
             )
@@ -213,7 +202,7 @@ def imagined(run: Trained, names: list[str], goals: list[Any]) -> tuple[Params, 
 
     def each(params: Params, key: Array) -> Any:
         def on(index: Array) -> Any:
-            learning = swapped(before, known[0], OneOf(known, index))
+            learning = exchanged(before, known[0], OneOf(known, index))
             return learning.learned(after.episode, params, key)
 
         return jax.vmap(on)(jnp.arange(len(known)))
@@ -235,10 +224,10 @@ def in_another(trained: Trained, goals: list[Any], change: str) -> tuple[Trained
     if not hasattr(old, key):
         raise UsageError(f"env={change}: the environment has no {key}")
     new = replace(old, **{key: json.loads(text)})
-    there = {name: swapped(c, old, new) for name, c in trained.controllers.items()}
-    episode = swapped(trained.episode, old, new)
+    there = {name: exchanged(c, old, new) for name, c in trained.controllers.items()}
+    episode = exchanged(trained.episode, old, new)
     return replace(trained, episode=episode, controllers=there), [
-        swapped(goal, old, new) for goal in goals
+        exchanged(goal, old, new) for goal in goals
     ]
 
 

@@ -14,6 +14,7 @@ from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.goals import retargeted
 from hybrid_rl.trained import Trained, load, read
+from scripts import new_goals
 
 pytestmark = pytest.mark.turns(2)
 
@@ -47,6 +48,18 @@ def test_the_environment_pays_and_the_planner_plans(known: Trained) -> None:
     assert got.shape == (len(goal.seeds), 2)
     assert (got > -20 * (3 + 0.05)).all()
     assert (got < 0).all()
+
+
+def test_several_goals_in_one_program_have_the_returns_of_each(known: Trained) -> None:
+    """scripts.new_goals, whose goal is an argument of its program, beside `evaluate`."""
+    names = ("aim position 0.5", "aim speed 1.0")
+    goals = {name: retargeted(known, new_goals.overrides(name)) for name in names}
+    first = goals[names[0]]
+    rewards = {name: each.episode.reward for name, each in goals.items()}
+    got = new_goals.measured(first, rewards, first.controllers["policy"], 2)
+    for name, each in goals.items():
+        expected = evaluate.evaluate(each, "policy", 2)["return"].mean(1)
+        np.testing.assert_allclose(got[name], expected, rtol=1e-5)
 
 
 def test_another_planner_keeps_the_reward_and_its_critic(known: Trained) -> None:

@@ -117,7 +117,7 @@ def with_goals(whole: Any, episode: Episode, numbers: Mapping[str, Any]) -> Any:
         mine = {key.partition(".")[2]: value for key, value in numbers.items()}
         mine = {key: mine[key] for key in mine if f"{name}.{key}" in numbers}
         if part is not None and mine:
-            whole = _exchanged(whole, part, _put(part, mine))
+            whole = exchanged(whole, part, _put(part, mine))
     return whole
 
 
@@ -129,16 +129,16 @@ def _put(part: Any, values: Mapping[str, Any]) -> Any:
     return part
 
 
-def _exchanged(whole: Any, old: Any, new: Any) -> Any:
-    """`whole`, in which `new` stands wherever `old` stood."""
+def exchanged(whole: Any, old: Any, new: Any) -> Any:
+    """`whole`, in which `new` stands wherever `old` stood; no field is checked again."""
     if isinstance(whole, tuple) and type(whole) is tuple:
-        return tuple(_exchanged(each, old, new) for each in whole)
+        return tuple(exchanged(each, old, new) for each in whole)
     if not is_dataclass(whole) or isinstance(whole, type):
         return whole
     if type(whole) is type(old) and whole == old:
         return new
     each = {field.name: getattr(whole, field.name) for field in fields(whole)}
-    other = {name: _exchanged(value, old, new) for name, value in each.items()}
+    other = {name: exchanged(value, old, new) for name, value in each.items()}
     other = {name: value for name, value in other.items() if value is not each[name]}
     return _put(whole, other) if other else whole
 
