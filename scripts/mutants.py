@@ -71,8 +71,8 @@ MUTANTS = {
     ),
     "a time limit counts as an end": Mutant(
         "hybrid_rl/training/episode.py",
-        "return where(now.terminated, now, after)",
-        "return where(now.terminated | (decision >= self.steps), now, after)",
+        "truncated=(decision >= self.steps) & ~now.terminated,",
+        "terminated=now.terminated | (decision >= self.steps),",
         "tests/training",
     ),
     "fisher information with a wrong exponent": Mutant(
