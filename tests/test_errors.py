@@ -128,7 +128,7 @@ USAGE = [  # overrides of train, words of the line
     ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
     ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),
-    ("policy.hidden=[0]", "policy.hidden=[0]: widths are positive"),
+    ("policy.hidden=[0]", "policy.hidden=[0]: must be a whole number, 1 or more"),
     ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),
     ("eval_modes=[full,both]", "eval_modes=[full,both]: must be a list of full, policy"),
     ("eval_modes=full", "eval_modes=full: must be a list of full, policy, planner"),

@@ -37,7 +37,7 @@ ALLOWED = {
     "parts": {"errors", "fields"},  # judges names, and builds what they name
     "protocols": {"types", "fields", "protocols"},
     "core": {"types", "fields", "protocols", "core"},
-    "networks": {"types", "protocols", "core", "networks"},
+    "networks": {"types", "fields", "protocols", "core", "networks"},
     "envs": {"types", "fields", "protocols", "errors", "envs"},
     "training": {"errors", *SHARED, "envs", "data", "training"},
     "archive": {"types", "protocols"},

@@ -18,29 +18,21 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, NotNegative, part
-from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
+from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, ensemble_apply, ensemble_init
 from hybrid_rl.types import Spec
 
 
 @part
 class EnsembleQ:
-    """`members` independent action-value networks.
+    """`members` independent action-value networks."""
 
-    Raises:
-        ValueError: for invalid widths or activations.
-    """
-
-    hidden: tuple[int, ...] = (256, 256)
-    activation: str = "relu"
+    hidden: Widths = (256, 256)
+    activation: Activation = "relu"
     members: Count = 2
-    layer_norm: bool | str = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
+    layer_norm: LayerNorm = False  # keeps many updates per decision stable (Hiraoka et al. 2022)
     pessimism: NotNegative | None = None  # [std of the members]; None: their minimum
     normalise: bool = False
     scale: bool = False
-
-    def __post_init__(self) -> None:
-        """Check the network."""
-        check("critic", self.hidden, self.activation, self.layer_norm)
 
     def _net(self) -> MLP:
         return MLP(self.hidden, 1, self.activation, self.layer_norm, zero=self.scale)

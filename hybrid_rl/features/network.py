@@ -11,27 +11,19 @@ from jax import Array
 
 from hybrid_rl.core.lifting import check_coordinates, select
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import MLP, check, precision
+from hybrid_rl.networks import MLP, Activation, Widths, precision
 from hybrid_rl.types import Spec
 
 
 @part
 class Network:
-    """Coordinates of the observation, and `size` outputs of a network.
-
-    Raises:
-        ValueError: for invalid widths or activations.
-    """
+    """Coordinates of the observation, and `size` outputs of a network."""
 
     coordinates: tuple[int, ...] | None = None  # of the observation; None: all
     size: Count = 40  # outputs of the network
-    hidden: tuple[int, ...] = (20,)
-    activation: str = "tanh"
+    hidden: Widths = (20,)
+    activation: Activation = "tanh"
     include_state: bool = True  # false: z = net(y), whose trivial solution is z = 0
-
-    def __post_init__(self) -> None:
-        """Check the network."""
-        check("features", self.hidden, self.activation)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial weights. The key is consumed.

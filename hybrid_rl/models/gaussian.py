@@ -21,33 +21,25 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import part
-from hybrid_rl.networks import MLP, check
+from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths
 from hybrid_rl.types import Spec
 
 
 @part
 class Gaussian:
-    """A one-step Gaussian model; the planning state is the observation.
+    """A one-step Gaussian model; the planning state is the observation."""
 
-    Raises:
-        ValueError: for invalid widths or activations.
-    """
-
-    hidden: tuple[int, ...] = (200,)
-    activation: str = "relu"
+    hidden: Widths = (200,)
+    activation: Activation = "relu"
     normalise: bool = True
     log_std_min: float = -10.0
     log_std_max: float = 2.0
     state_noise: bool = False  # s(x) instead of a constant
     inputs: tuple[int, ...] | None = None  # of x; None: all
-    layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
+    layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
     predict: Literal["change", "state"] = "change"  # what the network predicts
 
     members: ClassVar[int] = 1  # an ensemble has more
-
-    def __post_init__(self) -> None:
-        """Check the network."""
-        check("model", self.hidden, self.activation, self.layer_norm)
 
     def _net(self, out: int) -> MLP:
         return MLP(self.hidden, out, self.activation, self.layer_norm)

@@ -6,7 +6,7 @@ have a third of the variance of LeCun's. `precision` says in which numbers they 
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -15,6 +15,7 @@ from flax import linen as nn
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.fields import Count, Must
 from hybrid_rl.networks import precision
 
 ACTIVATIONS = {
@@ -25,6 +26,9 @@ ACTIVATIONS = {
     "elu": nn.elu,
 }
 LAYER_NORMS = (False, True, "shift")  # shift: without a learned scale
+Widths = tuple[Count, ...]  # types of a part's fields
+Activation = Annotated[str, Must(lambda a: a in ACTIVATIONS, f"be one of {', '.join(ACTIVATIONS)}")]
+LayerNorm = Annotated[bool | str, Must(lambda a: a in LAYER_NORMS, "be true, false or shift")]
 SPREAD = nn.initializers.variance_scaling(1 / 3, "fan_in", "uniform")
 
 
@@ -104,20 +108,6 @@ def _block_diagonal(blocks: Sequence[np.ndarray]) -> np.ndarray:
     for block, (row, column) in zip(blocks, shapes.cumsum(0) - shapes, strict=True):
         whole[row : row + block.shape[0], column : column + block.shape[1]] = block
     return whole
-
-
-def check(
-    name: str, hidden: Sequence[int], activation: str, layer_norm: bool | str = False
-) -> None:
-    """Raise ValueError if one of these fields of the part `name` is invalid."""
-    if not all(isinstance(width, int) and width > 0 for width in hidden):
-        raise ValueError(f"{name}.hidden={list(hidden)}: widths are positive integers")
-    if activation not in ACTIVATIONS:
-        raise ValueError(
-            f"{name}.activation={activation}: unknown; choose one of {', '.join(ACTIVATIONS)}"
-        )
-    if layer_norm not in LAYER_NORMS:
-        raise ValueError(f"{name}.layer_norm={layer_norm}: choose true, false or shift")
 
 
 def outputs(params: Any) -> int:

@@ -21,7 +21,15 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Inside, Positive, Several, part
-from hybrid_rl.networks import ACTIVATIONS, MLP, Perceptron, check, perceptron, side_by_side
+from hybrid_rl.networks import (
+    ACTIVATIONS,
+    MLP,
+    Activation,
+    Perceptron,
+    Widths,
+    perceptron,
+    side_by_side,
+)
 from hybrid_rl.types import Spec
 
 
@@ -30,21 +38,14 @@ class Deterministic:
     """A network with a standard deviation that is not learned.
 
     Its parameters are the network's "weights" and, with `normalise`, statistics of "state".
-
-    Raises:
-        ValueError: for invalid widths or activations.
     """
 
-    hidden: tuple[int, ...] = (32, 32)
-    activation: str = "relu"
+    hidden: Widths = (32, 32)
+    activation: Activation = "relu"
     sigma: Positive = 1.0  # of z
     squash: Literal["tanh", "clip"] = "tanh"  # of z
     normalise: bool = False
     saturation: Inside | None = None  # [u] actions of this size or more count as clipped
-
-    def __post_init__(self) -> None:
-        """Check the network."""
-        check("policy", self.hidden, self.activation)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
         """Initial parameters. The key is consumed."""

@@ -22,7 +22,7 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, part
-from hybrid_rl.networks import MLP, check, ensemble_apply, ensemble_init
+from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths, ensemble_apply, ensemble_init
 from hybrid_rl.types import Params, Spec
 
 CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
@@ -30,25 +30,17 @@ CERTAIN = 20.0  # logit of a known end: a probability of 1 - 2e-9
 
 @part
 class RewardNetwork:
-    """A reward, and with `ends` the probability that the episode ends.
+    """A reward, and with `ends` the probability that the episode ends."""
 
-    Raises:
-        ValueError: for invalid widths or activations.
-    """
-
-    hidden: tuple[int, ...] = (200, 200)
-    activation: str = "relu"
+    hidden: Widths = (200, 200)
+    activation: Activation = "relu"
     normalise: bool = True  # states by their running statistics
     ends: bool = False  # also where episodes end
     rule: Any = None  # an environment whose `ended` gives the ends; without: they are learned
-    layer_norm: bool | str = False  # of every hidden layer; or shift: without a learned scale
+    layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
     scale: bool = False  # targets by their running statistics
     members: Count = 1  # networks, whose mean is used
     next_state: bool = False  # x' is an input, too
-
-    def __post_init__(self) -> None:
-        """Check the network."""
-        check("reward", self.hidden, self.activation, self.layer_norm)
 
     @property
     def _known(self) -> bool:

@@ -58,7 +58,7 @@ def test_layer_norm_against_numpy(layer_norm: bool | str) -> None:
 
 def test_an_unknown_layer_normalisation_is_refused() -> None:
     """With what would be right."""
-    with pytest.raises(ValueError, match=r"model\.layer_norm=scale: choose true, false or shift"):
+    with pytest.raises(ValueError, match=r"layer_norm=scale: must be true, false or shift"):
         Gaussian(layer_norm="scale")
 
 
