@@ -19,7 +19,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.fields import Count, Positive, Several, part
-from hybrid_rl.networks import normalised
+from hybrid_rl.networks import Widths, normalised
 from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.types import Spec
 
@@ -29,17 +29,17 @@ class CategoricalQ:
     """`members` independent distributions over returns.
 
     Raises:
-        ValueError: for widths that are not one positive integer.
+        ValueError: for several widths.
     """
 
-    hidden: tuple[int, ...] = (256, 256)  # the width, once for each residual block
+    hidden: Widths = (256, 256)  # the width, once for each residual block
     members: Count = 2
     bins: Several = 101  # atoms
     bound: Positive = 5.0  # of scaled returns
 
     def __post_init__(self) -> None:
         """Check the network."""
-        normalised.check("critic", self.hidden)
+        normalised.check(self)
 
     @property
     def atoms(self) -> Array:

@@ -21,6 +21,7 @@ import jax.numpy as jnp
 from flax import linen as nn
 from jax import Array
 
+from hybrid_rl.fields import FieldError
 from hybrid_rl.networks import precision
 
 EXPANSION = 4  # width of a block's inner layer, in widths of the network
@@ -57,12 +58,10 @@ class NormalisedNet(nn.Module):
         return head(nn.RMSNorm()(x))
 
 
-def check(name: str, hidden: tuple[int, ...]) -> None:
-    """Raise ValueError unless `hidden` of the part `name` is one width, once for each block."""
-    if not all(isinstance(width, int) and width > 0 for width in hidden) or len(set(hidden)) != 1:
-        raise ValueError(
-            f"{name}.hidden={list(hidden)}: must be the same positive integer for each block"
-        )
+def check(part: Any) -> None:
+    """Raise FieldError unless `hidden` of a part is one width, once for each block."""
+    if len(set(part.hidden)) != 1:
+        raise FieldError(part, "hidden", "must be one width, once for each block")
 
 
 def init(net: NormalisedNet, key: Array, size: int) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from jax import Array
 
 from hybrid_rl.core.squashing import log_density
 from hybrid_rl.fields import FieldError, part
-from hybrid_rl.networks import normalised
+from hybrid_rl.networks import Widths, normalised
 from hybrid_rl.networks.normalised import NormalisedNet
 from hybrid_rl.types import Spec
 
@@ -24,16 +24,16 @@ class UnitGaussian:
     """A stochastic policy on [-1, 1]^m.
 
     Raises:
-        ValueError: for widths that are not one positive integer, or bounds out of order.
+        ValueError: for several widths, or bounds out of order.
     """
 
-    hidden: tuple[int, ...] = (128, 128)  # the width, once for each residual block
+    hidden: Widths = (128, 128)  # the width, once for each residual block
     log_std_min: float = -10.0
     log_std_max: float = 2.0
 
     def __post_init__(self) -> None:
         """Check the network."""
-        normalised.check("policy", self.hidden)
+        normalised.check(self)
         if self.log_std_min >= self.log_std_max:
             raise FieldError(self, "log_std_min", "must lie below log_std_max")
 
