@@ -157,7 +157,7 @@ def _known(env: External) -> Known:
     assert isinstance(space, Box)
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
     if sizes[0] >= WIDE:
-        line = f"an observation has {sizes[0]:,} numbers; those of an image are learned as any other"
+        line = f"an observation has {sizes[0]:,} numbers; those of an image are learned as others"
         notes += (f"{env.name}: {line}, without convolutions",)
     return Known(Spec(*sizes, float(dt)), limit, space, notes)
 
