@@ -25,6 +25,7 @@ import inspect
 import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, overload
@@ -37,6 +38,7 @@ import hybrid_rl
 from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
+from hybrid_rl.envs.adapters.external import checked
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import assembled, curve, divergence, folder, launch, loggers, together
 from hybrid_rl.run.jax_settings import prepare
@@ -144,6 +146,7 @@ def train(
     if isinstance(method, Agent):
         run = assembled.run_of(method, **settings)
         prepare(run.config)
+        run = replace(run, notes=checked(method.episode.env))
         go = launch.begin if run.config.resume is None else launch.proceed
         result = Result(go(run, interrupt.answered, output), run)
     else:

@@ -170,6 +170,22 @@ def test_what_is_trained_from_parts_continues_and_is_read_back_by_the_same_agent
     assert contents(folder) == before
 
 
+def test_a_world_of_an_agent_is_checked_before_it_trains(tmp_path):
+    from dataclasses import replace
+
+    from hybrid_rl.envs.analytic.pendulum import Pendulum
+
+    class Paid(Pendulum):
+        def step(self, state, action):
+            return super().step(state, action).replace(reward=np.zeros(1, np.float32))
+
+    agent = parts()
+    wrong = replace(agent, episode=replace(agent.episode, env=Paid()))
+    with pytest.raises(hr.UsageError, match=r"Paid\.step: returned reward float32\[1\]"):
+        hr.train(wrong, total_steps=60, run_dir=tmp_path / "mine")
+    assert not (tmp_path / "mine").exists()
+
+
 def parts():
     """SAC on the pendulum, in small."""
     from hybrid_rl.controllers.policy import PolicyController

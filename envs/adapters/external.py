@@ -26,6 +26,7 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, imported
+from hybrid_rl.envs.contract import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
@@ -160,6 +161,17 @@ def _known(env: External) -> Known:
         line = f"an observation has {sizes[0]:,} numbers; those of an image are learned as others"
         notes += (f"{env.name}: {line}, without convolutions",)
     return Known(Spec(*sizes, float(dt)), limit, space, notes)
+
+
+def checked(env: Any) -> tuple[str, ...]:
+    """Notes about a world of the user's, before a run in it.
+
+    Raises:
+        UsageError: if no run can use it.
+    """
+    if isinstance(env, External):
+        return env.known.notes
+    return () if type(env).__module__.startswith("hybrid_rl.") else check(env)
 
 
 def _generators() -> dict[str, Any]:

@@ -84,6 +84,7 @@ def _described(agent: Agent, name: str | None) -> dict[str, Any]:
         "checkpoint_replay": True,
         "physics": physics,
         **{section: {} for section in SECTIONS},
+        "replay": {"capacity": agent.replay.capacity},  # before the run bounds it
         "env": {"physics": physics},
         "controllers": {"full": None},
     }
