@@ -31,7 +31,7 @@ from hybrid_rl.envs.adapters.robot import Outside
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.records import flat
 from hybrid_rl.run.rows import Gathered
@@ -84,6 +84,7 @@ class OnlineLearner:
             self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed)
         check(self.config)
         prepare(self.config)
+        refuse_x64()
         run = configuration.build(self.config)
         self._loop = RobotLoop(run.agent, run.seeds, 1)
         self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec

@@ -141,6 +141,8 @@ def test_wrong_arguments_are_refused(tmp_path):
         OnlineLearner.load(tmp_path)
     with pytest.raises(UsageError, match=r'give a list, OnlineLearner\(\["algo=sac"\]\)'):
         OnlineLearner("algo=sac", obs=2, act=1)
+    with jax.enable_x64(True), pytest.raises(UsageError, match="JAX_ENABLE_X64: is on"):
+        made()
     with pytest.raises(UsageError, match=r"resume=: OnlineLearner.load\(FOLDER\) goes on"):
         OnlineLearner(["resume=runs/mine"], obs=2, act=1)
 

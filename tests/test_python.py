@@ -192,6 +192,8 @@ def test_a_world_of_an_agent_is_checked_before_it_trains(tmp_path):
     with pytest.raises(hr.UsageError, match=r"Paid\.step: returned reward float32\[1\]"):
         hr.train(wrong, total_steps=60, run_dir=tmp_path / "mine")
     assert not (tmp_path / "mine").exists()
+    with jax.enable_x64(True), pytest.raises(hr.UsageError, match="JAX_ENABLE_X64: is on"):
+        hr.train(agent, total_steps=60, run_dir=tmp_path / "mine")
     with pytest.raises(hr.UsageError, match=r"Pendulum is a class; give Pendulum\(\)"):
         hr.check(Pendulum)
 
