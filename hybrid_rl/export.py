@@ -132,7 +132,7 @@ def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
 
 
 def _check_script(out: Path) -> None:
-    """Raise UsageError if OUT.py is a file of the user's, or would hide a module that others need."""
+    """Raise UsageError if OUT.py is a file of the user's, or would hide a module of Python."""
     script = out.with_suffix(".py")
     if out.stem in {*sys.stdlib_module_names, "numpy"}:
         raise UsageError(f"out={out}: {script} would hide Python's {out.stem}; choose another name")
