@@ -79,9 +79,10 @@ def _cleared(folder: Path) -> Iterator[None]:
 
 
 def rowless(folder: Path) -> bool:
-    """Whether a run began there and has no row, as when it was stopped while it compiled."""
+    """Whether a run began there and wrote nothing, as when it was stopped while it compiled."""
     rows = folder / "metrics.jsonl"
-    return rows.exists() and rows.stat().st_size == 0
+    empty = rows.exists() and rows.stat().st_size == 0
+    return empty and not checkpoint.steps(folder / "checkpoints")
 
 
 def made(config: DictConfig, suffix: str = "") -> Path:
