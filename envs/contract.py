@@ -121,12 +121,12 @@ class _World:
 def _check_members(world: _World) -> None:
     """Raise WorldError if `spec`, `reset` or `step` is missing or has another form."""
     env, at = world.env, world.at()
+    if isinstance(env, type):
+        raise WorldError(f"{env.__module__}: {env.__name__} is a class; give {env.__name__}()")
     if any(kind.__module__.split(".")[0] in ("gym", "gymnasium") for kind in type(env).__mro__):
         inner = _World(env.unwrapped)
-        if type(inner.env).__module__.startswith("gymnasium."):
-            at = f"env: {type(inner.env).__name__}"
-        else:
-            at = inner.at()
+        theirs = type(inner.env).__module__.startswith("gymnasium.")
+        at = f"env: {type(inner.env).__name__}" if theirs else inner.at()
         raise WorldError(f"{at} is {GYMNASIUM}")
     spec = world.blamed("spec", getattr, env, "spec", None)
     if not isinstance(spec, Spec):

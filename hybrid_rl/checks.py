@@ -47,7 +47,8 @@ def check(config: DictConfig) -> None:
     """Raise UsageError for a value that no run accepts; parts check their own ranges."""
     for key in SECTIONS:
         if not isinstance(config.get(key), DictConfig):
-            raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {SHOW}")
+            hint = f"did you mean task={config.get(key)}?" if key == "env" else SHOW
+            raise UsageError(f"{key}={config.get(key)}: must be a group of keys; {hint}")
     if "_target_" not in config.env:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
     _check_parts(config)

@@ -115,6 +115,8 @@ def explain(error: Exception) -> str:
         if key.startswith("env.") and (line := _of_other_tasks(error)):
             return line
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
+    if word := re.search(r"node `([^`]+)` is not a container", text):
+        return f"{word[1]}: must be a group of keys; {overrides.SHOW}"
     return _sentences(f"{text}\n{cause or ''}")
 
 
@@ -153,7 +155,7 @@ def _choice(word: str, known: Sequence[str]) -> str:
     """What to choose in place of a word: one of all names, or of MANY one of the nearest."""
     if len(known) < MANY:
         return f"choose one of {', '.join(known)}"
-    close = difflib.get_close_matches(word, known, n=overrides.MOST, cutoff=0.4)
+    close = difflib.get_close_matches(word.lower(), known, n=overrides.MOST, cutoff=0.4)
     nearest = f"; nearest: {', '.join(close)}" if close else ""
     return f"choose one of the {len(known)} in `python -m hybrid_rl.list`{nearest}"
 

@@ -18,9 +18,8 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, check_owners, whole
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
-from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.external import External, checked
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.envs.contract import check as check_world
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import FieldError
@@ -190,12 +189,10 @@ def episodes(config: DictConfig) -> Episode:
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
     env = _instantiate(parts.env, "env")
-    notes = env.known.notes if isinstance(env, External) else ()
-    if not type(env).__module__.startswith("hybrid_rl."):
-        notes = check_world(env)
-        if "steps" not in parts.episode:
-            line = f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode"
-            notes = (*notes, line)
+    notes = checked(env)
+    if not type(env).__module__.startswith("hybrid_rl.") and "steps" not in parts.episode:
+        line = f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode"
+        notes = (*notes, line)
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}

@@ -22,7 +22,7 @@ FAULTS = (Exception, SystemExit)  # what the user's code may raise; neither ends
 
 GYMNASIUM = (  # what an environment of Gymnasium is here
     "a gymnasium.Env, and this must be a class with JAX functions; task=gymnasium "
-    "env.make=MODULE:CLASS trains in it as it is"
+    "env.make=MODULE:CLASS, or External(make=CLASS) in Python, trains in it as it is"
 )
 
 

@@ -23,7 +23,9 @@ if __name__ == "__main__":
 
     interrupt.install()
 
+import sys
 from collections.abc import Callable, Sequence
+from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
@@ -130,8 +132,10 @@ def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
 
 
 def _check_script(out: Path) -> None:
-    """Raise UsageError if OUT.py is a file of the user's."""
+    """Raise UsageError if OUT.py is a file of the user's, or would hide a module of Python."""
     script = out.with_suffix(".py")
+    if out.stem in {*sys.stdlib_module_names, "numpy"}:
+        raise UsageError(f"out={out}: {script} would hide Python's {out.stem}; choose another name")
     if script.exists() and not script.read_text(encoding="utf-8").startswith(SCRIPT[:16]):
         raise UsageError(f"out={out}: {script} would be replaced; choose another name")
 
@@ -146,7 +150,10 @@ def _saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
         return f'{out}: #include "{out.name}"; {save_c(out, task, spec, net)}(obs, action)'
     if out.suffix == ".npz":
         script = save_numpy(out, task, spec, net)
-        return f"{out} and {script}: from {script.stem} import act; action = act(obs)"
+        name = script.stem
+        act = f"from {name} import act" if name.isidentifier() and not iskeyword(name) else ""
+        act = act or f'act = importlib.import_module("{name}").act'
+        return f"{out} and {script}: {act}; action = act(obs)"
     try:
         save_onnx(out, task, spec, net)
     except ImportError as error:

@@ -28,20 +28,24 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.envs.adapters.robot import Outside
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.records import flat
 from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.store import Record, Store
 from hybrid_rl.training.decider import Decider
+from hybrid_rl.training.given import numbers
 from hybrid_rl.training.robot_loop import RobotLoop, flags, packed
 from hybrid_rl.types import Params
 
 MODES = ("background", "between_episodes", "inline")
 HANDOVER_S = 0.1  # [s] between two sets of parameters that `act` gets from the thread
 OUTSIDE = f"{Outside.__module__}.{Outside.__name__}"
+ELSEWHERE = {"task": "obs=, act= and dt= describe the world", "run_dir": "save(FOLDER) writes one"}
+ELSEWHERE["resume"] = "OnlineLearner.load(FOLDER) goes on"
 
 
 class OnlineLearner:
@@ -80,6 +84,7 @@ class OnlineLearner:
             self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed)
         check(self.config)
         prepare(self.config)
+        refuse_x64()
         run = configuration.build(self.config)
         self._loop = RobotLoop(run.agent, run.seeds, 1)
         self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec
@@ -120,12 +125,16 @@ class OnlineLearner:
         Raises:
             UsageError: for an observation of another size, or with numbers that are not finite;
                 without `observe` since the last action.
+            DivergenceError: if the learner reached NaN or infinity.
         """
         self._check()
         if self._pending is not None:
             raise UsageError("act: the last action has no outcome yet; call observe first")
-        obs = self._sound("obs", obs, self._spec.obs)
+        obs = numbers("obs", obs, self._spec.obs)
         action = self._decide(self._params, obs, self.decisions)
+        if not np.isfinite(action).all():
+            line = f"act: after {self.decisions} decisions the learner reached NaN or infinity"
+            raise DivergenceError(f"{line}; OnlineLearner.load goes on from what was saved before")
         self._pending = obs, action
         return action
 
@@ -144,24 +153,24 @@ class OnlineLearner:
             next_obs: [o] after it, the true last one where the episode ends.
             terminated: whether the episode has ended for good.
             truncated: whether it was cut off, by a time limit for example.
-            executed: the action [m] that acted, if it was another one, such as a safe one.
+            executed: the action [m] in [-1, 1] that acted, if it was another, such as a safe one.
 
         Raises:
-            UsageError: as `act`; without an action before.
+            UsageError: as `act`; for an action out of its range; without an action before.
         """
         self._check()
         if self._pending is None:
             raise UsageError("observe: there is no action yet; call act first")
-        after = self._sound("next_obs", next_obs, self._spec.obs)
-        if not np.isfinite(reward):
-            raise UsageError(f"observe: reward={reward}: must be finite")
+        after = numbers("next_obs", next_obs, self._spec.obs)
+        paid = numbers("reward", reward)
+        ended = bool(numbers("terminated", terminated))
+        cut = bool(numbers("truncated", truncated)) and not ended
         obs, action = self._pending
         if executed is not None:
-            action = self._sound("executed", executed, self._spec.act)
+            action = numbers("executed", executed, self._spec.act, most=1)
         self._pending = None
-        cut = bool(truncated and not terminated)
-        self._waiting.append((action, after, reward, bool(terminated), cut, obs, self._first))
-        self.decisions, self._first = self.decisions + 1, bool(terminated or cut)
+        self._waiting.append((action, after, paid, ended, cut, obs, self._first))
+        self.decisions, self._first = self.decisions + 1, ended or cut
         if self._first:
             self._decide.begin()
         if self._mode == "inline" or (self._mode == "between_episodes" and self._first):
@@ -211,18 +220,19 @@ class OnlineLearner:
             return jax.device_put(jax.tree.map(lambda leaf: np.array(leaf)[0], params))
 
     def save(self, folder: Path | str) -> None:
-        """Write a run folder, after what waits has been taken into the memory.
+        """Write a run folder, or replace one of `save`, after what waits has entered the memory.
 
         Raises:
-            UsageError: if it cannot be written to.
+            UsageError: if it cannot be written to, or holds another kind of run.
             CheckpointError: if the checkpoint could not be written.
         """
-        path = Path(folder)
+        path = _free(folder)
         while self._waiting:
             self._advance()
         with locked(run_folder.writable(path, "folder"), "folder"), self._lock:
             values: Any = OmegaConf.to_container(self.config)
             store = Store(path / "checkpoints", self._loop, True, flat(values))
+            store.known = set(checkpoint.steps(store.folder))
             record = Record([[]], [None], step=self._seen)
             store.save(self._state, Gathered(), record)
             run_folder.write(path, self.config)
@@ -266,18 +276,25 @@ class OnlineLearner:
         if self._closed:
             raise UsageError("this learner is closed")
 
-    def _sound(self, name: str, given: Any, size: int) -> np.ndarray:
-        """The numbers as float32 [size]."""
-        values = np.array(given, np.float32)
-        if values.shape != (size,):
-            raise UsageError(f"{name} is {list(values.shape)}; it must be [{size}]")
-        if not np.isfinite(values).all():
-            entry = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise UsageError(f"{name}: entry {entry} is not finite")
-        return values
+
+def _free(folder: Path | str) -> Path:
+    """The folder, if it holds no run but one of `OnlineLearner.save`."""
+    path = Path(folder)
+    if not str(folder):
+        raise UsageError("folder=: give the folder that save writes")
+    if (path / "config.yaml").exists():
+        env = run_folder.parsed(path, "folder").get("env")
+        if (env or {}).get("_target_") != OUTSIDE:
+            raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
+    return path
 
 
 def _config(method: Sequence[str], sizes: dict[str, Any], seed: int) -> DictConfig:
     """The configuration of a method in a world of these sizes."""
+    if isinstance(method, str):
+        raise UsageError(f'OnlineLearner("{method}"): give a list, OnlineLearner(["{method}"])')
+    for key in (each.partition("=")[0].lstrip("+") for each in [*method] if "=" in each):
+        if key in ELSEWHERE:
+            raise UsageError(f"OnlineLearner: {key}=: {ELSEWHERE[key]}")
     given = [f"env.{name}={value}" for name, value in sizes.items()]
     return configuration.load(["task=online", *given, f"seed={seed}", *method])

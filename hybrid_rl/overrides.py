@@ -23,6 +23,8 @@ REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a ke
 MOST = 4  # keys that one line suggests
 GROUPS = ("learning", "settings", "experiment")  # groups that leave no key of their name
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
+THEIRS = {"gamma": "discount", "lr": "learning_rate", "buffer_size": "capacity"}  # of other
+THEIRS |= {"learning_starts": "random_steps", "total_timesteps": "total_steps"}  # libraries
 LACKING: Any = object()  # the value of a key that does not exist
 
 
@@ -149,13 +151,11 @@ def _instead(raw: dict[str, Any], read: dict[str, Any], path: str) -> list[str]:
 
 
 def near(config: DictConfig, path: str) -> str:
-    """Existing keys similar to `path`, which does not exist; "" if there is none.
-
-    config: any node of the composed configuration.
-    """
+    """Existing keys similar to `path`, which no node of what `config` is part of has; or ""."""
     whole: Any = config._get_root()
     raw = plain(whole)
     parent, _, name = path.rpartition(".")
+    name = THEIRS.get(name, name)
     siblings = select(raw, parent) if parent else [*raw, *GROUPS]
     siblings = siblings if isinstance(siblings, (dict, list)) else ()
     close = difflib.get_close_matches(name, siblings, cutoff=0.8)
@@ -261,7 +261,7 @@ def refuse_unused(
             instead = next(filter(None, (lost[path] for lost in each)), "")
             methods = list(dict.fromkeys(config.algo for config in composed))
             does = "does" if len(methods) == 1 else "do"
-            use = f"it uses {instead}" if len(methods) == 1 else f"what they use is {instead}"
+            use = f"it uses {instead}" if does == "does" else f"what they use is {instead}"
             line = f"{path}: {', '.join(methods)} {does} not use it"
             raise UsageError(f"{line}; {use}" if instead else line)
 
@@ -293,8 +293,7 @@ def unknown(config: DictConfig, key: str) -> str:
         return f"{key}: unknown key; did you mean {close}?"
     root: Any = config._get_root()
     parent = key.rpartition(".")[0]
-    inside = select(plain(root), parent) if parent else None
-    if not isinstance(inside, dict):
+    if not isinstance(inside := select(plain(root), parent) if parent else None, dict):
         return f"{key}: unknown key; {SHOW}"
     names = [name for name in inside if not name.startswith("_")]
     return f"{key}: unknown key; {parent} has {', '.join(names) or 'no keys'}"

@@ -39,7 +39,6 @@ from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import assembled, curve, divergence, folder, launch, loggers, together
-from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
 
@@ -142,8 +141,7 @@ def train(
     """
     output = launch.Output(None if on_row is None else loggers.Function(on_row), progress)
     if isinstance(method, Agent):
-        run = assembled.run_of(method, **settings)
-        prepare(run.config)
+        run = _run_of(method, settings)
         go = launch.begin if run.config.resume is None else launch.proceed
         result = Result(go(run, interrupt.answered, output), run)
     else:
@@ -157,6 +155,15 @@ def train(
     if output.on_row is not None and output.on_row.problem is not None:
         raise output.on_row.problem
     return result
+
+
+def _run_of(agent: Agent, settings: dict[str, Any]) -> Run:
+    """The run of an agent; UsageError for another keyword, or one that is missing."""
+    try:
+        inspect.signature(assembled.run_of).bind(agent, **settings)
+    except TypeError as error:
+        raise UsageError(f"train(agent, ...): {error}") from error
+    return assembled.run_of(agent, **settings)
 
 
 def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:

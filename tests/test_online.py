@@ -8,7 +8,7 @@ import pytest
 
 import hybrid_rl
 from hybrid_rl import OnlineLearner
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import DivergenceError, UsageError
 
 METHOD = ["algo=sac", "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4"]
 METHOD += ["random_steps=0", "total_steps=100"]
@@ -104,7 +104,21 @@ def test_what_is_saved_goes_on_and_acts(tmp_path):
         (lambda each: each.act([0, np.nan]), "obs: entry 1 is not finite"),
         (lambda each: each.observe(0.0, [0, 0]), "there is no action yet"),
         (lambda each: (each.act([0, 0]), each.act([0, 0])), "call observe first"),
-        (lambda each: (each.act([0, 0]), each.observe(np.inf, [0, 0])), "reward=inf"),
+        (lambda each: (each.act([0, 0]), each.observe(np.inf, [0, 0])), "reward is not finite"),
+        (lambda each: (each.act([0, 0]), each.observe(1e39, [0, 0])), "reward is not finite"),
+        (
+            lambda each: (each.act([0, 0]), each.observe([1.0], [0, 0])),
+            r"reward is \[1\]; it must be one number",
+        ),
+        (lambda each: each.act(["a", 0]), r"obs: must be numbers \[2\]"),
+        (
+            lambda each: (each.act([0, 0]), each.observe(0.0, [0, 0], [True, False])),
+            r"terminated is \[2\]",
+        ),
+        (
+            lambda each: (each.act([0, 0]), each.observe(0.0, [0, 0], executed=[5])),
+            "executed: has an entry of 5",
+        ),
         (
             lambda each: (each.act([0, 0]), each.observe(0.0, [0, 0], executed=[1, 2])),
             r"executed is \[2\]",
@@ -125,6 +139,40 @@ def test_wrong_arguments_are_refused(tmp_path):
         OnlineLearner(METHOD, act=1)
     with pytest.raises(UsageError, match="folder="):
         OnlineLearner.load(tmp_path)
+    with pytest.raises(UsageError, match=r'give a list, OnlineLearner\(\["algo=sac"\]\)'):
+        OnlineLearner("algo=sac", obs=2, act=1)
+    with jax.enable_x64(True), pytest.raises(UsageError, match="JAX_ENABLE_X64: is on"):
+        made()
+    with pytest.raises(UsageError, match=r"resume=: OnlineLearner.load\(FOLDER\) goes on"):
+        OnlineLearner(["resume=runs/mine"], obs=2, act=1)
+
+
+def test_save_replaces_what_it_wrote_and_no_other_run(tmp_path):
+    learner = _shared()
+    learner.interrupt()
+    learner.save(tmp_path / "mine")
+    first = learner.decisions
+    newer = tmp_path / "mine" / "checkpoints"
+    (newer / str(first)).rename(newer / str(first + 7))  # as of a longer session
+    learner.save(tmp_path / "mine")
+    assert [path.name for path in newer.iterdir()] == [str(first)]
+    (tmp_path / "config.yaml").write_text("task: pendulum\nenv: {dt: 1.0}\n")
+    with pytest.raises(UsageError, match="holds a run that train wrote"):
+        learner.save(tmp_path)
+    assert not (tmp_path / "checkpoints").exists()
+    with pytest.raises(UsageError, match="give the folder"):
+        learner.save("")
+
+
+def test_a_learner_that_diverged_gives_no_action():
+    learner = _shared()
+    learner.interrupt()
+    sound = learner._params
+    learner._params = jax.tree.map(lambda leaf: np.full_like(leaf, np.nan), sound)
+    with pytest.raises(DivergenceError, match="the learner reached NaN"):
+        learner.act([0, 0])
+    learner._params = sound
+    assert np.isfinite(learner.act([0, 0])).all()
 
 
 SHARED = []

@@ -4,6 +4,7 @@ import json
 import re
 import signal
 import sys
+from dataclasses import replace
 from functools import partial
 from inspect import getdoc, signature
 from pathlib import Path
@@ -19,6 +20,7 @@ from tiny import TINY, contents
 
 import hybrid_rl as hr
 from hybrid_rl.analysis.curves import Curve
+from hybrid_rl.run.assembled import run_of
 from hybrid_rl.run.loggers import Function
 from hybrid_rl.run.session import Session
 
@@ -162,12 +164,38 @@ def test_what_is_trained_from_parts_continues_and_is_read_back_by_the_same_agent
         (lambda: hr.train(agent, total_steps=120, run_dir=folder), "num_seeds=1: .* seed 0, 1"),
         (lambda: hr.train(agent, total_steps=60, **short), "total_steps=60: .* has 120"),
         (lambda: hr.train(agent, total_steps=0), "total_steps=0: must be a whole number"),
+        (lambda: hr.train(agent, total_steps=60, seed=-1), "seed=-1: must be a whole number, 0"),
+        (lambda: hr.train(agent, total_steps=60, name="../x"), "name=../x: must be a name"),
+        (lambda: hr.train(agent, steps=60), r"train\(agent, ...\): .*'total_steps'"),
         (lambda: hr.load(folder), "trained from parts in Python"),
         (lambda: hr.train([f"resume={folder}"]), "trained from parts in Python"),
     ):
         with pytest.raises(hr.UsageError, match=line):
             ask()
     assert contents(folder) == before
+    settings = {"total_steps": np.int64(180), "num_seeds": 2, "run_dir": folder}
+    assert run_of(agent, **settings).notes == ()
+    other = replace(agent, episode=replace(agent.episode, steps=40))
+    (note,) = run_of(other, **settings).notes
+    assert note == "goes on with another agent than before: steps=50 then, steps=40 now"
+
+
+def test_a_world_of_an_agent_is_checked_before_it_trains(tmp_path):
+    from hybrid_rl.envs.analytic.pendulum import Pendulum
+
+    class Paid(Pendulum):
+        def step(self, state, action):
+            return super().step(state, action).replace(reward=np.zeros(1, np.float32))
+
+    agent = parts()
+    wrong = replace(agent, episode=replace(agent.episode, env=Paid()))
+    with pytest.raises(hr.UsageError, match=r"Paid\.step: returned reward float32\[1\]"):
+        hr.train(wrong, total_steps=60, run_dir=tmp_path / "mine")
+    assert not (tmp_path / "mine").exists()
+    with jax.enable_x64(True), pytest.raises(hr.UsageError, match="JAX_ENABLE_X64: is on"):
+        hr.train(agent, total_steps=60, run_dir=tmp_path / "mine")
+    with pytest.raises(hr.UsageError, match=r"Pendulum is a class; give Pendulum\(\)"):
+        hr.check(Pendulum)
 
 
 def parts():

@@ -26,6 +26,7 @@ from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, imported
+from hybrid_rl.envs.contract import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
 from hybrid_rl.types import EnvState, Spec
 
@@ -34,6 +35,7 @@ KINDS += "that Gymnasium flattens (Box, Discrete, Dict, Tuple)"
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
 RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
 HUGE = 100_000  # entries; an image has as many
+WIDE = 1_000  # of a small image
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,8 @@ class External(Made):
             raise UsageError(
                 f"env.timeout_s={self.timeout_s}: must be above 0, with env.processes=true"
             )
+        if self.dt is not None and not self.dt > 0:
+            raise UsageError(f"env.dt={self.dt}: must be above 0")
         super().__post_init__()
         _ = self.known
 
@@ -139,19 +143,35 @@ def _known(env: External) -> Known:
         raise UsageError(f"env.{key}={env.name}: {line}") from error
     space, obs = one.action_space, one.observation_space
     bounded = isinstance(space, Box) and bool(np.isfinite([space.low, space.high]).all())
-    if not (bounded and isinstance(obs, Box) and np.prod(obs.shape) < HUGE):
+    if not (bounded and isinstance(obs, Box) and 0 < np.prod(obs.shape) < HUGE):
         raise UsageError(f"{env.name}: has actions {space} and observations {obs}; {KINDS}")
     dt = env.dt or getattr(one.unwrapped, "dt", None)
-    dt = dt or 1 / (one.metadata.get("render_fps") or np.inf)
-    if not dt:
+    rate = one.metadata.get("render_fps") or np.inf
+    dt = dt or (1 / rate if isinstance(rate, int | float) else 0)
+    if not dt > 0:
         raise UsageError(f"{env.name}: does not say its time step; {DT}")
     _check_first(env.name, one, found)
     notes = _unseeded(env.name, one, before)
-    limit = None if env.make else gymnasium.spec(env.id.rpartition(":")[2]).max_episode_steps
+    found = None if env.make or one.spec is None else gymnasium.spec(one.spec.id)
+    limit = found and found.max_episode_steps  # of the newest version where env.id names none
     one.close()
     assert isinstance(space, Box)
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
+    if sizes[0] >= WIDE:
+        line = f"an observation has {sizes[0]:,} numbers; those of an image are learned as others"
+        notes += (f"{env.name}: {line}, without convolutions",)
     return Known(Spec(*sizes, float(dt)), limit, space, notes)
+
+
+def checked(env: Any) -> tuple[str, ...]:
+    """Notes about a world of the user's, before a run in it.
+
+    Raises:
+        UsageError: if no run can use it.
+    """
+    if isinstance(env, External):
+        return env.known.notes
+    return () if type(env).__module__.startswith("hybrid_rl.") else check(env)
 
 
 def _generators() -> dict[str, Any]:

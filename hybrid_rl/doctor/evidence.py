@@ -26,7 +26,7 @@ from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.doctor.tried import Still, Tried, episodes
-from hybrid_rl.errors import CheckpointError
+from hybrid_rl.errors import CheckpointError, UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
@@ -227,6 +227,8 @@ def read(path: Path) -> Evidence:
         UsageError: if it holds no run, or a file of it is damaged.
     """
     config = run_folder.read(path, "run")
+    if run_folder.rowless(path):
+        raise UsageError(f"run={path}: {path / 'metrics.jsonl'}: no row of metrics yet")
     with run_folder.blamed(path):
         prepare(config)
         run = built(config, "memory")

@@ -5,7 +5,9 @@ schedule and the agent as text, of which no command can build the agent again: `
 and `resume=` refuse it, and figures draw it.
 """
 
+import re
 from dataclasses import replace
+from numbers import Integral
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +16,10 @@ from omegaconf import OmegaConf
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
+from hybrid_rl.envs.adapters.external import checked
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
+from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.training.agent import Agent
 
 DEFAULTS = ("compile_cache", "precision")  # those of conf/train.yaml
@@ -44,29 +48,39 @@ def run_of(
         UsageError: for counts out of range, or a folder that holds another run.
         ValueError: if a part refuses a run of this length.
     """
+    if name is not None and not re.fullmatch(r"[^/\0]*[^/\0.][^/\0]*", name):
+        raise UsageError(f"name={name}: must be a name that a folder can have")
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     counts = {"total_steps": total_steps, "num_seeds": num_seeds, "eval_episodes": eval_episodes}
     counts["log_every"] = defaults.log_every if log_every is None else log_every
     every = {"eval_every": eval_every, "checkpoint_every": checkpoint_every}
     counts |= {key: total_steps if value is None else value for key, value in every.items()}
-    for key, value in counts.items():
-        if type(value) is not int or value < 1:
-            raise UsageError(f"{key}={value}: must be a whole number, 1 or more")
-    rounds = -(-total_steps // agent.num_envs)
-    agent.check(rounds * agent.num_envs)
+    counts = {key: _whole(key, value) for key, value in counts.items()}
+    counts["seed"] = _whole("seed", seed, 0)
     config = OmegaConf.create(
         _described(agent, name)
         | counts
         | {key: defaults[key] for key in DEFAULTS}
-        | {"seed": seed, "eval_modes": [] if eval_every is None else ["full"]}
+        | {"eval_modes": [] if eval_every is None else ["full"]}
         | {"run_dir": None if run_dir is None else str(run_dir), "resume": None, "logger": None}
     )
+    prepare(config)  # first: a check of the user's world initialises JAX's devices
+    notes = checked(agent.episode.env)
+    rounds = -(-counts["total_steps"] // agent.num_envs)
+    agent.check(rounds * agent.num_envs)
     sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
-    run = Run(config, sized, {"full": agent.controller.greedy()})
+    run = Run(config, sized, {"full": agent.controller.greedy()}, notes)
     if run_dir is not None and checkpoint.steps(Path(run_dir) / "checkpoints"):
-        _check_same(run, Path(run_dir))
+        notes += _check_same(run, Path(run_dir))
         config.resume = str(run_dir)
-    return run
+    return replace(run, notes=notes)
+
+
+def _whole(key: str, value: Any, least: int = 1) -> int:
+    """A count, of NumPy's numbers too."""
+    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
+        raise UsageError(f"{key}={value}: must be a whole number, {least} or more")
+    return int(value)
 
 
 def _described(agent: Agent, name: str | None) -> dict[str, Any]:
@@ -84,14 +98,20 @@ def _described(agent: Agent, name: str | None) -> dict[str, Any]:
         "checkpoint_replay": True,
         "physics": physics,
         **{section: {} for section in SECTIONS},
+        "replay": {"capacity": agent.replay.capacity},  # before the run bounds it
         "env": {"physics": physics},
         "controllers": {"full": None},
     }
 
 
-def _check_same(run: Run, folder: Path) -> None:
-    """Raise UsageError if the folder holds a run of a configuration, other seeds, more steps."""
-    config = OmegaConf.load(folder / "config.yaml") if (folder / "config.yaml").exists() else {}
+def _check_same(run: Run, folder: Path) -> tuple[str, ...]:
+    """A note if the agent is not the one that config.yaml describes.
+
+    Raises:
+        UsageError: if the folder holds a run of a configuration, other seeds, more steps.
+    """
+    path = folder / "config.yaml"
+    config: Any = OmegaConf.load(path) if path.exists() else {}
     if "agent" not in config:
         line = f'holds the run of a configuration; continue it by train(["resume={folder}"])'
         raise UsageError(f"run_dir={folder}: {line}")
@@ -106,3 +126,7 @@ def _check_same(run: Run, folder: Path) -> None:
             f"seed={run.seeds[0]} num_seeds={len(run.seeds)}: run_dir={folder} holds the learners "
             f"of seed {listed}"
         )
+    then, now = (re.sub(" at 0x[0-9a-f]+", "", each.agent) for each in (config, run.config))
+    pairs = zip(then.split(", "), now.split(", "), strict=False)
+    other = next((f"{a} then, {b} now" for a, b in pairs if a != b), "")
+    return (f"goes on with another agent than before: {other}",) if then != now else ()

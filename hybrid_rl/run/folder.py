@@ -51,7 +51,7 @@ def fresh(config: DictConfig) -> Iterator[Path]:
     try:
         with locked(writable(folder, "run_dir"), "run_dir"), _cleared(folder):
             saved = checkpoint.steps(folder / "checkpoints")
-            if saved or (folder / "config.yaml").exists():
+            if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
                 line = f"run_dir={folder}: holds a run already; choose another"
                 raise UsageError(f"{line}, or resume={folder}" if saved else line)
             yield folder
@@ -76,6 +76,13 @@ def _cleared(folder: Path) -> Iterator[None]:
             for name in {"config.yaml", "metrics.jsonl", "metrics.csv"} - before:
                 (folder / name).unlink(missing_ok=True)
         raise
+
+
+def rowless(folder: Path) -> bool:
+    """Whether a run began there and wrote nothing, as when it was stopped while it compiled."""
+    rows = folder / "metrics.jsonl"
+    empty = rows.exists() and rows.stat().st_size == 0
+    return empty and not checkpoint.steps(folder / "checkpoints")
 
 
 def made(config: DictConfig, suffix: str = "") -> Path:

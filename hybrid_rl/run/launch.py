@@ -17,7 +17,7 @@ from hybrid_rl.networks import precision
 from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, together
 from hybrid_rl.run import start as starting
 from hybrid_rl.run.duration import Duration, instead
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.job import Job, Output, written
 from hybrid_rl.run.lock import locked
 from hybrid_rl.run.progress import Progress, Silent
@@ -133,6 +133,7 @@ def _resume(
 
 def _fits(runs: Sequence[Run]) -> str:
     """A line about the replay memory; raise UsageError if it, or the evaluations, do not fit."""
+    refuse_x64()
     run, learners = runs[0], len(runs) * len(runs[0].seeds)
     number, modes = run.config.eval_episodes, run.controllers.values()
     memory.episodes("eval_episodes", number, learners, run.agent.episode, modes)

@@ -12,6 +12,7 @@ from tiny import TINY, call, call_train, contents, only_line, run
 from hybrid_rl import evaluate, render
 from hybrid_rl.cli import command
 from hybrid_rl.config import load
+from hybrid_rl.doctor.__main__ import examine
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run import integrity
@@ -206,6 +207,20 @@ def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, cap
     assert call_train(*TINY, "algo=sac", "logger=csv", f"run_dir={folder}") == 1
     assert "num_seeds=1: the program would take 1,000,000.0 GB" in only_line(capfd)
     assert contents(tmp_path) == before
+
+
+def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp_path, capfd):
+    folder = tmp_path / "run"
+    folder.mkdir()
+    config = load([*TINY, "algo=sac", f"run_dir={folder}"])
+    run_folder.write(folder, config)
+    with pytest.raises(UsageError, match="holds a run already"), run_folder.fresh(config):
+        pass  # a file of that name, of whatever
+    (folder / "metrics.jsonl").touch()
+    with pytest.raises(UsageError, match="no row of metrics yet"):
+        examine(folder)
+    with run_folder.fresh(config):
+        pass
 
 
 def test_a_start_beside_a_run_that_has_just_begun_deletes_nothing_of_it(tmp_path):

@@ -58,6 +58,8 @@ class Odd(gymnasium.Env):
 
 def test_spaces_of_any_form_are_flattened():
     assert External(make=Odd).spec == Spec(obs=7, act=2, dt=0.02)
+    with pytest.raises(UsageError, match="its spaces must be numbers"):
+        External(make=Odd, kwargs={"obs": Box(-1, 1, (0,))})
 
 
 @pytest.mark.parametrize(
@@ -128,9 +130,23 @@ def test_numbers_that_the_seed_does_not_repeat_are_a_note_of_the_run(draw, seeds
     assert env.known.notes == (() if source is None else (line,))
 
 
+def test_a_small_image_is_a_note_of_the_run():
+    (note,) = External(make=Odd, kwargs={"obs": Box(0, 255, (20, 20, 3), np.uint8)}).known.notes
+    assert note.startswith("Odd: an observation has 1,200 numbers; those of an image")
+
+
 def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
     with pytest.raises(UsageError, match=r"add env.dt=0.05, .* or metadata = .* to its class"):
         External(make=type("Timeless", (Count,), {"metadata": {}}))
+    with pytest.raises(UsageError, match=r"Fast: does not say its time step; add env.dt=0.05"):
+        External(make=type("Fast", (Count,), {"metadata": {"render_fps": "fast"}}))
+    with pytest.raises(UsageError, match=r"env.dt=0: must be above 0"):
+        External(make=Count, dt=0)
+
+
+def test_an_id_without_a_version_has_the_time_limit_of_the_newest():
+    with pytest.warns(UserWarning, match="latest versioned"):
+        assert External(id="Pendulum").known.steps == 200
 
 
 def test_a_video_of_an_environment_that_takes_no_render_mode_says_what_it_needs():
