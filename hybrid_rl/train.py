@@ -58,11 +58,12 @@ class Result(dict[str, Any]):
     def __init__(self, summary: Mapping[str, Any], run: Run | None = None) -> None:
         super().__init__(summary)
         self._run = run  # of an agent; None: config.yaml has the parts
+        self._folder = Path(self["run_dir"]).absolute()
 
     @property
     def folder(self) -> Path:
-        """The run folder."""
-        return Path(self["run_dir"])
+        """The run folder, as an absolute path: it holds after the working folder changes."""
+        return self._folder
 
     def curves(self, metric: str = EVALUATION) -> "list[Curve]":
         """The curve of a metric, with arrays; see hybrid_rl.curves."""

@@ -23,6 +23,7 @@ from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.run.assembled import run_of
 from hybrid_rl.run.loggers import Function
 from hybrid_rl.run.session import Session
+from hybrid_rl.train import Result
 
 pytestmark = pytest.mark.turns(3)
 
@@ -101,6 +102,14 @@ def test_a_function_gets_the_rows_of_the_file_and_ends_a_run_that_can_be_resumed
     assert whole.folder == folder
     assert whole.curves("train/return")[0].x.tolist() == [200, 400, 600]
     assert whole.load().step == 600
+
+
+def test_the_folder_of_a_result_holds_when_the_working_folder_changes(tmp_path, monkeypatch):
+    (tmp_path / "there").mkdir()
+    monkeypatch.chdir(tmp_path)
+    result = Result({"run_dir": "runs/x"})
+    monkeypatch.chdir("there")
+    assert result.folder == tmp_path / "runs/x"
 
 
 def test_an_exception_of_the_function_follows_the_checkpoint(tmp_path):

@@ -156,7 +156,8 @@ def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
         matches = [Path(run) for run in runs]
     files = sorted({path for match in matches for path in match.glob("**/metrics.jsonl")})
     if not files:
-        raise UsageError(f"runs={runs}: no run there (a folder that holds metrics.jsonl)")
+        several = '; several need a pattern: "runs/TASK/*/*"' if "," in str(runs) else ""
+        raise UsageError(f"runs={runs}: no run there (a folder that holds metrics.jsonl){several}")
     if begun := [path.parent for path in files if path.stat().st_size]:
         return begun  # a start that failed leaves an empty file
     more = f" and {len(files) - 1} more" if len(files) > 1 else ""
