@@ -47,6 +47,7 @@ PACKAGES = {  # page of the reference -> folders and modules
         "report",
         "list",
     ),
+    "From Python": ("online", "trained", "goals", "robot"),
     "Configuration": ("config", "overrides", "named"),
     "Data structures": ("types", "errors"),
     "Protocols": ("protocols",),
