@@ -23,8 +23,8 @@ REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a ke
 MOST = 4  # keys that one line suggests
 GROUPS = ("learning", "settings", "experiment")  # groups that leave no key of their name
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"
-THEIRS = {"gamma": "discount", "lr": "learning_rate", "buffer_size": "capacity"}  # of other
-THEIRS |= {"learning_starts": "random_steps", "total_timesteps": "total_steps"}  # libraries
+THEIRS = {"gamma": "discount", "lr": "learning_rate", "buffer_size": "capacity"}
+THEIRS |= {"learning_starts": "random_steps", "total_timesteps": "total_steps"}  # elsewhere
 LACKING: Any = object()  # the value of a key that does not exist
 
 

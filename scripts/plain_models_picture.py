@@ -1,6 +1,6 @@
 """The picture of docs/results/lookahead.md: five robots, with and without layer normalisation.
 
-python -m scripts.five_robots_picture out=docs/results/five_robots.png
+python -m scripts.plain_models_picture out=docs/results/plain_models.png
 """
 
 import json
@@ -20,7 +20,7 @@ from scripts.peers_picture import FONTS, evaluated
 
 ARGUMENTS = (
     Argument("folder", "docs/results", "of the JSON files"),
-    Argument("out", "docs/results/five_robots.png", "the picture"),
+    Argument("out", "docs/results/plain_models.png", "the picture"),
 )
 BEFORE = {  # robot -> file of the runs with layer normalisation and the curve, or the task in it
     "half-cheetah": ("bf16", None),
