@@ -10,10 +10,9 @@ then both are compiled and make ten random decisions. This takes a second, of wh
 compiling; a world with a field `physics` is simulated by MuJoCo C, which compiles at once.
 """
 
-import inspect
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import is_dataclass, replace
 from numbers import Integral, Real
 from typing import Any
 
@@ -25,7 +24,7 @@ from jax.extend.core import ClosedJaxpr, Jaxpr
 from hybrid_rl.envs.indices import check as check_indices
 from hybrid_rl.envs.mujoco import mjcf, native, physics
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
+from hybrid_rl.errors import GYMNASIUM, Own, WorldError
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
@@ -47,18 +46,18 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     simulated = is_dataclass(env) and getattr(env, "physics", None) in IMPLEMENTATIONS
     given: Any = env  # `replace` is typed for dataclasses alone
     if simulated:
-        _World(env).blamed("reset", physics.check, given.physics)
-    world = _World(replace(given, physics="native") if simulated else env)
+        Own(env, WorldError).blamed("reset", physics.check, given.physics)
+    world = Own(replace(given, physics="native") if simulated else env, WorldError)
     _check_members(world)
     key = jax.random.key(0)
-    reset = world.traced("reset", key)
-    action = jax.ShapeDtypeStruct((world.env.spec.act,), jnp.float32)
-    step = world.traced("step", reset.out_info, action)
+    reset = _traced(world, "reset", key)
+    action = jax.ShapeDtypeStruct((world.it.spec.act,), jnp.float32)
+    step = _traced(world, "step", reset.out_info, action)
     _check_trees(world, reset.out_info, step.out_info)
     text, clock = _text(step), _clock(world, step)
     if text.count("\n") > LARGE:
         return clock
-    again = world.traced("reset", key), world.traced("step", reset.out_info, action)
+    again = _traced(world, "reset", key), _traced(world, "step", reset.out_info, action)
     for method, first, second in (("reset", _text(reset), again[0]), ("step", text, again[1])):
         if first != _text(second):
             raise WorldError(
@@ -69,64 +68,26 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     return (*clock, *(_decide(world, *again, decisions) if decisions else ()))
 
 
-@dataclass(frozen=True)
-class _World:
-    """An environment and where its source is."""
+def _traced(world: Own, method: str, *arguments: Any) -> Any:
+    """`method` traced by JAX, whose result is a valid EnvState."""
 
-    env: Any
+    def call(*given: Any) -> EnvState:
+        result = getattr(world.it, method)(*given)
+        _check_state(world, method, result)
+        return result
 
-    def at(self, method: str = "") -> str:
-        """FILE:LINE: CLASS.METHOD, as far as they are known."""
-        kind = type(self.env)
-        name = f"{kind.__name__}.{method}" if method else kind.__name__
-        try:
-            source = inspect.unwrap(getattr(kind, method)) if method else kind
-            return f"{relative(self.file)}:{inspect.getsourcelines(source)[1]}: {name}"
-        except (OSError, TypeError, AttributeError):  # typed in, or no plain method
-            return f"{kind.__module__}: {name}"
-
-    @property
-    def file(self) -> str:
-        """The file of the class; "" if it has none."""
-        try:
-            return inspect.getsourcefile(type(self.env)) or ""
-        except TypeError:
-            return ""
-
-    def traced(self, method: str, *arguments: Any) -> Any:
-        """`method` traced by JAX, whose result is a valid EnvState."""
-
-        def call(*given: Any) -> EnvState:
-            result = getattr(self.env, method)(*given)
-            _check_state(self, method, result)
-            return result
-
-        return self.blamed(method, jax.jit(call).trace, *arguments)
-
-    def blamed(self, method: str, call: Any, *arguments: Any) -> Any:
-        """The result of `call`; what goes wrong in it is the line of the user's that caused it."""
-        try:
-            return call(*arguments)
-        except UsageError:
-            raise
-        except FAULTS as error:
-            line = in_user_code(error, self.file)
-            kind = type(self.env).__name__
-            if line is None:
-                raise WorldError(f"{self.at(method)}: {gist(error)}") from error
-            where, _, what = line.partition(": ")
-            raise WorldError(f"{where}: {kind}.{method}: {what}") from error
+    return world.blamed(method, jax.jit(call).trace, *arguments)
 
 
-def _check_members(world: _World) -> None:
+def _check_members(world: Own) -> None:
     """Raise WorldError if `spec`, `reset` or `step` is missing or has another form."""
-    env, at = world.env, world.at()
+    env, at = world.it, world.at()
     if isinstance(env, type):
         raise WorldError(f"{env.__module__}: {env.__name__} is a class; give {env.__name__}()")
     if any(kind.__module__.split(".")[0] in ("gym", "gymnasium") for kind in type(env).__mro__):
-        inner = _World(env.unwrapped)
-        theirs = type(inner.env).__module__.startswith("gymnasium.")
-        at = f"env: {type(inner.env).__name__}" if theirs else inner.at()
+        inner = Own(env.unwrapped, WorldError)
+        theirs = type(inner.it).__module__.startswith("gymnasium.")
+        at = f"env: {type(inner.it).__name__}" if theirs else inner.at()
         raise WorldError(f"{at} is {GYMNASIUM}")
     spec = world.blamed("spec", getattr, env, "spec", None)
     if not isinstance(spec, Spec):
@@ -139,22 +100,12 @@ def _check_members(world: _World) -> None:
     if not isinstance(spec.dt, Real) or not 0 < spec.dt < np.inf:
         raise WorldError(f"{at}: spec.dt is {spec.dt!r}; it must be a number of seconds above 0")
     for method, takes in SIGNATURES.items():
-        form = f"{method}(self, {', '.join(takes)})"
-        bound = getattr(env, method, None)
-        if not callable(bound):
-            raise WorldError(f"{at} has no {method}; write def {form}")
-        try:
-            inspect.signature(bound).bind(*takes)
-        except TypeError:
-            has = inspect.signature(bound)
-            raise WorldError(f"{world.at(method)}{has}: must be {form}") from None
-        except ValueError:  # of a built-in function, which says nothing
-            pass
+        world.takes(method, *takes)
 
 
-def _check_state(world: _World, method: str, state: Any) -> None:
+def _check_state(world: Own, method: str, state: Any) -> None:
     """Raise WorldError unless `state`, which `method` returned, is an EnvState of the spec."""
-    at, o = world.at(method), world.env.spec.obs
+    at, o = world.at(method), world.it.spec.obs
     if not isinstance(state, EnvState):
         got = "None" if state is None else type(state).__name__
         got = f"a tuple of {len(state)}, as Gymnasium's do" if isinstance(state, tuple) else got
@@ -182,7 +133,7 @@ def _check_state(world: _World, method: str, state: Any) -> None:
             raise WorldError(f"{at}: returned {name} {_described(value)}; it must be a dict")
 
 
-def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
+def _check_trees(world: Own, first: EnvState, after: EnvState) -> None:
     """Raise WorldError if `step` and `reset` give states of different form.
 
     `info` may lack entries in `step`, as episodes keep them.
@@ -191,7 +142,7 @@ def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
     one, two, structure = _leaves(first), _leaves(after), jax.tree.structure
     if one == two and structure(first) == structure(after):
         return
-    at, kind = world.at("step"), type(world.env).__name__
+    at, kind = world.at("step"), type(world.it).__name__
     if one == two:  # a list for a tuple, or None for nothing
         raise WorldError(f"{at}: returned a state of another structure than {kind}.reset")
     if isinstance(first.data, PhysicsState) and one.get("data.ctrl") != two.get("data.ctrl"):
@@ -200,19 +151,19 @@ def _check_trees(world: _World, first: EnvState, after: EnvState) -> None:
         )
         raise WorldError(
             f"{at}: gives the physics {given} controls, and its model has {have} actuators; "
-            f"spec.act is {world.env.spec.act}"
+            f"spec.act is {world.it.spec.act}"
         )
     name = next(name for name in (*one, *two) if one.get(name) != two.get(name))
     gives = [f"{name} {each[name]}" if name in each else f"no {name}" for each in (two, one)]
     raise WorldError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be equal")
 
 
-def _clock(world: _World, step: Any) -> tuple[str, ...]:
+def _clock(world: Own, step: Any) -> tuple[str, ...]:
     """A note if MuJoCo C simulates another time in a decision than spec.dt; `step`: traced.
 
     None where that is not certain, as physics steps stand in a loop or a branch.
     """
-    dt, calls = world.env.spec.dt, list(_physics(step.jaxpr.jaxpr))
+    dt, calls = world.it.spec.dt, list(_physics(step.jaxpr.jaxpr))
     for asset in {asset for asset, _, _ in calls}:
         each = [n for name, n, _ in calls if name == asset]
         h, n = mjcf.load(asset).opt.timestep, sum(each)
@@ -237,7 +188,7 @@ def _physics(program: Jaxpr, once: bool = True) -> Iterator[tuple[str, int, bool
                 yield from _physics(inside, once and bool(straight))
 
 
-def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
+def _decide(world: Own, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
     """Make random decisions; notes about their episodes.
 
     reset, step: traced. Raises WorldError if a number is not finite, or an index out of range.
@@ -248,7 +199,7 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
     if not np.isfinite(state.obs).all():
         raise WorldError(f"{world.at('reset')}: returned obs {state.obs}; it must be finite")
     for i in range(1, decisions + 1):
-        action = rng.uniform(-1, 1, world.env.spec.act).astype(np.float32)
+        action = rng.uniform(-1, 1, world.it.spec.act).astype(np.float32)
         after = world.blamed("step", stepping, state, action)
         tried.append((state, action))
         for name in ("reward", "obs"):
@@ -261,7 +212,7 @@ def _decide(world: _World, reset: Any, step: Any, decisions: int) -> tuple[str, 
         kept = after.replace(info={**state.info, **after.info})
         state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
     for method, examples in (("reset", [(key,) for key in keys[:2]]), ("step", tried[::9])):
-        world.blamed(method, check_indices, getattr(world.env, method), *examples)
+        world.blamed(method, check_indices, getattr(world.it, method), *examples)
     if ended < decisions:
         return ()
     return (f"{world.at('step')}: every episode ended after one decision, of {decisions} tried",)

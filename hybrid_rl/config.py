@@ -26,6 +26,7 @@ from hybrid_rl.fields import FieldError
 from hybrid_rl.overrides import opened, plain, reached, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.parts import built
 from hybrid_rl.protocols import Controller
+from hybrid_rl.training import contract
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -149,6 +150,7 @@ def build(config: DictConfig) -> Run:
             -remembered * config.num_envs,
             tuple(config.get("freeze", ())),
         )
+        contract.check(agent, controllers.values())
         agent.check(rounds * config.num_envs)
         owned = [name for learner in agent.learners.values() for name in learner.owns]
         check_owners(controllers, owned, agent.spec)

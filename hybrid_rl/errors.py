@@ -1,9 +1,13 @@
 """Errors of a run: each message is one line, and each class has its exit code."""
 
+import inspect
 import re
 import sysconfig
 import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 OURS = {Path(__file__).parent, Path(__file__).resolve().parents[1] / "envs"}
 LIBRARIES = {Path(sysconfig.get_path(name)) for name in ("stdlib", "purelib", "platlib")}
@@ -30,8 +34,12 @@ class UsageError(ValueError):
     """The request is invalid; the message says what to change. Exit code 2."""
 
 
-class WorldError(UsageError):
-    """An environment of the user's is wrong; the message begins with its file. Exit code 2."""
+class PartError(UsageError):
+    """A class of the user's is wrong; the message begins with its file. Exit code 2."""
+
+
+class WorldError(PartError):
+    """It is an environment."""
 
 
 class DivergenceError(ArithmeticError):
@@ -44,6 +52,59 @@ class CheckpointError(OSError):
 
 class MisfitError(CheckpointError):
     """A checkpoint is intact but belongs to another run."""
+
+
+@dataclass(frozen=True)
+class Own:
+    """An object, which may be of the user's own, and where the source of its class is."""
+
+    it: Any
+    wrong: type[PartError] = PartError  # what it raises
+
+    def at(self, method: str = "") -> str:
+        """FILE:LINE: CLASS.METHOD, as far as they are known."""
+        kind = type(self.it)
+        name = f"{kind.__name__}.{method}" if method else kind.__name__
+        try:
+            source = inspect.unwrap(getattr(kind, method)) if method else kind
+            return f"{relative(self.file)}:{inspect.getsourcelines(source)[1]}: {name}"
+        except (OSError, TypeError, AttributeError):  # typed in, or no plain method
+            return f"{kind.__module__}: {name}"
+
+    @property
+    def file(self) -> str:
+        """The file of the class; "" if it has none."""
+        try:
+            return inspect.getsourcefile(type(self.it)) or ""
+        except TypeError:
+            return ""
+
+    def takes(self, method: str, *names: str) -> None:
+        """Raise `wrong` unless there is such a method, which takes so many arguments."""
+        form = f"{method}({', '.join(('self', *names))})"
+        bound = getattr(self.it, method, None)
+        if not callable(bound):
+            raise self.wrong(f"{self.at()} has no {method}; write def {form}")
+        try:
+            inspect.signature(bound).bind(*names)
+        except TypeError:
+            has = inspect.signature(bound)
+            raise self.wrong(f"{self.at(method)}{has}: must be {form}") from None
+        except ValueError:  # of a built-in function, which says nothing
+            pass
+
+    def blamed(self, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
+        """The result of `call`; what goes wrong in it is the line of the user's that caused it."""
+        try:
+            return call(*arguments)
+        except UsageError:
+            raise
+        except FAULTS as error:
+            line = in_user_code(error, self.file)
+            if line is None:
+                raise self.wrong(f"{self.at(method)}: {gist(error)}") from error
+            where, _, what = line.partition(": ")
+            raise self.wrong(f"{where}: {type(self.it).__name__}.{method}: {what}") from error
 
 
 def install(extra: str) -> str:

@@ -23,7 +23,7 @@ from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBase
 from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
-from hybrid_rl.errors import MisfitError, UsageError, WorldError, shown
+from hybrid_rl.errors import MisfitError, PartError, UsageError, shown
 from hybrid_rl.overrides import quoted
 from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
@@ -211,7 +211,7 @@ def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
     path = folder / "config.yaml"
     try:
         yield
-    except WorldError:  # a file of the user's own
+    except PartError:  # a file of the user's own
         raise
     except (ConfigKeyError, ConfigAttributeError) as error:
         raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error

@@ -13,6 +13,7 @@ from hybrid_rl.core.branching import where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.protocols import Controller, Learner, Model
+from hybrid_rl.training.contract import check_members
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
@@ -73,14 +74,9 @@ class Agent:
         if strange := [name for name in self.frozen if name not in self.learners]:
             known = ", ".join(self.learners) or "none"
             raise ValueError(f"freeze={strange}: the method's learners are {known}")
-        owners: dict[str, str] = {}
+        check_members(self.controller, self.learners)
         for name, learner in self.learners.items():
             update_schedule(name, learner, self.num_envs)
-            for field in learner.owns:
-                if field in owners:
-                    both = f"{owners[field]} and {name}"
-                    raise ValueError(f"learners: {both} both learn params.{field}; keep one")
-                owners[field] = name
 
     @property
     def spec(self) -> Spec:
@@ -268,7 +264,7 @@ class Agent:
     def first_control(self) -> Any:
         """The controller's initial state in every environment [E, ...]."""
         first = self.controller.init(self.spec)
-        return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *x.shape)), first)
+        return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *jnp.shape(x))), first)
 
 
 def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:

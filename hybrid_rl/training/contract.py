@@ -1,0 +1,257 @@
+"""What the parts of a method must be, checked before a run: JAX traces them, nothing is compiled.
+
+A method of the library's parts alone is not checked. Of one with a part of the user's, controllers
+and learners are traced, and compared with `protocols.Controller` and `protocols.Learner`: shapes of
+actions, states and metrics, the fields of `Params` that a learner owns. What goes wrong is one line
+that begins with the user's file, as in `envs.contract` for worlds.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any
+
+import jax
+import jax.numpy as jnp
+
+from hybrid_rl import protocols
+from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, gist, in_user_code
+from hybrid_rl.types import EnvState, Params
+
+if TYPE_CHECKING:
+    from hybrid_rl.training.agent import Agent
+
+ROLES = {  # kind of a part -> its methods and what they take
+    "controller": {"init": ("spec",), "act": ("params", "state", "obs", "key"), "greedy": ()},
+    "learner": {
+        "init": ("key", "spec"),
+        "params": ("state",),
+        "update": ("state", "params", "batch", "key"),
+    },
+}
+FIELDS = {  # of a learner, by its data
+    "uniform": ("batch_size", "batches", "updates", "during_random"),
+    "latest": ("every",),
+}
+OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
+OF_WORLD = ("world/reward", "world/obs", "world/action")
+COLUMNS = ("step", "seed", "wall_s")  # of a row, beside its metrics
+
+
+def check_members(controller: Any, learners: Mapping[str, Any]) -> None:
+    """Check that parts of the user's have the methods and the fields of their roles.
+
+    Raises:
+        PartError: in one line, for what is missing or has another form.
+        ValueError: for two learners of one field of `Params`.
+    """
+    _check_members(controller, "controller")
+    owners: dict[str, str] = {}
+    for name, learner in learners.items():
+        _check_members(learner, "learner")
+        for field in learner.owns:
+            if field in owners:
+                both = f"{owners[field]} and {name}"
+                raise ValueError(f"learners: {both} both learn params.{field}; keep one")
+            owners[field] = name
+
+
+def _check_members(part: Any, role: str) -> None:
+    """Raise PartError for a method or a field that a part of the user's lacks."""
+    if not _of_user(part):
+        return
+    own = Own(part)
+    if isinstance(part, type):
+        raise PartError(f"{part.__module__}: {part.__name__} is a class; give {part.__name__}()")
+    for method, takes in ROLES[role].items():
+        own.takes(method, *takes)
+    if role != "learner":
+        return
+    data, owns = getattr(part, "data", None), getattr(part, "owns", None)
+    if data not in FIELDS:
+        raise PartError(f'{own.at()}: data is {data!r}; it must be "uniform" or "latest"')
+    if not isinstance(owns, tuple) or not {*owns} <= {*OWNED}:
+        known = ", ".join(OWNED)
+        raise PartError(
+            f'{own.at()}: owns is {owns!r}; it must be a tuple, as ("{known[:5]}",), '
+            f"of the fields of Params: {known}"
+        )
+    if lacking := [name for name in FIELDS[data] if not hasattr(part, name)]:
+        kind = f'a learner with data = "{data}"'
+        raise PartError(
+            f"{own.at()} has no {', '.join(lacking)}; {kind} has {', '.join(FIELDS[data])}"
+        )
+
+
+def check(agent: "Agent", controllers: Iterable[Any]) -> None:
+    """Check the parts of `agent`, and the controllers that act with what it learns.
+
+    Raises:
+        PartError: in one line: the file and line, what a method gives, and what it must give.
+    """
+    controllers = [*controllers]
+    if not any(_mine([*controllers, *agent.learners.values()])):
+        return
+    key = jax.eval_shape(lambda: jax.random.key(0))
+    states, learned = {}, {}
+    for name, learner in agent.learners.items():
+        states[name] = _shapes(learner, "init", lambda key, of=learner: agent._first(of, key), key)
+        given = _shapes(learner, "params", learner.params, states[name])
+        if not isinstance(given, Mapping) or {*given} != {*learner.owns}:
+            got = f"{list(given)}" if isinstance(given, Mapping) else _words(given)
+            must = f"it must be a dict of what it owns, {list(learner.owns)}"
+            raise PartError(f"{Own(learner).at('params')}: returned {got}; {must}")
+        learned |= given
+    params = Params(**learned)._replace(decisions=jax.ShapeDtypeStruct((), jnp.int32))
+    names = dict.fromkeys((*COLUMNS, *OF_WORLD), "")
+    memory = jax.eval_shape(lambda: agent.replay.init(agent.spec, agent.num_envs))
+    for name, learner in agent.learners.items():
+
+        def update(state: Any, params: Params, memory: Any, key: Any, of: Any = learner) -> Any:
+            drawing, updating = jax.random.split(key)
+            return of.update(state, params, agent._batch(memory, of, params, drawing), updating)
+
+        result = _traced(learner, "update", update, states[name], params, memory, key)
+        if not isinstance(result, tuple) or len(result) != 2:
+            raise PartError(f"{Own(learner).at('update')}: {_returned(result, 'state, metrics')}")
+        _check_state(learner, "update", states[name], result[0])
+        _check_metrics(learner, "update", result[1], names)
+    env = jax.eval_shape(agent.episode.reset, key)
+    for controller in controllers:
+        _check_members(controller, "controller")
+        for each in dict.fromkeys((controller, _called(controller, "greedy", controller.greedy))):
+            _check_acting(each, agent, params, env, {**names} if each is controller else {})
+
+
+def _check_acting(
+    part: Any, agent: "Agent", params: Params, env: EnvState, names: dict[str, str]
+) -> None:
+    """Raise PartError unless the controller `part` gives an action, its state and metrics."""
+    if part is None or not callable(getattr(part, "act", None)):
+        raise PartError(f"{Own(part).at()}: is what greedy() returned; it must be a controller")
+    key = jax.eval_shape(lambda: jax.random.key(0))
+    state = _shapes(part, "init", lambda: part.init(agent.spec))
+
+    def act(params: Params, state: Any, env: EnvState, key: Any) -> Any:
+        return part.act(params._replace(world=env), state, env.obs, key)
+
+    result = _traced(part, "act", act, params, state, env, key)
+    at = Own(part).at("act")
+    if not isinstance(result, tuple) or len(result) != 3:
+        raise PartError(f"{at}: {_returned(result, 'action, state, metrics')}")
+    wanted = jax.ShapeDtypeStruct((agent.spec.act,), jnp.float32)
+    if _words(result[0]) != _words(wanted):
+        must = f"it must be {_words(wanted)} in [-1, 1]"
+        raise PartError(f"{at}: returned the action {_words(result[0])}; {must}")
+    _check_state(part, "act", state, result[1])
+    _check_metrics(part, "act", result[2], names)
+
+
+def _check_state(part: Any, method: str, before: Any, after: Any) -> None:
+    """Raise PartError unless a state is as `init` gave it, in structure, shapes and types."""
+    one, two = _leaves(before), _leaves(after)
+    at = Own(part).at(method)
+    if one == two and jax.tree.structure(before) != jax.tree.structure(after):
+        raise PartError(f"{at}: returned a state of another structure than init")
+    for name in (*one, *two):
+        if one.get(name) != two.get(name):
+            gives = [
+                f"state{name} {of[name]}" if name in of else f"no state{name}" for of in (two, one)
+            ]
+            raise PartError(f"{at}: returned {gives[0]}, and init {gives[1]}; both must be equal")
+
+
+def _check_metrics(part: Any, method: str, metrics: Any, names: dict[str, str]) -> None:
+    """Raise PartError unless metrics are numbers by name, with names that no other part has.
+
+    names: those before, with their class; gets the new ones.
+    """
+    at, kind = Own(part).at(method), type(part).__name__
+    if not isinstance(metrics, Mapping):
+        raise PartError(f"{at}: returned metrics {_words(metrics)}; it must be a dict of numbers")
+    for name, value in metrics.items():
+        if not (hasattr(value, "dtype") and jnp.issubdtype(value.dtype, jnp.number)):
+            words = "a dict" if isinstance(value, Mapping) else _words(value)
+            raise PartError(f"{at}: metric {name} is {words}; it must be a number, float32[]")
+        if name in names and _of_user(part):
+            owner = names[name] or "every row"
+            raise PartError(f"{at}: metric {name}: {owner} has it, too; write mine/{name}")
+        names[name] = kind
+
+
+def _traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
+    """Shapes of what `call` returns, traced twice.
+
+    Raises:
+        PartError: if the two differ, as NumPy or Python drew numbers.
+    """
+    both = [_called(part, method, jax.jit(lambda *a: call(*a)).trace, *arguments) for _ in "ab"]
+    first, second = (f"{each.jaxpr}{[*map(str, each.jaxpr.consts)]}" for each in both)
+    if _of_user(part) and first != second:
+        raise PartError(
+            f"{Own(part).at(method)}: gives other numbers when it is traced again: what NumPy or "
+            "Python draws is a constant of the compiled program; use jax.random, with the key"
+        )
+    return both[0].out_info
+
+
+def _shapes(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
+    """Shapes of what `call` returns."""
+    return _called(part, method, jax.eval_shape, call, *arguments)
+
+
+def _called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
+    """What `call` returns; its errors name the user's part and the line."""
+    mine = Own(next(_mine(part), part))
+    try:
+        return call(*arguments)
+    except UsageError:
+        raise
+    except FAULTS as error:
+        line = in_user_code(error)
+        if line is None and isinstance(error, AttributeError) and _of_user(error.obj):
+            line = f"{Own(error.obj).at()} has no {error.name}{_where(error.name)}"
+        line = line or f"{mine.at()}: {gist(error)}"
+        raise PartError(f"{line}; in {type(part).__name__}.{method}") from error
+
+
+def _where(method: str) -> str:
+    """The protocols that say what a method is."""
+    names = [name for name in protocols.__all__ if method in vars(getattr(protocols, name))]
+    return f"; see {', '.join(f'protocols.{name}' for name in names)}" if names else ""
+
+
+def _of_user(part: Any) -> bool:
+    """Whether the class of a part is none of the library's."""
+    kind = part if isinstance(part, type) else type(part)
+    return kind.__module__.partition(".")[0] not in ("hybrid_rl", "builtins", "jax", "jaxlib")
+
+
+def _mine(part: Any) -> Iterator[Any]:
+    """The parts of the user's in a part, itself first; of worlds none."""
+    if isinstance(part, list | tuple | dict):
+        for each in part.values() if isinstance(part, dict) else part:
+            yield from _mine(each)
+    elif is_dataclass(part) and not hasattr(part, "reset"):
+        if _of_user(part):
+            yield part
+        for field in fields(part):
+            yield from _mine(getattr(part, field.name, None))
+
+
+def _leaves(tree: Any) -> dict[str, str]:
+    """Path of each leaf -> its type, such as float32[2]."""
+    paths = jax.tree_util.tree_leaves_with_path(tree)
+    return {jax.tree_util.keystr(path): _words(leaf) for path, leaf in paths}
+
+
+def _words(value: Any) -> str:
+    """float32[2], or the kind of a Python value."""
+    if hasattr(value, "shape") and hasattr(value, "dtype"):
+        return f"{value.dtype}{list(value.shape)}"
+    return "None" if value is None else f"a {type(value).__name__}"
+
+
+def _returned(result: Any, must: str) -> str:
+    """What a method returned that must return several things."""
+    got = f"a tuple of {len(result)}" if isinstance(result, tuple) else _words(result)
+    return f"returned {got}; it must be ({must})"
