@@ -101,9 +101,12 @@ def as_typed(typed: Sequence[str]) -> Iterator[None]:
 
 def _of_settings(line: str, given: Mapping[str, str]) -> str:
     """A message about a field that a part lacks, with the settings that set it, not the user."""
-    field, name = re.match(r"([\w.]+): \w+ has ", line), given.get("settings", "")
-    if field is None or field[1] in given or name not in options("settings"):
+    field, name = re.match(r"([\w.]+): \w+ (?:in \S+ )?has ", line), given.get("settings", "")
+    if field is None or field[1] in given:
         return line
+    if name not in options("settings"):
+        lacking = field[1].rpartition(".")[2]
+        return f"{line}; the method sets {field[1]}: add a field {lacking}, or another part"
     sets: Any = OmegaConf.load(file("settings", name))
     if select(plain(sets), field[1]) is LACKING:
         return line

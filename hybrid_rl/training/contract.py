@@ -8,14 +8,16 @@ that begins with the user's file, as in `envs.contract` for worlds.
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from hybrid_rl import protocols
 from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, gist, in_user_code
-from hybrid_rl.types import EnvState, Params
+from hybrid_rl.types import EnvState, Params, Spec
 
 if TYPE_CHECKING:
     from hybrid_rl.training.agent import Agent
@@ -28,6 +30,7 @@ ROLES = {  # kind of a part -> its methods and what they take
         "update": ("state", "params", "batch", "key"),
     },
 }
+MODEL = ("init", "lift", "step")  # what makes a part a model
 FIELDS = {  # of a learner, by its data
     "uniform": ("batch_size", "batches", "updates", "during_random"),
     "latest": ("every",),
@@ -92,6 +95,9 @@ def check(agent: "Agent", controllers: Iterable[Any]) -> None:
     if not any(_mine([*controllers, *agent.learners.values()])):
         return
     key = jax.eval_shape(lambda: jax.random.key(0))
+    for part in _mine([*controllers, *agent.learners.values()]):
+        if all(hasattr(part, method) for method in MODEL):
+            _check_model(part, agent.spec, key)
     states, learned = {}, {}
     for name, learner in agent.learners.items():
         states[name] = _shapes(learner, "init", lambda key, of=learner: agent._first(of, key), key)
@@ -118,16 +124,31 @@ def check(agent: "Agent", controllers: Iterable[Any]) -> None:
     env = jax.eval_shape(agent.episode.reset, key)
     for controller in controllers:
         _check_members(controller, "controller")
-        for each in dict.fromkeys((controller, _called(controller, "greedy", controller.greedy))):
+        greedy = _called(controller, "greedy", controller.greedy)
+        if not callable(getattr(greedy, "act", None)):
+            got = f"returned {_words(greedy)}; it must be a controller"
+            raise PartError(f"{Own(controller).at('greedy')}: {got}")
+        for each in dict.fromkeys((controller, greedy)):
             _check_acting(each, agent, params, env, {**names} if each is controller else {})
+
+
+def _check_model(part: Any, spec: Spec, key: Any) -> None:
+    """Raise PartError unless `lift` and `step` of a model give planning states [n]."""
+    obs, u = (jax.ShapeDtypeStruct((size,), jnp.float32) for size in (spec.obs, spec.act))
+    params = _shapes(part, "init", lambda key: part.init(key, spec), key)
+    x = _shapes(part, "lift", part.lift, params, obs)
+    after = _shapes(part, "step", part.step, params, x, u)
+    if getattr(x, "ndim", 1) != 1:
+        raise PartError(f"{Own(part).at('lift')}: returned {_words(x)}; it must be float32[n]")
+    if _leaves(x) != _leaves(after):
+        must = f"it must be {_words(x)}, as lift returned"
+        raise PartError(f"{Own(part).at('step')}: returned {_words(after)}; {must}")
 
 
 def _check_acting(
     part: Any, agent: "Agent", params: Params, env: EnvState, names: dict[str, str]
 ) -> None:
     """Raise PartError unless the controller `part` gives an action, its state and metrics."""
-    if part is None or not callable(getattr(part, "act", None)):
-        raise PartError(f"{Own(part).at()}: is what greedy() returned; it must be a controller")
     key = jax.eval_shape(lambda: jax.random.key(0))
     state = _shapes(part, "init", lambda: part.init(agent.spec))
 
@@ -165,17 +186,14 @@ def _check_metrics(part: Any, method: str, metrics: Any, names: dict[str, str]) 
 
     names: those before, with their class; gets the new ones.
     """
-    at, kind = Own(part).at(method), type(part).__name__
     if not isinstance(metrics, Mapping):
-        raise PartError(f"{at}: returned metrics {_words(metrics)}; it must be a dict of numbers")
-    for name, value in metrics.items():
-        if not (hasattr(value, "dtype") and jnp.issubdtype(value.dtype, jnp.number)):
-            words = "a dict" if isinstance(value, Mapping) else _words(value)
-            raise PartError(f"{at}: metric {name} is {words}; it must be a number, float32[]")
+        must = "it must be a dict of numbers"
+        raise PartError(f"{Own(part).at(method)}: returned metrics {_words(metrics)}; {must}")
+    for name in metrics:
         if name in names and _of_user(part):
-            owner = names[name] or "every row"
-            raise PartError(f"{at}: metric {name}: {owner} has it, too; write mine/{name}")
-        names[name] = kind
+            line = f"metric {name}: {names[name] or 'every row'} has it, too; write mine/{name}"
+            raise PartError(f"{Own(part).at(method)}: {line}")
+        names[name] = type(part).__name__
 
 
 def _traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
@@ -184,7 +202,17 @@ def _traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -
     Raises:
         PartError: if the two differ, as NumPy or Python drew numbers.
     """
-    both = [_called(part, method, jax.jit(lambda *a: call(*a)).trace, *arguments) for _ in "ab"]
+
+    def judged(*arguments: Any) -> Any:
+        result = call(*arguments)
+        metrics = result[-1] if isinstance(result, tuple) else None
+        for name, value in metrics.items() if isinstance(metrics, Mapping) else ():
+            if not isinstance(value, (jax.Array, np.generic, np.ndarray, int, float)):
+                line = f"metric {name} is {_words(value)}; it must be a number, float32[]"
+                raise PartError(f"{Own(part).at(method)}: {line}")
+        return result
+
+    both = [_called(part, method, jax.jit(partial(judged)).trace, *arguments) for _ in "ab"]
     first, second = (f"{each.jaxpr}{[*map(str, each.jaxpr.consts)]}" for each in both)
     if _of_user(part) and first != second:
         raise PartError(
@@ -211,12 +239,13 @@ def _called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -
         if line is None and isinstance(error, AttributeError) and _of_user(error.obj):
             line = f"{Own(error.obj).at()} has no {error.name}{_where(error.name)}"
         line = line or f"{mine.at()}: {gist(error)}"
-        raise PartError(f"{line}; in {type(part).__name__}.{method}") from error
+        raise PartError(f"{line.rstrip('.')}; in {type(part).__name__}.{method}") from error
 
 
 def _where(method: str) -> str:
     """The protocols that say what a method is."""
-    names = [name for name in protocols.__all__ if method in vars(getattr(protocols, name))]
+    kinds = {name: getattr(protocols, name) for name in protocols.__all__}
+    names = [name for name, kind in kinds.items() if method in getattr(kind, "__dict__", ())]
     return f"; see {', '.join(f'protocols.{name}' for name in names)}" if names else ""
 
 

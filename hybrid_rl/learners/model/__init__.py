@@ -76,7 +76,12 @@ class ModelLearner:
     """
 
     model: Annotated[
-        Trainable, has("loss", "has no weights to learn; choose model=gaussian or model=ensemble")
+        Trainable,
+        has(
+            "loss",
+            "has no weights to learn; choose model=gaussian or model=ensemble, or write its loss "
+            "(protocols.Trainable)",
+        ),
     ]
     reward: LearnedReward | None = None
     learning_rate: Positive = 3e-3
