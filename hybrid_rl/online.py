@@ -64,6 +64,7 @@ class OnlineLearner:
         dt: float = 0.05,
         learn: str = "background",
         seed: int = 0,
+        config_dir: str | Path | None = None,
     ) -> None:
         """Compile; this takes some seconds.
 
@@ -75,13 +76,11 @@ class OnlineLearner:
             dt: [s] between decisions.
             learn: one of MODES.
             seed: of all random numbers.
+            config_dir: a folder with configuration groups of the user, as for `--config-dir`.
         """
         if learn not in MODES:
             raise UsageError(f"learn={learn}: choose one of {', '.join(MODES)}")
-        if isinstance(method, DictConfig):
-            self.config = method
-        else:
-            self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed)
+        self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed, config_dir)
         check(self.config)
         prepare(self.config)
         refuse_x64()
@@ -251,8 +250,7 @@ class OnlineLearner:
         learner = cls(config, learn=learn)
         learner.close()
         store = Store(Path(folder) / "checkpoints", learner._loop, True, {})
-        state, _, record, _ = store.restore()
-        learner._state = state
+        learner._state, _, record, _ = store.restore()
         learner._start(record.step)
         return learner
 
@@ -289,12 +287,14 @@ def _free(folder: Path | str) -> Path:
     return path
 
 
-def _config(method: Sequence[str], sizes: dict[str, Any], seed: int) -> DictConfig:
-    """The configuration of a method in a world of these sizes."""
+def _config(method: Any, sizes: dict[str, Any], seed: int, own: Any) -> DictConfig:
+    """The configuration of a method in a world of these sizes; that of `load` stays as it is."""
+    if isinstance(method, DictConfig):
+        return method
     if isinstance(method, str):
         raise UsageError(f'OnlineLearner("{method}"): give a list, OnlineLearner(["{method}"])')
     for key in (each.partition("=")[0].lstrip("+") for each in [*method] if "=" in each):
         if key in ELSEWHERE:
             raise UsageError(f"OnlineLearner: {key}=: {ELSEWHERE[key]}")
     given = [f"env.{name}={value}" for name, value in sizes.items()]
-    return configuration.load(["task=online", *given, f"seed={seed}", *method])
+    return configuration.load(["task=online", *given, f"seed={seed}", *method], own)

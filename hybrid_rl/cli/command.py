@@ -129,6 +129,7 @@ def _ordered(line: Sequence[str]) -> list[str]:
     Raises:
         UsageError: for what is neither key=value nor an option of Hydra's.
     """
+    line = [re.sub("^config_dir=", "--config-dir=", text) for text in line]  # as elsewhere
     renamed.check(line)
     check_choices(line)
     follow, found, modes = 0, [], []  # words that belong to an option; places of all these; modes

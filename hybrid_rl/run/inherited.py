@@ -24,11 +24,11 @@ WIDE = ("settings", "experiment")  # they would set what DIR has set
 OWN = {"random_steps": 0, "pretrain": 0, "run_dir": None, "freeze": [], "distributed": False}
 
 
-def load(texts: Sequence[str]) -> DictConfig:
+def load(texts: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """The resolved configuration of these overrides, also of run=DIR; errors as `config.load`."""
     if isinstance(texts, str) or not any(text.startswith("run=") for text in texts):
-        return configuration.load(texts)
-    return resolved(configuration.composed(chosen(texts)), texts)
+        return configuration.load(texts, config_dir)
+    return resolved(configuration.composed(chosen(texts), config_dir), texts)
 
 
 def chosen(texts: Sequence[str]) -> list[str]:

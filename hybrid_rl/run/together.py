@@ -44,13 +44,13 @@ class Member:
     values: Values
 
 
-def load(texts: Sequence[str] | DictConfig) -> list[Member]:
+def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None) -> list[Member]:
     """The runs of these overrides, or of what is resolved; errors as of `inherited`, `expanded`."""
     if isinstance(texts, DictConfig):
         return [Member(texts, {})]
     if isinstance(texts, str) or not any(map(overrides.is_swept, texts)):
-        return [Member(inherited.load(texts), {})]
-    return expanded(configuration.composed(inherited.chosen(texts)), texts)
+        return [Member(inherited.load(texts, config_dir), {})]
+    return expanded(configuration.composed(inherited.chosen(texts), config_dir), texts)
 
 
 def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:

@@ -245,7 +245,10 @@ def _called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -
 def _where(method: str) -> str:
     """The protocols that say what a method is."""
     kinds = {name: getattr(protocols, name) for name in protocols.__all__}
-    names = [name for name, kind in kinds.items() if method in getattr(kind, "__dict__", ())]
+    has = {
+        name: {*dir(kind), *getattr(kind, "__annotations__", ())} for name, kind in kinds.items()
+    }
+    names = [name for name in has if method in has[name]]
     return f"; see {', '.join(f'protocols.{name}' for name in names)}" if names else ""
 
 
