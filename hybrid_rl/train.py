@@ -113,7 +113,6 @@ def train(
     method: Sequence[str] | DictConfig | Agent = (),
     given: Mapping[str, str] = launch.NOTHING,
     *,
-    config_dir: str | Path | None = None,
     on_row: OnRow | None = None,
     progress: bool = True,
     **settings: Any,
@@ -130,12 +129,12 @@ def train(
         method: what follows the command, as a list; a configuration of `compose`; or an agent,
             which continues where run_dir holds its checkpoints.
         given: the overrides of the user, key -> value, for a configuration with `resume`.
-        config_dir: a folder with configuration groups of the user, as for `--config-dir`.
         on_row: called with each new row of metrics.jsonl, a dictionary. Once it returns False, or
             raises, the run ends with a checkpoint, and "finished" of the result is False.
         progress: False prints nothing.
-        settings: of an agent alone (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds,
-            run_dir, name, log_every, eval_every, eval_episodes, checkpoint_every.
+        settings: of a list alone, config_dir, a folder as for `--config-dir`; of an agent alone
+            (hybrid_rl.run.assembled.run_of): total_steps, seed, num_seeds, run_dir, name,
+            log_every, eval_every, eval_episodes, checkpoint_every.
 
     Raises:
         KeyboardInterrupt: after Ctrl-C and a checkpoint.
@@ -144,20 +143,17 @@ def train(
         CheckpointError: if a checkpoint could not be written or read.
     """
     output = launch.Output(None if on_row is None else loggers.Function(on_row), progress)
-    if config_dir is not None and isinstance(method, Agent | DictConfig):
-        raise UsageError("config_dir: is for a list of overrides; an agent has its parts already")
     if isinstance(method, Agent):
         run = _run_of(method, settings)
         go = launch.begin if run.config.resume is None else launch.proceed
         result = Result(go(run, interrupt.answered, output), run)
     else:
+        own = settings.pop("config_dir", None)
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
         given = given if isinstance(method, DictConfig) else overrides.given(method)
-        result = Result(
-            launch.train(together.load(method, config_dir), given, interrupt.answered, output)
-        )
+        result = Result(launch.train(together.load(method, own), given, interrupt.answered, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
     if output.on_row is not None and output.on_row.problem is not None:

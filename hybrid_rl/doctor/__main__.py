@@ -28,7 +28,7 @@ NOTHING = """{folder}: {count} checks, and nothing to see.
 They see neither what you want nor how hard it is; to see it:
   python -m hybrid_rl.render run={folder}  what the robot does: is that what the reward pays?
   python -m hybrid_rl.evaluate run={folder} mode=policy
-                                           and mode=planner, if it has one: the worse is at fault
+                                           and mode=planner, if it has them: the worse is at fault
   python -m hybrid_rl.report run={folder}  all curves; returns that still rise need more decisions
 The documentation's page "My robot does not learn" goes on."""
 CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that page

@@ -275,7 +275,9 @@ def check(given: Any) -> tuple[str, ...]:
     """
     names = () if given is None else (given,) if isinstance(given, str) else tuple(given)
     if unknown := [name for name in names if name not in NAMES]:
-        raise UsageError(f"logger={unknown[0]}: choose of {', '.join(NAMES)}, or null")
+        line = f"choose of {', '.join(NAMES)}, or null"
+        always = "every run writes metrics.jsonl and tensorboard/"
+        raise UsageError(f"logger={unknown[0]}: {line}; {always}")
     for name in (each for each in names if each in PACKAGES):
         os.environ.setdefault(*TRACKIO)
         try:

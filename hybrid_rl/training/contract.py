@@ -9,7 +9,7 @@ that begins with the user's file, as in `envs.contract` for worlds.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -18,9 +18,6 @@ import numpy as np
 from hybrid_rl import protocols
 from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, gist, in_user_code
 from hybrid_rl.types import EnvState, Params, Spec
-
-if TYPE_CHECKING:
-    from hybrid_rl.training.agent import Agent
 
 ROLES = {  # kind of a part -> its methods and what they take
     "controller": {"init": ("spec",), "act": ("params", "state", "obs", "key"), "greedy": ()},
@@ -85,8 +82,8 @@ def _check_members(part: Any, role: str) -> None:
         )
 
 
-def check(agent: "Agent", controllers: Iterable[Any]) -> None:
-    """Check the parts of `agent`, and the controllers that act with what it learns.
+def check(agent: Any, controllers: Iterable[Any]) -> None:
+    """Check the parts of an Agent, and the controllers that act with what it learns.
 
     Raises:
         PartError: in one line: the file and line, what a method gives, and what it must give.
@@ -119,8 +116,8 @@ def check(agent: "Agent", controllers: Iterable[Any]) -> None:
         result = _traced(learner, "update", update, states[name], params, memory, key)
         if not isinstance(result, tuple) or len(result) != 2:
             raise PartError(f"{Own(learner).at('update')}: {_returned(result, 'state, metrics')}")
-        _check_state(learner, "update", states[name], result[0])
         _check_metrics(learner, "update", result[1], names)
+        _check_state(learner, "update", states[name], result[0])
     env = jax.eval_shape(agent.episode.reset, key)
     for controller in controllers:
         _check_members(controller, "controller")
@@ -146,7 +143,7 @@ def _check_model(part: Any, spec: Spec, key: Any) -> None:
 
 
 def _check_acting(
-    part: Any, agent: "Agent", params: Params, env: EnvState, names: dict[str, str]
+    part: Any, agent: Any, params: Params, env: EnvState, names: dict[str, str]
 ) -> None:
     """Raise PartError unless the controller `part` gives an action, its state and metrics."""
     key = jax.eval_shape(lambda: jax.random.key(0))
@@ -212,7 +209,8 @@ def _traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -
                 raise PartError(f"{Own(part).at(method)}: {line}")
         return result
 
-    both = [_called(part, method, jax.jit(partial(judged)).trace, *arguments) for _ in "ab"]
+    programs = [jax.jit(partial(judged)) for _ in range(2)]  # two functions: neither is kept
+    both = [_called(part, method, each.trace, *arguments) for each in programs]
     first, second = (f"{each.jaxpr}{[*map(str, each.jaxpr.consts)]}" for each in both)
     if _of_user(part) and first != second:
         raise PartError(

@@ -1,0 +1,166 @@
+"""What is wrong with a part of the user's is one line that begins with its file, before a run."""
+
+import re
+from dataclasses import dataclass, replace
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import hybrid_rl as hr
+from hybrid_rl.controllers.sampling import SamplingController
+from hybrid_rl.data.replay import Replay
+from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.errors import PartError
+from hybrid_rl.objectives.predicted_return import PredictedReturn
+from hybrid_rl.proposals.noise import NoiseProposal
+from hybrid_rl.training import contract
+
+
+@dataclass(frozen=True)
+class Line:
+    """x' = x + A (x, u)."""
+
+    def init(self, key, spec):
+        return {"A": jnp.zeros((spec.obs, spec.obs + spec.act))}
+
+    def lift(self, params, obs):
+        return obs
+
+    def step(self, params, x, u):
+        return x + params["A"] @ jnp.concatenate((x, u))
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A gradient step on the error of the model."""
+
+    model: Any = Line()
+    wrong: str = ""
+    data: Any = "uniform"
+    owns: Any = ("model",)
+    batch_size: int = 4
+    batches = 1
+    updates = 1
+    during_random = False
+
+    def init(self, key, spec):
+        return self.model.init(key, spec), 0  # and the number of updates, of Python
+
+    def params(self, state):
+        return {"critic" if self.wrong == "params" else "model": state[0]}
+
+    def update(self, state, params, batch, key):
+        def loss(p):
+            after = jax.vmap(self.model.step, (None, 0, 0))(p, batch.obs, batch.action)
+            return ((after - batch.next_obs) ** 2).mean()
+
+        error, gradient = jax.value_and_grad(loss)(state[0])
+        now = jax.tree.map(lambda p, g: p - 0.1 * g, state[0], gradient), state[1] + 1
+        name = "world/obs" if self.wrong == "name" else "mine/error"
+        metrics: Any = {name: "low" if self.wrong == "word" else error, "mine/count": state[1]}
+        return {
+            "alone": now,
+            "longer": ((*now, now[1]), metrics),
+            "type": ((now[0], now[1] + 0.5), metrics),
+        }.get(self.wrong, (now, metrics))
+
+
+@dataclass(frozen=True)
+class Planner:
+    """An action that the model finds good, in some way."""
+
+    model: Any = Line()
+    wrong: str = ""
+
+    def init(self, spec):
+        return jnp.zeros(spec.act)
+
+    def act(self, params, state, obs, key):
+        if self.wrong == "line":
+            obs = obs + jnp.zeros(7)
+        drawn = np.random.default_rng().normal() if self.wrong == "numpy" else 0.0
+        u = jnp.tanh(self.model.step(params.model, obs, state)[:1] + drawn)
+        u = {"many": jnp.tile(u, 2), "whole": jnp.sign(u).astype(int)}.get(self.wrong, u)
+        return u, u[:0] if self.wrong == "state" else state + 1, {"mine/u": u[0]}
+
+    def greedy(self):
+        return None if self.wrong == "greedy" else self
+
+
+@dataclass(frozen=True)
+class Wide(Line):
+    """Its step returns a row."""
+
+    def step(self, params, x, u):
+        return super().step(params, x, u)[None]
+
+
+class Actless:
+    """Without act."""
+
+    def init(self, spec):
+        return ()
+
+    def greedy(self):
+        return self
+
+
+def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
+    agent = hr.Agent(hr.Episode(Pendulum(), 20), planner, {"model": learner}, Replay().within(9, 1))
+    contract.check(agent, [planner])
+
+
+@pytest.mark.parametrize(
+    ("part", "words"),
+    [
+        (Fit(data="replay"), 'Fit: data is \'replay\'; it must be "uniform" or "latest"'),
+        (Fit(owns="model"), "Fit: owns is 'model'; it must be a tuple, as"),
+        (Fit(data="latest"), 'Fit has no every; a learner with data = "latest" has every'),
+        (Fit(wrong="params"), "Fit.params: returned ['critic']; it must be a dict of what it"),
+        (Fit(wrong="alone"), "Fit.update: returned metrics int32[]; it must be a dict of numbers"),
+        (Fit(wrong="longer"), "returned state[2] int32[], and init no state[2]; both must be"),
+        (Fit(wrong="type"), "returned state[1] float32[], and init state[1] int32[]; both must be"),
+        (Fit(wrong="word"), "Fit.update: metric mine/error is a str; it must be a number"),
+        (Fit(wrong="name"), "metric world/obs: every row has it, too; write mine/world/obs"),
+        (Fit(Wide()), "Wide.step: returned float32[1, 3]; it must be float32[3], as lift returned"),
+        (Fit(Actless()), "TypeError: Actless.init() takes 2 positional arguments but 3 were given"),
+        (Actless(), "Actless has no act; write def act(self, params, state, obs, key)"),
+        (
+            Planner(wrong="line"),
+            "add got incompatible shapes for broadcasting: (3,), (7,); in Plan",
+        ),
+        (Planner(wrong="numpy"), "Planner.act: gives other numbers when it is traced again"),
+        (Planner(wrong="many"), "returned the action float32[2]; it must be float32[1] in [-1, 1]"),
+        (Planner(wrong="whole"), "returned the action int32[1]; it must be float32[1] in [-1, 1]"),
+        (Planner(wrong="state"), "returned state float32[0], and init state float32[1]; both must"),
+        (Planner(wrong="greedy"), "Planner.greedy: returned None; it must be a controller"),
+    ],
+)
+def test_what_is_wrong_is_one_line(part, words):
+    with pytest.raises(PartError) as error:
+        check(**{"learner" if isinstance(part, Fit) else "planner": part})
+    line = str(error.value)
+    assert re.match(r"\S*test_contract\.py:\d+: ", line)
+    assert words in line
+    assert "\n" not in line
+
+
+def test_a_part_of_the_library_names_what_the_users_part_lacks():
+    reward = Actless()
+    planner = SamplingController(Line(), PredictedReturn(reward=reward), NoiseProposal())
+    with pytest.raises(
+        PartError, match=r"Actless has no outcome; see protocols\.Reward.*; in Samp"
+    ):
+        check(planner)
+
+
+def test_a_right_method_learns_with_a_python_number_in_its_state(tmp_path):
+    agent = hr.Agent(hr.Episode(Pendulum(), 20), Planner(), {"model": Fit()}, Replay())
+    result = hr.train(agent, total_steps=40, run_dir=tmp_path / "run", log_every=20, progress=False)
+    (curve,) = result.curves("mine/count")
+    assert curve.each[0, -1] == np.arange(15, 35).mean()  # from the fifth decision on, of 20 to 39
+    with pytest.raises(ValueError, match=r"learners: one and two both learn params\.model"):
+        replace(agent, learners={"one": Fit(), "two": Fit()})
