@@ -21,12 +21,11 @@ from hybrid_rl.composition import CONF, check_choices, check_task, explain, task
 from hybrid_rl.envs.adapters.external import External, checked
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.overrides import opened, plain, reached, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.parts import built
 from hybrid_rl.protocols import Controller
-from hybrid_rl.training import contract
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -150,8 +149,7 @@ def build(config: DictConfig) -> Run:
             -remembered * config.num_envs,
             tuple(config.get("freeze", ())),
         )
-        contract.check(agent, controllers.values())
-        agent.check(rounds * config.num_envs)
+        agent.check(rounds * config.num_envs, controllers.values())
         owned = [name for learner in agent.learners.values() for name in learner.owns]
         check_owners(controllers, owned, agent.spec)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
@@ -276,6 +274,8 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
     try:
         yield
     except ValueError as error:
+        if isinstance(error, PartError):  # names its file
+            raise
         line = str(error)
         if isinstance(error, FieldError) and error.line.startswith("world=") and error.lacks:
             names = ", ".join(tasks_with(error.lacks))

@@ -17,13 +17,14 @@ from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
+from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, require_slurm, watched
-from hybrid_rl.composition import check_task
+from hybrid_rl.composition import check_task, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
 from hybrid_rl.run import together
@@ -133,8 +134,11 @@ class Sweeper(BasicSweeper):
         refuse_new_keys(jobs[0], self.config.hydra.overrides.hydra)
         configs = []
         loader = self.hydra_context.config_loader
-        for overrides in jobs:
-            config = loader.load_sweep_config(self.config, list(overrides))
+        for number, overrides in enumerate(jobs):
+            try:
+                config = loader.load_sweep_config(self.config, list(overrides))
+            except HydraException as error:
+                raise UsageError(f"{explain(error)} ({self._called(number)})") from error
             hydra = config.hydra
             with open_dict(config):
                 del config["hydra"]
@@ -150,10 +154,12 @@ class Sweeper(BasicSweeper):
                 with command.as_typed(overrides):
                     _check(together.expanded(config, overrides))
             except UsageError as error:
-                label = f"{self.task.called} {number}: {self.task.labels[number]}"
-                label = label.removesuffix(": ")
-                raise UsageError(f"{error} ({label})") from error
+                raise UsageError(f"{error} ({self._called(number)})") from error
         return configs
+
+    def _called(self, number: int) -> str:
+        """What messages call a job."""
+        return f"{self.task.called} {number}: {self.task.labels[number]}".removesuffix(": ")
 
 
 def _check(members: Sequence[together.Member]) -> None:

@@ -20,7 +20,6 @@ from hybrid_rl.envs.adapters.external import checked
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.training import contract
 from hybrid_rl.training.agent import Agent
 
 DEFAULTS = ("compile_cache", "precision")  # those of conf/train.yaml
@@ -68,7 +67,6 @@ def run_of(
     prepare(config)  # first: a check of the user's world initialises JAX's devices
     notes = checked(agent.episode.env)
     rounds = -(-counts["total_steps"] // agent.num_envs)
-    contract.check(agent, [agent.controller])
     agent.check(rounds * agent.num_envs)
     sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))
     run = Run(config, sized, {"full": agent.controller.greedy()}, notes)

@@ -1,6 +1,6 @@
 """One decision of one learner: params -> controller -> environment -> memory -> learners."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ from hybrid_rl.core.branching import where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.protocols import Controller, Learner, Model
-from hybrid_rl.training.contract import check_members
+from hybrid_rl.training import contract
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
@@ -74,7 +74,7 @@ class Agent:
         if strange := [name for name in self.frozen if name not in self.learners]:
             known = ", ".join(self.learners) or "none"
             raise ValueError(f"freeze={strange}: the method's learners are {known}")
-        check_members(self.controller, self.learners)
+        contract.check_members(self.controller, self.learners)
         for name, learner in self.learners.items():
             update_schedule(name, learner, self.num_envs)
 
@@ -83,8 +83,12 @@ class Agent:
         """The environment's sizes and time step."""
         return self.episode.spec
 
-    def check(self, decisions: int) -> None:
-        """Raise ValueError if a part refuses a run of so many decisions; no device is used."""
+    def check(self, decisions: int, controllers: Iterable[Controller] = ()) -> None:
+        """Raise ValueError if a part refuses a run of so many decisions; no device is used.
+
+        controllers: others that act with what it learns.
+        """
+        contract.check(self, dict.fromkeys((self.controller, *controllers)))
         longest = min(decisions, self.episode.steps * self.num_envs)
         for part in self.learners.values():
             if (check := getattr(part, "check", None)) is not None:
