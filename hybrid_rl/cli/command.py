@@ -34,6 +34,9 @@ FLAGS = {  # of Hydra -> how many words follow
 }
 KEYS = (*configuration.READ, "settings", "experiment", "sweep")  # in the help
 MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
+OF_PART = re.compile(
+    r"^((?!hydra)\w+\.[\w.]+)=(\[[^][()]*\]|[^][,(]+)$"
+)  # KEY.KEY=VALUE, one value
 NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
 USAGE = """
 
@@ -154,7 +157,19 @@ def _ordered(line: Sequence[str]) -> list[str]:
     if len(modes) > 1:
         raise UsageError(f"{', '.join(modes)}: give one of them")
     rest = [text for at, text in enumerate(line) if at not in found]
+    if {"-m", "--multirun"} & {*modes} and not any("hydra/sweeper=" in text for text in rest):
+        rest = _of_each(rest)
     return [*(line[at] for at in found), *rest]
+
+
+def _of_each(texts: Sequence[str]) -> list[str]:
+    """The overrides of a sweep over methods, those of keys of parts as a choice of one value.
+
+    Hydra applies what is no choice to the default method first, which may not have the part.
+    """
+    if not any(re.match("(algo|experiment)=.*,", text) for text in texts):
+        return [*texts]
+    return [OF_PART.sub(r"\1=choice(\2)", text) for text in texts]
 
 
 def report(error: BaseException) -> NoReturn:

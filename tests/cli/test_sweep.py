@@ -55,6 +55,14 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
     [
         ("policy_learner.tau=0.005,3", "tau=3: must lie in (0, 1] (job 1: policy_learner.tau=3)"),
         ("algo=sac,scal", "algo=scal: unknown; choose one of the "),
+        (
+            "algo=sac,kle3 explorer.horizon=3",
+            "explorer: unknown key; did you mean expert? (job 0: algo=sac)",
+        ),
+        (  # both have an explorer, which the default method has not
+            "algo=kle3,fourier_ergodic explorer.horizon=3 domain.low=[0,0] seed=-1",
+            "must be a whole number, 0 or more (job 0: algo=kle3)",
+        ),
         ("algo=sac,nn_mppi adjoint_planner.horizon=3,4", "sac, nn_mppi do not use it"),
         (
             "task=pendulum,halfcheetah algo=kle3",
