@@ -46,17 +46,20 @@ class TrainedPolicy:
         """The action [m] at obs [o], or actions [N, m] at [N, o].
 
         Raises:
-            ValueError: for observations of another size, or another N than since the reset.
+            ValueError: for observations of another size, or another N than since the reset, or
+                numbers that are not finite, of which a planner would make an action that is.
         """
         obs = np.asarray(obs, np.float32)
         o = self.spec.obs
         if obs.ndim not in (1, 2) or obs.shape[-1] != o:
             raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
+        if not np.isfinite(obs).all():
+            raise ValueError(f"obs is not finite at {np.argwhere(~np.isfinite(obs))[0].tolist()}")
         rows = np.atleast_2d(obs)
         if self._state is None:
             self._worlds = len(rows)
             self._state = jax.tree.map(
-                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *leaf.shape)), self._begin()
+                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *jnp.shape(leaf))), self._begin()
             )
         if len(rows) != self._worlds:
             raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")

@@ -105,7 +105,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
             raise PartError(f"{Own(learner).at('params')}: returned {got}; {must}")
         learned |= given
     params = Params(**learned)._replace(decisions=jax.ShapeDtypeStruct((), jnp.int32))
-    names = dict.fromkeys((*COLUMNS, *OF_WORLD), "")
+    names: dict[str, str] = dict.fromkeys((*COLUMNS, *OF_WORLD), "")
     memory = jax.eval_shape(lambda: agent.replay.init(agent.spec, agent.num_envs))
     for name, learner in agent.learners.items():
 
@@ -240,7 +240,7 @@ def _called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -
         raise PartError(f"{line.rstrip('.')}; in {type(part).__name__}.{method}") from error
 
 
-def _where(method: str) -> str:
+def _where(method: str | None) -> str:
     """The protocols that say what a method is."""
     kinds = {name: getattr(protocols, name) for name in protocols.__all__}
     has = {

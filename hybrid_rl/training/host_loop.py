@@ -191,7 +191,7 @@ class HostEvaluator:
     ) -> None:
         """Compile one decision in all of them."""
         self.episode, rest, shape = episode, controller.init(episode.spec), keys.shape
-        self.control = jax.tree.map(lambda x: jnp.broadcast_to(x, (*shape, *x.shape)), rest)
+        self.control = jax.tree.map(lambda x: jnp.broadcast_to(x, (*shape, *jnp.shape(x))), rest)
         empty = episode.reset(jax.random.key(0))
 
         def decide(params: Params, control: Any, obs: Array, keys: Array) -> tuple:

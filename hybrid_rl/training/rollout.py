@@ -28,7 +28,7 @@ def begin(episode: Episode, controller: Controller, keys: Array) -> tuple:
     starts, keys = _split(keys)
     env = jax.vmap(episode.reset)(starts)
     rest = controller.init(episode.spec)
-    control = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(keys), *x.shape)), rest)
+    control = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(keys), *jnp.shape(x))), rest)
     return env, control, keys
 
 

@@ -75,15 +75,16 @@ class Planner:
     wrong: str = ""
 
     def init(self, spec):
-        return jnp.zeros(spec.act)
+        return jnp.zeros(spec.act), 0
 
     def act(self, params, state, obs, key):
         if self.wrong == "line":
             obs = obs + jnp.zeros(7)
         drawn = np.random.default_rng().normal() if self.wrong == "numpy" else 0.0
-        u = jnp.tanh(self.model.step(params.model, obs, state)[:1] + drawn)
+        u = jnp.tanh(self.model.step(params.model, obs, state[0])[:1] + drawn)
         u = {"many": jnp.tile(u, 2), "whole": jnp.sign(u).astype(int)}.get(self.wrong, u)
-        return u, u[:0] if self.wrong == "state" else state + 1, {"mine/u": u[0]}
+        kept = u[:0] if self.wrong == "state" else state[0]
+        return u, (kept, state[1] + 1), {"mine/u": u[0]}
 
     def greedy(self):
         return None if self.wrong == "greedy" else self
@@ -134,7 +135,10 @@ def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
         (Planner(wrong="numpy"), "Planner.act: gives other numbers when it is traced again"),
         (Planner(wrong="many"), "returned the action float32[2]; it must be float32[1] in [-1, 1]"),
         (Planner(wrong="whole"), "returned the action int32[1]; it must be float32[1] in [-1, 1]"),
-        (Planner(wrong="state"), "returned state float32[0], and init state float32[1]; both must"),
+        (
+            Planner(wrong="state"),
+            "returned state[0] float32[0], and init state[0] float32[1]; both",
+        ),
         (Planner(wrong="greedy"), "Planner.greedy: returned None; it must be a controller"),
     ],
 )
@@ -148,7 +152,7 @@ def test_what_is_wrong_is_one_line(part, words):
 
 
 def test_a_part_of_the_library_names_what_the_users_part_lacks():
-    reward = Actless()
+    reward: Any = Actless()
     planner = SamplingController(Line(), PredictedReturn(reward=reward), NoiseProposal())
     with pytest.raises(
         PartError, match=r"Actless has no outcome; see protocols\.Reward.*; in Samp"
@@ -156,10 +160,14 @@ def test_a_part_of_the_library_names_what_the_users_part_lacks():
         check(planner)
 
 
-def test_a_right_method_learns_with_a_python_number_in_its_state(tmp_path):
+def test_a_right_method_learns_and_acts_with_python_numbers_in_its_states(tmp_path):
     agent = hr.Agent(hr.Episode(Pendulum(), 20), Planner(), {"model": Fit()}, Replay())
     result = hr.train(agent, total_steps=40, run_dir=tmp_path / "run", log_every=20, progress=False)
     (curve,) = result.curves("mine/count")
     assert curve.each[0, -1] == np.arange(15, 35).mean()  # from the fifth decision on, of 20 to 39
+    policy = result.load().policy()
+    assert policy([1.0, 0.0, 0.0]).shape == (1,)
+    with pytest.raises(ValueError, match=r"obs is not finite at \[1\]"):
+        policy([1.0, np.nan, 0.0])
     with pytest.raises(ValueError, match=r"learners: one and two both learn params\.model"):
         replace(agent, learners={"one": Fit(), "two": Fit()})
