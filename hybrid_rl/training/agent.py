@@ -88,7 +88,7 @@ class Agent:
 
         controllers: others that act with what it learns.
         """
-        contract.check(self, dict.fromkeys((self.controller, *controllers)))
+        contract.check(self, [self.controller, *controllers])
         longest = min(decisions, self.episode.steps * self.num_envs)
         for part in self.learners.values():
             if (check := getattr(part, "check", None)) is not None:

@@ -88,7 +88,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
     Raises:
         PartError: in one line: the file and line, what a method gives, and what it must give.
     """
-    controllers = [*controllers]
+    controllers = list({id(each): each for each in controllers}.values())  # full may be policy
     if not any(_mine([*controllers, *agent.learners.values()])):
         return
     key = jax.eval_shape(lambda: jax.random.key(0))
@@ -125,7 +125,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         if not callable(getattr(greedy, "act", None)):
             got = f"returned {_words(greedy)}; it must be a controller"
             raise PartError(f"{Own(controller).at('greedy')}: {got}")
-        for each in dict.fromkeys((controller, greedy)):
+        for each in [controller] if greedy is controller else [controller, greedy]:
             _check_acting(each, agent, params, env, {**names} if each is controller else {})
 
 

@@ -1,7 +1,7 @@
 """What is wrong with a part of the user's is one line that begins with its file, before a run."""
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import jax
@@ -73,6 +73,7 @@ class Planner:
 
     model: Any = Line()
     wrong: str = ""
+    table: Any = field(default_factory=dict)  # has no hash
 
     def init(self, spec):
         return jnp.zeros(spec.act), 0
