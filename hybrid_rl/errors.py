@@ -68,13 +68,13 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
     for file, line in reversed(frames):
         folders = set(Path(file).parents)
         if file == own or (file[:1] != "<" and not folders & FOREIGN):
-            return f"{relative(file)}:{line}: {gist(error)}"
+            return f"{relative(file)}:{line}: {one_line(error)}"
         if folders & owners:
             return None
     return None
 
 
-def gist(error: BaseException) -> str:
+def one_line(error: BaseException) -> str:
     """The kind of an error, the gist of its message and a hint, in one line."""
     kind, text = type(error), str(error).strip()
     if "Traceback (most recent" in text:  # of a callback
@@ -93,6 +93,6 @@ def relative(file: str | Path) -> str:
     return str(path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path)
 
 
-def shown(words: object) -> str:
-    """Words of a file or a user in a line of ours: what a terminal would obey is escaped."""
+def printable(words: object) -> str:
+    """Words of a file or a user, for a line of ours: what a terminal would obey is escaped."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(words))

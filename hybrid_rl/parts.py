@@ -21,7 +21,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.errors import FAULTS, GYMNASIUM, in_user_code, relative, shown
+from hybrid_rl.errors import FAULTS, GYMNASIUM, in_user_code, printable, relative
 from hybrid_rl.fields import FieldError
 
 TARGET, OURS = "_target_", "hybrid_rl."
@@ -43,7 +43,7 @@ def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
         ValueError: for a tree that is nested too deeply.
     """
     if where.count(".") > DEEPEST:
-        raise ValueError(f"{shown(where)[:SHOWN]}...: is nested too deeply")
+        raise ValueError(f"{printable(where)[:SHOWN]}...: is nested too deeply")
     pairs = node.items() if isinstance(node, dict) else enumerate(node)
     for name, value in pairs:
         if name == TARGET:
@@ -64,7 +64,7 @@ def check(node: Any, near: Path | None = None) -> None:
         try:
             part_class(target) if str(target).startswith(OURS) else _source(target, near)
         except ValueError as error:
-            raise ValueError(f"{shown(key)}={shown(target)[:SHOWN]}: {error}") from error
+            raise ValueError(f"{printable(key)}={printable(target)[:SHOWN]}: {error}") from error
 
 
 def part_class(target: Any, near: Path | None = None) -> Any:

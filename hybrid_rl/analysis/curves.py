@@ -127,17 +127,17 @@ def band(values: np.ndarray, resamples: int = RESAMPLES) -> tuple[np.ndarray, np
     return low, high
 
 
-def shown(value: float) -> str:
+def format_number(value: float) -> str:
     """A value with four digits, or with all digits of its whole part: "0.1234", "11,387"."""
     return f"{value:,.4g}" if abs(value) < 1000 else f"{value:,.0f}"
 
 
 def spread(values: np.ndarray) -> str:
     """IQM of [n] and its band as text: "8,250 [6,429, 8,979]"; no band for a single value."""
-    middle = shown(float(iqm(values)))
+    middle = format_number(float(iqm(values)))
     if len(values) == 1:
         return middle
-    low, high = (shown(float(end)) for end in band(values))
+    low, high = (format_number(float(end)) for end in band(values))
     return f"{middle} [{low}, {high}]"
 
 

@@ -21,7 +21,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, file, options
-from hybrid_rl.errors import UsageError, in_user_code, shown
+from hybrid_rl.errors import UsageError, in_user_code, printable
 from hybrid_rl.overrides import LACKING, plain, select
 from hybrid_rl.run import inherited
 
@@ -202,7 +202,7 @@ def _missing(error: BaseException) -> str | None:
 
 
 def _fail(code: int, line: str) -> NoReturn:
-    print(f"hybrid_rl: {shown(' '.join(line.split()))}", file=sys.stderr, flush=True)
+    print(f"hybrid_rl: {printable(' '.join(line.split()))}", file=sys.stderr, flush=True)
     sys.exit(code)
 
 

@@ -220,7 +220,7 @@ def _report(
         rows.append({"job": number, "overrides": labels[number], "run_dir": run_dir, **result})
     (folder / "jobs.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     cells = [("job", "overrides", "run folder", "result")]
-    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _shown(r)) for r in rows]
+    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _outcome_text(r)) for r in rows]
     show(cells)
     failed = [str(row["job"]) for row in rows if row["code"] != 0]
     which = f"; not {', '.join(failed)}" if failed else ""
@@ -236,6 +236,6 @@ def show(cells: Sequence[Sequence[str]]) -> None:
         print("  ".join(columns).rstrip())
 
 
-def _shown(row: dict[str, Any]) -> str:
+def _outcome_text(row: dict[str, Any]) -> str:
     """The result of a job in the table."""
     return row["line"] if not row["code"] else f"failed ({row['code']}): {row['line']}"

@@ -23,7 +23,7 @@ from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBase
 from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
-from hybrid_rl.errors import MisfitError, UsageError, WorldError, shown
+from hybrid_rl.errors import MisfitError, UsageError, WorldError, printable
 from hybrid_rl.overrides import quoted
 from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
@@ -246,7 +246,7 @@ def going_on(folder: str | Path) -> str:
 
 def words(values: Mapping[str, float]) -> str:
     """What sets a run of a sweep apart, as typed; empty if nothing does."""
-    return shown(" ".join(f"{key}={value}" for key, value in values.items()))
+    return printable(" ".join(f"{key}={value}" for key, value in values.items()))
 
 
 def parsed(folder: Path, key: str = "runs") -> DictConfig:

@@ -27,7 +27,7 @@ class Output:
     """Where a run reports, besides its folder."""
 
     on_row: loggers.Function | None = None  # gets every row
-    shown: bool = True  # on the console
+    progress: bool = True  # on the console
 
 
 @dataclass(frozen=True)
