@@ -54,7 +54,7 @@ def install(extra: str) -> str:
     return f'pip install "hybrid_rl[{extra}]"'
 
 
-def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str | None:
+def user_line(error: BaseException, own: str = "", ours: bool = False) -> str | None:
     """FILE:LINE of the user's, what was raised there and a hint; None if no such file took part.
 
     own: a file that counts as the user's wherever it is. ours: also None where the user's line
@@ -72,6 +72,11 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
         if folders & owners:
             return None
     return None
+
+
+def blame(error: BaseException) -> str:
+    """As `user_line`; `one_line` of an error in which no file of the user's took part."""
+    return user_line(error) or one_line(error)
 
 
 def one_line(error: BaseException) -> str:

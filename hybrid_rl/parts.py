@@ -21,7 +21,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.errors import FAULTS, GYMNASIUM, in_user_code, printable, relative
+from hybrid_rl.errors import FAULTS, GYMNASIUM, printable, relative, user_line
 from hybrid_rl.fields import FieldError
 
 TARGET, OURS = "_target_", "hybrid_rl."
@@ -79,7 +79,7 @@ def part_class(target: Any, near: Path | None = None) -> Any:
         home = import_module(module)
         found = getattr(home, name)
     except FAULTS as error:  # whatever the user's module does
-        raise ValueError(in_user_code(error) or f"cannot be imported ({error})") from error
+        raise ValueError(user_line(error) or f"cannot be imported ({error})") from error
     if not isinstance(found, type) or Path(str(home.__file__)).resolve() != source:
         raise ValueError(OTHER)
     if module.startswith(OURS) and not (is_dataclass(found) and found.__module__ == module):
@@ -118,7 +118,7 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
     except ValueError:
         raise
     except FAULTS as error:  # such as a field that it does not have
-        raise ValueError(in_user_code(error) or str(error)) from error
+        raise ValueError(user_line(error) or str(error)) from error
 
 
 def _source(target: Any, near: Path | None) -> Path:
@@ -132,7 +132,7 @@ def _source(target: Any, near: Path | None) -> Path:
     try:
         tree = ast.parse(source.read_bytes(), str(source))
     except SyntaxError as error:
-        raise ValueError(in_user_code(error)) from error
+        raise ValueError(user_line(error)) from error
     nodes = list(ast.walk(tree))
     known = {node.name for node in nodes if isinstance(node, ast.ClassDef)}
     for node in nodes:

@@ -12,7 +12,7 @@ import numpy as np
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode
 from jax import Array
 
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, in_user_code, one_line
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 
 Numbers = np.ndarray | Array
 SILENT = 100  # level of Gymnasium's log
@@ -138,7 +138,7 @@ class Copies:
             line = f"{self.env.name}: {method}: took longer than env.timeout_s"
             raise WorldError(f"{line}={self.env.timeout_s}") from error
         except FAULTS as error:
-            line = str(error) if self.env.processes else in_user_code(error) or one_line(error)
+            line = str(error) if self.env.processes else blame(error)
             if self.env.processes and isinstance(error, EOFError | ConnectionError):
                 line = self._lost()
             raise WorldError(f"{self.env.name}: {method}: {line}") from error
@@ -226,4 +226,4 @@ class Located(gymnasium.Wrapper):
         try:
             return call()
         except FAULTS as error:
-            raise RuntimeError(in_user_code(error) or one_line(error)) from error
+            raise RuntimeError(blame(error)) from error

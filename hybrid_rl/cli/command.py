@@ -21,7 +21,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, file, options
-from hybrid_rl.errors import UsageError, in_user_code, printable
+from hybrid_rl.errors import UsageError, printable, user_line
 from hybrid_rl.overrides import LACKING, plain, select
 from hybrid_rl.run import inherited
 
@@ -182,7 +182,7 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
     if str(error).startswith("RESOURCE_EXHAUSTED"):  # of XLA
         what = str(error).splitlines()[0]
         return 1, f"{what}; fewer num_seeds or num_envs, or a smaller replay.capacity, may fit"
-    if line := in_user_code(error, ours=True):
+    if line := user_line(error, ours=True):
         return 1, line
     return None
 
@@ -218,7 +218,7 @@ def _reported(job: Callable[[], None]) -> None:
     except Exception as error:
         report(error)
     except SystemExit as end:
-        if line := in_user_code(end, ours=True):  # it would end without a word
+        if line := user_line(end, ours=True):  # it would end without a word
             _fail(1, line)
         raise
     except KeyboardInterrupt:

@@ -27,7 +27,7 @@ import numpy as np
 from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, in_user_code, one_line
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
@@ -234,7 +234,7 @@ class Actor:
         except (OSError, WorldError):  # of a connection; TimeoutError is one
             raise
         except FAULTS as error:
-            line = in_user_code(error) or one_line(error)
+            line = blame(error)
             raise WorldError(f"{self.env.name}: {method}: {line}") from error
         finally:
             self._allowed = math.inf

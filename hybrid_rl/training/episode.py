@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.branching import when_any, where
+from hybrid_rl.core.batching import when_any, where
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.training import paid

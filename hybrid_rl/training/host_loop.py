@@ -24,7 +24,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core.branching import where
+from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.envs.adapters.copies import Copies, Outcome
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
@@ -190,12 +190,12 @@ class HostEvaluator:
         self, episode: Episode, controller: Controller, params: Params, keys: Array
     ) -> None:
         """Compile one decision in all of them."""
-        self.episode, rest, shape = episode, controller.init(episode.spec), keys.shape
-        self.control = jax.tree.map(lambda x: jnp.broadcast_to(x, (*shape, *x.shape)), rest)
+        self.episode, shape = episode, keys.shape
+        self.control = repeat(controller.init(episode.spec), *shape)
         empty = episode.reset(jax.random.key(0))
 
         def decide(params: Params, control: Any, obs: Array, keys: Array) -> tuple:
-            env = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(obs), *x.shape)), empty)
+            env = repeat(empty, len(obs))
             keys, now = jnp.moveaxis(jax.vmap(jax.random.split)(keys), 1, 0)
             u, control, _ = act(controller, params, control, env.replace(obs=obs), now)
             return u, control, keys

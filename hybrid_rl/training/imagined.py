@@ -6,8 +6,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.batching import where
 from hybrid_rl.core.branches import Branches
-from hybrid_rl.core.branching import where
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.members import predicted
 from hybrid_rl.fields import Count, Natural, NotNegative, part

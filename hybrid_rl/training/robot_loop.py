@@ -18,7 +18,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core.branching import where
+from hybrid_rl.core.batching import where
 from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.copies import Outcome
