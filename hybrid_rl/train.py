@@ -140,7 +140,7 @@ def train(
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    output = launch.Output(None if on_row is None else loggers.Function(on_row), progress)
+    output = launch.Output(None if on_row is None else loggers.Callback(on_row), progress)
     if isinstance(method, Agent):
         run = _run_of(method, settings)
         go = launch.begin if run.config.resume is None else launch.proceed
@@ -172,7 +172,7 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     typed = overrides.of_job(HydraConfig.get())
     members = together.expanded(config, typed)
     config = members[0].config
-    output = launch.Output(None if on_row is None else loggers.Function(on_row))
+    output = launch.Output(None if on_row is None else loggers.Callback(on_row))
     given = overrides.given(typed)
     summary = launch.train(members, given, interrupt.answered, output)
     if output.on_row is not None and output.on_row.problem is not None:

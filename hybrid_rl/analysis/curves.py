@@ -19,7 +19,7 @@ import numpy as np
 
 from hybrid_rl.analysis.frames import pandas
 from hybrid_rl.analysis.logged import Learner, common, count_failures, learners, swept
-from hybrid_rl.analysis.results import NOT_ROWS, RunFolder, differences, find, short
+from hybrid_rl.analysis.results import NOT_METRICS, RunFolder, differences, find, short
 from hybrid_rl.errors import UsageError
 
 RESAMPLES = 2000  # of the bootstrap
@@ -143,7 +143,7 @@ def spread(values: np.ndarray) -> str:
 
 def plural(count: int, noun: str) -> str:
     """The count with its noun: "1 seed", "2 seeds"."""
-    return f"{count} {noun}{'s' * (count != 1)}"
+    return f"{count:,} {noun}{'s' * (count != 1)}"
 
 
 def area(curve: Curve) -> np.ndarray:
@@ -227,7 +227,7 @@ def _truncated(members: list[RunFolder]) -> list[str]:
 
 def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:
     """The error if no run has a value of the metric; it names those that the runs have."""
-    names = {name for run in folders for row in run.rows for name in row} - set(NOT_ROWS)
+    names = {name for run in folders for row in run.rows for name in row} - set(NOT_METRICS)
     if metric in names:
         return UsageError(f"metric={metric}: has no finite value in these runs")
     has = ", ".join(sorted(names)) or "none yet"

@@ -19,9 +19,9 @@ import yaml
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.reading import Loader, lines, yaml_file
-from hybrid_rl.run.records import COORDINATES, flat, row_of, summary_of
+from hybrid_rl.run.records import COORDINATES, WORD, flat, row_of, summary_of
 
-NOT_ROWS = (*COORDINATES, "diverged")  # of a row; every other name is a metric
+NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
 # what they write, when and where. None of them changes what a learner does up to a given step.
 NOT_SETTINGS = (

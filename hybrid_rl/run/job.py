@@ -26,7 +26,7 @@ from hybrid_rl.training.loops import loop_of
 class Output:
     """Where a run reports, besides its folder."""
 
-    on_row: loggers.Function | None = None  # gets every row
+    on_row: loggers.Callback | None = None  # gets every row
     progress: bool = True  # on the console
 
 

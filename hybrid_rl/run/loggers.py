@@ -227,7 +227,7 @@ class Trackio(Logger):
         self.flush()
 
 
-class Function(Logger):
+class Callback(Logger):
     """A function of the user's, which is called with every new row, a dictionary.
 
     Where it returns False, `ask` is called with 0, and it gets the rows up to the end. Where it

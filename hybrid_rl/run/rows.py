@@ -5,12 +5,13 @@ of E worlds of each of S learners. Rows have the number of a learner here, and i
 """
 
 from collections.abc import Container, Mapping, Sequence
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
+from hybrid_rl.run.records import Row
+
 Metrics = dict[str, np.ndarray]
-Row = dict[str, Any]
 ACTION = "world/action"
 
 
