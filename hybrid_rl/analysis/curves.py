@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.frames import pandas
+from hybrid_rl.analysis.dataframes import pandas
 from hybrid_rl.analysis.logged import Learner, common, count_failures, learners, swept
 from hybrid_rl.analysis.results import NOT_METRICS, RunFolder, differences, find, short
 from hybrid_rl.errors import UsageError

@@ -1,4 +1,4 @@
-"""What a reward or a constraint of the user's must be; ours are tested."""
+"""A check of a reward or a constraint of the user's; those of this library have tests."""
 
 from typing import Any
 
