@@ -208,7 +208,7 @@ def _fail(code: int, line: str) -> NoReturn:
 
 def guarded(job: Callable[[], None]) -> None:
     """Run `job`; what goes wrong becomes one line and an exit code, after it has cleaned up."""
-    with interrupt.tidily():
+    with interrupt.as_exception():
         _reported(job)
 
 

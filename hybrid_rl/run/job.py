@@ -1,10 +1,10 @@
 """What a program trains, and where: a run in its folder, or those of a sweep in theirs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -13,7 +13,7 @@ from hybrid_rl.config import Run
 from hybrid_rl.networks import precision
 from hybrid_rl.run import integrity, loggers, provenance
 from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.records import flat
+from hybrid_rl.run.records import Row, flat
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.store import Store
@@ -28,6 +28,16 @@ class Output:
 
     on_row: loggers.Callback | None = None  # gets every row
     progress: bool = True  # on the console
+
+    @classmethod
+    def of(cls, function: Callable[[Row], Any] | None, progress: bool = True) -> Self:
+        """With a function of the user's that gets every row; None: none."""
+        return cls(None if function is None else loggers.Callback(function), progress)
+
+    def raise_problem(self) -> None:
+        """Raise what the function raised, if it did; the run has ended with a checkpoint."""
+        if self.on_row is not None and self.on_row.problem is not None:
+            raise self.on_row.problem
 
 
 @dataclass(frozen=True)
