@@ -209,4 +209,4 @@ def _table(values: dict[str, Any]) -> Table:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

@@ -197,4 +197,4 @@ if __name__ == "__main__":
     from hybrid_rl.cli import command, interrupt  # here, as learners do not need what they import
 
     interrupt.install()
-    command.guarded(main)
+    command.run(main)

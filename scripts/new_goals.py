@@ -232,4 +232,4 @@ def in_another(trained: Trained, goals: list[Any], change: str) -> tuple[Trained
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

@@ -12,7 +12,7 @@ from hybrid_rl.cli import command
 from scripts.pages import __main__ as pages
 from scripts.pages import community
 
-main = partial(call, lambda: command.guarded(report.main))
+main = partial(call, lambda: command.run(report.main))
 PAGE = community.RESULTS / "community.md"
 ROW = {"task": "hop", "steps": 9, "seeds": [0, 1], "returns": [2, 4.0], "decisions_per_s": None}
 ENTRY = {"name": "a", "link": "https://a.org/b", "machine": "m", "rows": [ROW]}

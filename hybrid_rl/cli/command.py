@@ -206,7 +206,7 @@ def _fail(code: int, line: str) -> NoReturn:
     sys.exit(code)
 
 
-def guarded(job: Callable[[], None]) -> None:
+def run(job: Callable[[], None]) -> None:
     """Run `job`; what goes wrong becomes one line and an exit code, after it has cleaned up."""
     with interrupt.as_exception():
         _reported(job)

@@ -173,7 +173,7 @@ def job():
         time.sleep(60)
     finally:
         say('clean')
-command.guarded(job)
+command.run(job)
 """
     assert ended(press(code, number), number) == "clean\n"
 

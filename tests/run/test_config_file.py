@@ -99,7 +99,7 @@ def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, c
             out = [] if command_name == "evaluate" else [f"out={tmp_path}/a.npz"]
             out = [f"out={tmp_path}/a.mp4"] if command_name == "render" else out
             main = READERS[command_name]
-            assert call(lambda: command.guarded(main), f"run={old}", *out) == 2
+            assert call(lambda: command.run(main), f"run={old}", *out) == 2
         assert contents(tmp_path) == before
         return only_line(capfd)
 
@@ -139,13 +139,13 @@ def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path,
     out = tmp_path / "curves.png"
     for runs, seeds in ((old, 1), (f"{tmp_path}/*", 1)):
         line = [f"runs={runs}", "metric=eval/return", f"out={out}"]
-        assert call(lambda line=line: command.guarded(figures.main), *line) == 0
+        assert call(lambda line=line: command.run(figures.main), *line) == 0
         (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
         assert (curve["label"], len(curve["seeds"])) == ("sac", seeds)
     shutil.copytree(trained, tmp_path / "both" / "new")
     shutil.copytree(old, tmp_path / "both" / "old")
     line = [f"runs={tmp_path}/both", "metric=eval/return", f"out={out}"]
-    assert call(lambda: command.guarded(figures.main), *line) == 0
+    assert call(lambda: command.run(figures.main), *line) == 0
     (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
     assert (curve["label"], curve["seeds"]) == ("sac", [0, 0])
     assert contents(old) == before

@@ -93,7 +93,7 @@ def test_commands_take_one_run_of_a_sweep_or_name_them(swept, tmp_path, capfd):
     np.testing.assert_allclose([files[0]["mean"], files[3]["mean"]], last, 1e-4)
     capfd.readouterr()
     out = tmp_path / "policy.npz"
-    assert call(lambda: command.guarded(export.main), f"run={swept}", f"out={out}") == 2
+    assert call(lambda: command.run(export.main), f"run={swept}", f"out={out}") == 2
     line = only_line(capfd)
     assert "holds a sweep; give one of its runs" in line
     assert f"{swept / '1'} (policy_learner.discount=0.9 policy_learner.alpha=0.1)" in line
