@@ -33,6 +33,7 @@ from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
 from hybrid_rl.view.subject import quicker
 from scripts.new_goals import overrides, rows
+from scripts.seeds import listed
 
 ARGUMENTS = (
     Argument("of", "methods", "or goals: planners for a new reward", one_of("methods", "goals")),
@@ -92,11 +93,6 @@ def goals(only: list[str], who: list[str]) -> Iterator[tuple[str, str, Agent]]:
 
 def _agent(words: list[str]) -> Agent:
     return configuration.build(configuration.load(words)).agent
-
-
-def listed(text: str) -> list[str]:
-    """The names in `text`, with ; between them."""
-    return [each.strip() for each in text.split(";") if each.strip()]
 
 
 def main() -> None:

@@ -62,7 +62,7 @@ def test_it_is_short_and_builds_the_same_run(algo, tmp_path):
     assert config.build(written).agent == config.build(composed).agent
 
 
-def test_a_word_that_reads_as_a_number_stays_a_word(tmp_path):
+def test_a_word_that_reads_as_a_number_stays_a_word():
     values = {"a": "1e-3", "b": "12", "c": "on", "d": 1e-3, "e": None, "f": ["1", 2], "g": True}
     part = {"_target_": "a.B", **values}
     text = run_folder.as_yaml(OmegaConf.create({"x": part, "y": {"x": part}, "z": [[1], [2]]}))
@@ -131,7 +131,7 @@ def test_a_run_of_another_minor_version_is_refused(trained, tmp_path):
             run_folder.read(folder, "run")
 
 
-def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path, capsys):
+def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path):
     """They are one curve: keys that older versions wrote are no settings."""
     with (old / "config.yaml").open("a") as file:
         file.write("planner: {horizon: 5}\ndemonstrations: demonstrations/pendulum.npz\n")

@@ -209,7 +209,7 @@ def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, cap
     assert contents(tmp_path) == before
 
 
-def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp_path, capfd):
+def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp_path):
     folder = tmp_path / "run"
     folder.mkdir()
     config = load([*TINY, "algo=sac", f"run_dir={folder}"])

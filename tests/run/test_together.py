@@ -19,7 +19,6 @@ pytestmark = pytest.mark.turns(3)
 SHORT = [*TINY, "algo=sac", "num_seeds=2", "total_steps=200", "eval_every=200", "log_every=100"]
 SHORT += ["checkpoint_every=100"]
 SWEEP = ["sweep.policy_learner.discount=[0.9,0.5]", "sweep.policy_learner.alpha=[1.0,0.1]"]
-VALUES = [(0.9, 1.0), (0.9, 0.1), (0.5, 1.0), (0.5, 0.1)]
 NOT_COMPARED = ("wall_s", "perf/compile_s", "perf/env_steps_per_s")
 
 
