@@ -89,7 +89,7 @@ class SamplingController:
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
         samples = sampling.imagine(
             lambda x, u: self.model.step(params.model, x, u),
-            lambda carry, x, *a: self.proposal(params, carry, lifting.seen(x), *a),
+            lambda carry, x, *a: self.proposal(params, carry, lifting.policy_input(x), *a),
             state.carries,
             x,
             state.plan,
