@@ -159,7 +159,7 @@ def clock(rows: Mapping[int, list[Row]]) -> dict[str, Any] | None:
 
 
 def check(given: Mapping[str, Any]) -> None:
-    """Before anything starts.
+    """Check the arguments before a learner starts.
 
     Raises:
         UsageError: if the library is missing, or an argument cannot be.

@@ -85,7 +85,7 @@ class Trial:
         return float("inf")
 
     def fault(self, kind: str) -> None:
-        """One of KINDS."""
+        """Make a fault, one of KINDS."""
         robot = self.robot()
         match kind:
             case "kill the learner":

@@ -57,7 +57,7 @@ class Copies:
 
     @cached_property
     def _bounds(self) -> tuple[np.ndarray, np.ndarray, tuple[int, ...], Any]:
-        """Of actions: the lowest [m], their width [m], and shape and dtype of the space."""
+        """Bounds of actions: the lowest [m], their width [m]; shape and dtype of the space."""
         space = self.env.known.space
         low = space.low.ravel()
         return low, space.high.ravel() - low, space.shape, space.dtype
@@ -214,11 +214,11 @@ class Located(gymnasium.Wrapper):
         super().__init__(self._located(make))
 
     def reset(self, **options: Any) -> Any:
-        """As the environment."""
+        """The environment's reset."""
         return self._located(lambda: self.env.reset(**options))
 
     def step(self, action: Any) -> Any:
-        """As the environment."""
+        """The environment's step."""
         return self._located(lambda: self.env.step(action))
 
     @staticmethod

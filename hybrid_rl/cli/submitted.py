@@ -99,7 +99,7 @@ def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.i
 
 
 def _result(job: Any) -> Result:
-    """Of a job of Submitit's that has ended."""
+    """The result of a job of Submitit's that has ended."""
     try:
         return job.results()[0].return_value
     except Exception as error:

@@ -85,7 +85,7 @@ class Sweeper(BasicSweeper):
     """Checks, runs and reports every combination of the given values."""
 
     def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
-        """Hydra's: what to run, and by which launcher."""
+        """Get from Hydra what to run, and by which launcher."""
         self.task = Task(task_function)
         super().setup(hydra_context=hydra_context, task_function=self.task, config=config)
 

@@ -83,7 +83,7 @@ class SamplingController:
     def considered(
         self, params: Params, state: SamplingState, obs: Array, key: Array
     ) -> tuple[Array, SamplingState, dict[str, Array], Considered]:
-        """The same, and the candidates."""
+        """What `act` returns, and the candidates."""
         rolling, choosing = jax.random.split(key)
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)

@@ -49,7 +49,7 @@ class Job:
     axis: Axis = field(default_factory=Axis)
 
     def loop(self) -> Loop:
-        """That of all learners."""
+        """The loop that trains all learners."""
         run = self.runs[0]
         stride = -(-run.config.log_every // run.config.num_envs)
         seeds = run.seeds * len(self.runs)
@@ -61,7 +61,7 @@ class Job:
         return self.folders[0] if len(self.folders) == 1 else self.folders[0].parent
 
     def logs(self, output: Output, stack: ExitStack) -> list[RunLog]:
-        """Their records, open until the end of `stack`."""
+        """The records of the runs, open until the end of `stack`."""
         logs = []
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             settings: Any = OmegaConf.to_container(run.config)
@@ -93,7 +93,7 @@ class Job:
 
 
 def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
-    """That of the learners in `share`."""
+    """What summary.json of the learners in `share` holds."""
     values: Any = OmegaConf.to_container(config)
     ends, rate = session.diverged.ends, session.record.learning.rate
     return {

@@ -82,7 +82,7 @@ def train(
 def begin(
     run: Run, handled: Handler, output: Output = CONSOLE, start: Start | None = None
 ) -> dict[str, Any]:
-    """The same for a run that is built, in a new folder; start: what another run gave it."""
+    """Run what is built, in a new folder, as `train`; start: what another run gave it."""
     size = _fits([run])
     loggers.check(run.config.get("logger"))
     with folder.fresh(run.config) as run_dir:
@@ -90,7 +90,7 @@ def begin(
 
 
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
-    """The same from the newest checkpoint in the folder `config.resume`."""
+    """Continue what is built from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
     with locked(folder.writable(run_dir, "run_dir"), "run_dir"):
         return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
@@ -99,7 +99,7 @@ def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, A
 def _resume(
     config: DictConfig, given: Mapping[str, str], handled: Handler, output: Output
 ) -> dict[str, Any]:
-    """The same for the run, or the runs of a sweep, in the folder `config.resume`."""
+    """Continue the run, or the runs of a sweep, in the folder `config.resume`, as `train`."""
     parent = Path(str(config.resume))
     values = folder.members(parent) or {parent: {}}
     swept, folders = parent not in values, list(values)

@@ -204,11 +204,11 @@ class Silent(Progress):
         return self
 
     def update(self, step: int, scalars: dict[str, float], say: bool | None = None) -> None:
-        """Nothing but the step."""
+        """Keep the step, and show nothing."""
         self.step = step
 
     def note(self, text: str) -> None:
-        """Nothing."""
+        """Print nothing."""
 
 
 class _Count(TextColumn):

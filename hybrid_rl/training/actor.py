@@ -39,7 +39,7 @@ LOST = 3  # exit code: the robot does not answer
 
 @dataclass
 class Counts:
-    """Since the process began."""
+    """What happened since the process began."""
 
     decisions: int = 0
     missed: int = 0  # deadlines

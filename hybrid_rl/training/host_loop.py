@@ -49,7 +49,7 @@ class HostLoop(Loop):
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     def __post_init__(self) -> None:
-        """Whether all learners can."""
+        """Find out whether all learners can learn early."""
         self.early = all(each.data == "uniform" for each in self.agent.learners.values())
 
     @property

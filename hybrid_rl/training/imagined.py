@@ -40,7 +40,7 @@ class Continuing(Protocol):
         ...
 
     def init(self, key: Array, spec: Spec) -> Any:
-        """Its first state."""
+        """The first state of the learner."""
 
     def params(self, state: Any) -> dict[str, Any]:
         """The fields of Params that it learns."""

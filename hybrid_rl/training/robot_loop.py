@@ -107,8 +107,9 @@ class RobotLoop(Loop):
     def _observe(
         self, state: Any, rows: Any, action: Array, got: Outcome, gap: Array, first: Array, i: Array
     ) -> tuple[Any, Any]:
-        """The same into row i; gap: since the decision before. first: of an episode.
+        """All learners with a decision more, and its metrics in row i.
 
+        gap: whether decisions are missing before it; first: whether it begins an episode.
         `got.following` is the observation before the decision.
         """
 
