@@ -27,7 +27,7 @@ from hybrid_rl.composition import check_task
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
 from hybrid_rl.run import together
-from hybrid_rl.run.folder import made
+from hybrid_rl.run.folder import new_folder
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.start import built
 
@@ -185,7 +185,7 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             complete.append(list(overrides))
             continue
         if config.run_dir is None:
-            folder = made(config, f"_{number}")
+            folder = new_folder(config, f"_{number}")
         else:
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")

@@ -46,7 +46,7 @@ def fresh(config: DictConfig) -> Iterator[Path]:
     Raises:
         UsageError: if it holds a run, another process holds it, or it cannot be written to.
     """
-    folder = made(config) if config.run_dir is None else Path(str(config.run_dir))
+    folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
     new = config.run_dir is None or not folder.exists()
     try:
         with locked(writable(folder, "run_dir"), "run_dir"), _cleared(folder):
@@ -85,7 +85,7 @@ def rowless(folder: Path) -> bool:
     return empty and not checkpoint.steps(folder / "checkpoints")
 
 
-def made(config: DictConfig, suffix: str = "") -> Path:
+def new_folder(config: DictConfig, suffix: str = "") -> Path:
     """A new folder runs/TASK/ALGO/TIME[suffix].
 
     Raises:

@@ -285,7 +285,7 @@ def check(given: Any) -> tuple[str, ...]:
     return names
 
 
-def made(
+def create(
     names: Iterable[str], folder: Path, seeds: Sequence[int], config: dict[str, Any]
 ) -> list[Logger]:
     """The loggers `names` of the run in `folder`."""
