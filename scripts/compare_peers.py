@@ -122,7 +122,8 @@ def side_by_side(given: Mapping[str, Any]) -> Iterator[tuple[int, Row]]:
                 except EOFError:
                     del running[reader]
                     process.join()
-                    failed += [str(seed)] if process.exitcode else []
+                    if process.exitcode:
+                        failed.append(str(seed))
                     continue
                 if isinstance(row, UsageError):
                     raise row

@@ -48,7 +48,8 @@ def physics(settings: Settings, rounds: int) -> Iterator[Table]:
                     bare = others.bare_mjx(task, count, bare_steps, kind)
                 field += [bare, own]
             theirs = others.playground(count, decisions) if task == "halfcheetah" else None
-            field += [theirs] if theirs and settings["physics"] != "native" else []
+            if theirs is not None and settings["physics"] != "native":
+                field.append(theirs)
             name = f"{task}, {plural(count, 'world')}"
             table = _race("physics", name, "steps/s", field, rounds)
             yield table | {"solver": others.solver(task)}
@@ -191,7 +192,8 @@ def _agent(settings: Settings, physics: str = "auto", size: str = "default") -> 
 
 def _config(settings: Settings, physics: str, size: str) -> Any:
     names = [f"experiment={settings['experiment']}"] if settings["experiment"] else []
-    names += [] if size == "default" else [f"settings={size}"]
+    if size != "default":
+        names.append(f"settings={size}")
     names += [f"algo={settings['algo']}", f"physics={physics}"]
     names += [f"{key}={value}" for key, value in settings.items() if "." in key]
     steps = "total_steps=20000"  # bounds the replay memory of many learners

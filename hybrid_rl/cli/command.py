@@ -142,7 +142,8 @@ def _ordered(line: Sequence[str]) -> list[str]:
                 raise UsageError(f"{text}: a run has one configuration; choose by experiment=NAME")
             follow = 0 if equals else FLAGS[flags[0]]
             found.append(at)
-            modes += [text] * (flags[0] in MODES)
+            if flags[0] in MODES:
+                modes.append(text)
         elif not equals and text.count("]") > text.count("["):
             raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
         elif not equals and not text.startswith("~"):

@@ -120,6 +120,7 @@ def means(metrics: Metrics, learners: int, end: int, ended: Container[int] = ())
         row: Row = {"step": end, "learner": s}
         for name, values in metrics.items():
             known = values[:, s][~np.isnan(values[:, s])]
-            row |= {name: known.mean(dtype=np.float64)} if known.size else {}
+            if known.size:
+                row[name] = known.mean(dtype=np.float64)
         averages.append(row)
     return averages
