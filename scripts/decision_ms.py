@@ -24,7 +24,9 @@ import jax
 import numpy as np
 
 from hybrid_rl import config as configuration
+from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, read
+from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import retargeted
 from hybrid_rl.run.provenance import device
 from hybrid_rl.trained import Trained
@@ -88,6 +90,8 @@ def goals(only: list[str], who: list[str]) -> Iterator[tuple[str, str, Agent]]:
         known["refits"] = refits.controllers["full"]
         known["both: gradient, quick"] = quicker(known["both: gradient"])
         for name in who or WHO:
+            if name not in known:
+                raise UsageError(f"who={name}: choose of {'; '.join(WHO)}")
             yield robot, name, replace(agent, controller=known[name])
 
 
@@ -128,4 +132,4 @@ def measured(agent: Agent, calls: int) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    main()
+    command.guarded(main)

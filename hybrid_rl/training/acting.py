@@ -47,13 +47,16 @@ class TrainedPolicy:
         """The action [m] at obs [o], or actions [N, m] at [N, o].
 
         Raises:
-            ValueError: for observations of another size, or another N than since the reset.
+            ValueError: for observations of another size or that are not finite, or another N than
+                since the reset.
         """
         obs = np.asarray(obs, np.float32)
         o = self.spec.obs
         if obs.ndim not in (1, 2) or obs.shape[-1] != o:
             raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
         rows = np.atleast_2d(obs)
+        if not np.isfinite(rows).all():
+            raise ValueError(f"obs: entry {np.argwhere(~np.isfinite(rows))[0, 1]} is not finite")
         if self._state is None:
             self._worlds = len(rows)
             self._state = repeat(self._begin(), len(rows))
