@@ -132,4 +132,4 @@ def measured(agent: Agent, calls: int) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)
