@@ -25,7 +25,7 @@ from jax.extend.core import ClosedJaxpr, Jaxpr
 from hybrid_rl.envs.indices import check as check_indices
 from hybrid_rl.envs.mujoco import mjcf, native, physics
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, WorldError, gist, in_user_code, relative
+from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, WorldError, blame, relative, user_line
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
@@ -110,10 +110,10 @@ class _World:
         except UsageError:
             raise
         except FAULTS as error:
-            line = in_user_code(error, self.file)
+            line = user_line(error, self.file)
             kind = type(self.env).__name__
             if line is None:
-                raise WorldError(f"{self.at(method)}: {gist(error)}") from error
+                raise WorldError(f"{self.at(method)}: {blame(error)}") from error
             where, _, what = line.partition(": ")
             raise WorldError(f"{where}: {kind}.{method}: {what}") from error
 

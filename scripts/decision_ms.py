@@ -35,6 +35,7 @@ from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
 from hybrid_rl.view.subject import quicker
 from scripts.new_goals import overrides, rows
+from scripts.seeds import listed
 
 ARGUMENTS = (
     Argument("of", "methods", "or goals: planners for a new reward", one_of("methods", "goals")),
@@ -98,11 +99,6 @@ def _agent(words: list[str]) -> Agent:
     return configuration.build(configuration.load(words)).agent
 
 
-def listed(text: str) -> list[str]:
-    """The names in `text`, with ; between them."""
-    return [each.strip() for each in text.split(";") if each.strip()]
-
-
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
@@ -136,4 +132,4 @@ def measured(agent: Agent, calls: int) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

@@ -9,7 +9,6 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -50,7 +49,6 @@ def draw(folder: Path) -> Figure:
     )
     with matplotlib.rc_context(STYLE | FONTS):
         picture = Figure(figsize=SIZE, layout="constrained")
-        FigureCanvasAgg(picture)
         panels = picture.subplots(2, 3).ravel()
         for axes, robot in zip(panels, BEFORE, strict=False):
             shown = {

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.core.batching import repeat
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
@@ -58,9 +59,7 @@ class TrainedPolicy:
             raise ValueError(f"obs: entry {np.argwhere(~np.isfinite(rows))[0, 1]} is not finite")
         if self._state is None:
             self._worlds = len(rows)
-            self._state = jax.tree.map(
-                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *leaf.shape)), self._begin()
-            )
+            self._state = repeat(self._begin(), len(rows))
         if len(rows) != self._worlds:
             raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
         u, self._state, self._key = self._act(self._state, rows, self._key)
