@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hybrid_rl.analysis.curves import curves
-    from hybrid_rl.analysis.frames import metrics
+    from hybrid_rl.analysis.dataframes import metrics
     from hybrid_rl.config import load as compose
     from hybrid_rl.core import adjoint, sampling
     from hybrid_rl.envs.contract import check
@@ -74,7 +74,7 @@ _MEMBERS = {  # public name -> module and name there
     "curves": ("analysis.curves", "curves"),
     "load": ("named", "load"),
     "make": ("named", "make"),
-    "metrics": ("analysis.frames", "metrics"),
+    "metrics": ("analysis.dataframes", "metrics"),
 }
 
 

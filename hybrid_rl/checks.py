@@ -13,7 +13,7 @@ from omegaconf import DictConfig, ListConfig, OmegaConf
 from hybrid_rl import parts
 from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
-from hybrid_rl.errors import UsageError, relative, shown
+from hybrid_rl.errors import UsageError, printable, relative
 from hybrid_rl.fields import choices, plain
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.overrides import SHOW, meant
@@ -56,7 +56,7 @@ def check(config: DictConfig) -> None:
     for key in ("task", "algo"):
         if not NAME.fullmatch(str(config[key])):
             line = "must be letters, digits, _, . and -"
-            raise UsageError(f"{key}={shown(config[key])}: {line}")
+            raise UsageError(f"{key}={printable(config[key])}: {line}")
     check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
     _check_planned(config)
     for key in COUNTS:

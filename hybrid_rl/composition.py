@@ -93,8 +93,8 @@ def explain(error: Exception) -> str:
             close = f"; did you mean task=gymnasium env.{kind.lastgroup}={value}?"
         if group == "hydra/launcher" and SLURM not in known:
             close = f"; submitit_local and {SLURM} need {install('slurm')}"
-        if group in ("algo", "task") and not close:
-            close = "; one of yours: config_dir=FOLDER"
+        if not close and deep == 1:
+            close = f"; your own {group}/{value}.yaml needs --config-dir FOLDER"
         return f"{group}={value}: unknown; {_choice(value, known)}{close}"
     cause, text = error.__cause__, str(error)
     if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):

@@ -71,7 +71,7 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 
 def composed(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
-    """The same with its interpolations."""
+    """The configuration of these overrides with its interpolations; errors as `load`."""
     if isinstance(overrides, str):
         raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')
     renamed.check(overrides)

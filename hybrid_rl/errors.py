@@ -100,9 +100,9 @@ class Own:
         except UsageError:
             raise
         except FAULTS as error:
-            line = in_user_code(error, self.file)
+            line = user_line(error, self.file)
             if line is None:
-                raise self.wrong(f"{self.at(method)}: {gist(error)}") from error
+                raise self.wrong(f"{self.at(method)}: {one_line(error)}") from error
             where, _, what = line.partition(": ")
             raise self.wrong(f"{where}: {type(self.it).__name__}.{method}: {what}") from error
 
@@ -115,7 +115,7 @@ def install(extra: str) -> str:
     return f'pip install "hybrid_rl[{extra}]"'
 
 
-def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str | None:
+def user_line(error: BaseException, own: str = "", ours: bool = False) -> str | None:
     """FILE:LINE of the user's, what was raised there and a hint; None if no such file took part.
 
     own: a file that counts as the user's wherever it is. ours: also None where the user's line
@@ -129,13 +129,18 @@ def in_user_code(error: BaseException, own: str = "", ours: bool = False) -> str
     for file, line in reversed(frames):
         folders = set(Path(file).parents)
         if file == own or (file[:1] != "<" and not folders & FOREIGN):
-            return f"{relative(file)}:{line}: {gist(error)}"
+            return f"{relative(file)}:{line}: {one_line(error)}"
         if folders & owners:
             return None
     return None
 
 
-def gist(error: BaseException) -> str:
+def blame(error: BaseException) -> str:
+    """As `user_line`; `one_line` of an error in which no file of the user's took part."""
+    return user_line(error) or one_line(error)
+
+
+def one_line(error: BaseException) -> str:
     """The kind of an error, the gist of its message and a hint, in one line."""
     kind, text = type(error), str(error).strip()
     if "Traceback (most recent" in text:  # of a callback
@@ -154,6 +159,6 @@ def relative(file: str | Path) -> str:
     return str(path.relative_to(Path.cwd()) if Path.cwd() in path.parents else path)
 
 
-def shown(words: object) -> str:
-    """Words of a file or a user in a line of ours: what a terminal would obey is escaped."""
+def printable(words: object) -> str:
+    """Words of a file or a user, for a line of ours: what a terminal would obey is escaped."""
     return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(words))

@@ -49,7 +49,7 @@ from hybrid_rl.goals import chosen
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run import memory
-from hybrid_rl.run.evaluations import in_calls
+from hybrid_rl.run.evaluations import finish_episodes
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.progress import say
@@ -99,7 +99,7 @@ def evaluate(
     first = jax.jit(jax.vmap(partial(begin, episode, controller)))
     more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
     more = partial(jax.jit(more, donate_argnums=1), trained.params)
-    return in_calls(first(keys), more, episode.steps, on_decisions) or {}
+    return finish_episodes(first(keys), more, episode.steps, on_decisions) or {}
 
 
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
@@ -209,4 +209,4 @@ def _table(values: dict[str, Any]) -> Table:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

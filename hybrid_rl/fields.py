@@ -36,7 +36,7 @@ class FieldError(ValueError):
 
     def __init__(self, part: Any, name: str, words: str, lacks: str = "") -> None:
         self.lacks = lacks
-        self.line, self.words = f"{name}={_shown(getattr(part, name))}: {words}", words
+        self.line, self.words = f"{name}={_as_yaml(getattr(part, name))}: {words}", words
         super().__init__(f"{type(part).__name__}: {self.line}")
 
     def at(self, key: str) -> Self:
@@ -163,10 +163,10 @@ def _tuples(kind: Any, value: Any) -> Any:
     return tuple(_tuples(get_args(kind)[0], each) for each in value)
 
 
-def _shown(value: Any) -> Any:
+def _as_yaml(value: Any) -> Any:
     """A value as configurations write it."""
     if is_dataclass(value):
         return type(value).__name__
     if isinstance(value, tuple):
-        return [_shown(each) for each in value]
+        return [_as_yaml(each) for each in value]
     return {"None": "null", "True": "true", "False": "false"}.get(str(value), value)

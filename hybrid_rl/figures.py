@@ -34,7 +34,7 @@ from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.config import load
-from hybrid_rl.errors import UsageError, in_user_code
+from hybrid_rl.errors import UsageError, user_line
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.reading import json_file
 
@@ -107,7 +107,7 @@ def study_of(name: str) -> Study:
         there = find_spec(name) is not None
         study = import_module(name) if there else None
     except Exception as error:  # whatever the user's module does
-        reason = in_user_code(error) or f"cannot be imported ({error})"
+        reason = user_line(error) or f"cannot be imported ({error})"
         raise UsageError(f"study={name}: {reason}") from error
     if study is None:
         close = difflib.get_close_matches(name, known, n=1)
@@ -238,4 +238,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

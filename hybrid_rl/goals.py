@@ -63,7 +63,7 @@ def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Traine
 def changed(
     trained: Trained, given: Mapping[str, Any], changes: Mapping[str, str]
 ) -> tuple[Trained, dict[str, str]]:
-    """The same of a run or policy that is read already."""
+    """What `chosen` returns, of a run or policy that is read already."""
     ours = tuple(each.name for each in GOAL)
     goal = {key: given[key] for key in ours if given[key]}
     goal |= {key: value for key, value in changes.items() if key.split(".")[0] in ours}

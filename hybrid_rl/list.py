@@ -106,11 +106,13 @@ def main() -> None:
         rows = {name: line for lines in each for name, line in lines.items()}
         first = [rows.pop(name) for name in FIRST if name in rows] if group == "algo" else []
         print(f"{title}  ({group}=NAME{'; start with these eight' if first else ''})")
-        print(*first, *[""] * bool(first), *rows.values(), "", sep="\n")
+        if first:
+            print(*first, "", sep="\n")
+        print(*rows.values(), "", sep="\n")
         if theirs:
             print(f"{title} by the thesis' names", *theirs.values(), "", sep="\n")
     print("python -m hybrid_rl.train task=NAME algo=NAME [experiment=NAME] [key=value ...]")
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

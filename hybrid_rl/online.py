@@ -97,7 +97,7 @@ class OnlineLearner:
 
     def _start(self, decisions: int) -> None:
         """Go on after so many decisions, in another episode."""
-        self.decisions, self._seen, self._learned = decisions, decisions, decisions
+        self.decisions = self._seen = self._learned = self._began = decisions
         self._first, self._handed, self._error = True, 0.0, None
         self._closed = False
         self._params = self._now()
@@ -107,8 +107,8 @@ class OnlineLearner:
 
     @property
     def updates(self) -> int:
-        """Decisions that were learned from so far."""
-        return self._learned
+        """Decisions that were learned from since it was made or loaded."""
+        return self._learned - self._began
 
     @property
     def metrics(self) -> dict[str, float]:

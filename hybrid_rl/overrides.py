@@ -170,7 +170,7 @@ def near(config: DictConfig, path: str) -> str:
 
 def meant(word: str, known: Iterable[str]) -> str:
     """The end of a message: a hint at the closest of the `known`, or "" if none is close."""
-    close = difflib.get_close_matches(word, list(known), n=1)
+    close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.65)
     return f"; did you mean {close[0]}?" if close else ""
 
 

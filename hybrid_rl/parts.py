@@ -21,7 +21,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.errors import FAULTS, GYMNASIUM, in_user_code, relative, shown
+from hybrid_rl.errors import FAULTS, GYMNASIUM, printable, relative, user_line
 from hybrid_rl.fields import FieldError
 
 TARGET, OURS = "_target_", "hybrid_rl."
@@ -43,7 +43,7 @@ def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
         ValueError: for a tree that is nested too deeply.
     """
     if where.count(".") > DEEPEST:
-        raise ValueError(f"{shown(where)[:SHOWN]}...: is nested too deeply")
+        raise ValueError(f"{printable(where)[:SHOWN]}...: is nested too deeply")
     pairs = node.items() if isinstance(node, dict) else enumerate(node)
     for name, value in pairs:
         if name == TARGET:
@@ -64,7 +64,7 @@ def check(node: Any, near: Path | None = None) -> None:
         try:
             part_class(target) if str(target).startswith(OURS) else _source(target, near)
         except ValueError as error:
-            raise ValueError(f"{shown(key)}={shown(target)[:SHOWN]}: {error}") from error
+            raise ValueError(f"{printable(key)}={printable(target)[:SHOWN]}: {error}") from error
 
 
 def part_class(target: Any, near: Path | None = None) -> Any:
@@ -79,7 +79,7 @@ def part_class(target: Any, near: Path | None = None) -> Any:
         home = import_module(module)
         found = getattr(home, name)
     except FAULTS as error:  # whatever the user's module does
-        raise ValueError(in_user_code(error) or f"cannot be imported ({error})") from error
+        raise ValueError(user_line(error) or f"cannot be imported ({error})") from error
     if not isinstance(found, type) or Path(str(home.__file__)).resolve() != source:
         raise ValueError(OTHER)
     if module.startswith(OURS) and not (is_dataclass(found) and found.__module__ == module):
@@ -118,7 +118,7 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
     except ValueError:
         raise
     except FAULTS as error:  # such as a field that it does not have
-        raise ValueError(in_user_code(error) or str(error)) from error
+        raise ValueError(user_line(error) or str(error)) from error
 
 
 def _source(target: Any, near: Path | None) -> Path:
@@ -132,7 +132,7 @@ def _source(target: Any, near: Path | None) -> Path:
     try:
         tree = ast.parse(source.read_bytes(), str(source))
     except SyntaxError as error:
-        raise ValueError(in_user_code(error)) from error
+        raise ValueError(user_line(error)) from error
     nodes = list(ast.walk(tree))
     known = {node.name for node in nodes if isinstance(node, ast.ClassDef)}
     for node in nodes:

@@ -127,7 +127,7 @@ def _steps(world: Any, asked: int, out: Path) -> int:
     return min(world.steps, FIRST * _stride(world))
 
 
-def _shown(
+def _episode_of(
     given: dict[str, Any], changes: dict[str, str], out: Path, trained: Any
 ) -> tuple[Any, str, Film]:
     """(world with its clock, whose actions, episode) that the arguments name.
@@ -234,7 +234,7 @@ def main() -> None:
         _outside(trained, given, out)
         return
     say("compiling an episode ...")  # of a planner, a minute
-    world, by, shown = _shown(given, changes, out, trained)
+    world, by, shown = _episode_of(given, changes, out, trained)
     if given["at"]:
         last = len(shown.poses) - 1
         poses = shown.poses[np.minimum(given["at"], last)]
@@ -251,4 +251,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

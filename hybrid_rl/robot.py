@@ -124,4 +124,4 @@ def _move(actor: Actor, given: dict[str, Any], files: Path) -> None:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

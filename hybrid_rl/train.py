@@ -38,7 +38,7 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import assembled, curve, divergence, folder, launch, loggers, together
+from hybrid_rl.run import assembled, curve, divergence, folder, launch, together
 from hybrid_rl.run.progress import say
 from hybrid_rl.training.agent import Agent
 
@@ -142,22 +142,21 @@ def train(
         DivergenceError: if every learner reached NaN or infinity.
         CheckpointError: if a checkpoint could not be written or read.
     """
-    output = launch.Output(None if on_row is None else loggers.Function(on_row), progress)
+    output = launch.Output.of(on_row, progress)
     if isinstance(method, Agent):
         run = _run_of(method, settings)
         go = launch.begin if run.config.resume is None else launch.proceed
-        result = Result(go(run, interrupt.answered, output), run)
+        result = Result(go(run, interrupt.as_call, output), run)
     else:
         own = settings.pop("config_dir", None)
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
         given = given if isinstance(method, DictConfig) else overrides.given(method)
-        result = Result(launch.train(together.load(method, own), given, interrupt.answered, output))
+        result = Result(launch.train(together.load(method, own), given, interrupt.as_call, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
-    if output.on_row is not None and output.on_row.problem is not None:
-        raise output.on_row.problem
+    output.raise_problem()
     return result
 
 
@@ -175,11 +174,10 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     typed = overrides.of_job(HydraConfig.get())
     members = together.expanded(config, typed)
     config = members[0].config
-    output = launch.Output(None if on_row is None else loggers.Function(on_row))
+    output = launch.Output.of(on_row)
     given = overrides.given(typed)
-    summary = launch.train(members, given, interrupt.answered, output)
-    if output.on_row is not None and output.on_row.problem is not None:
-        raise output.on_row.problem
+    summary = launch.train(members, given, interrupt.as_call, output)
+    output.raise_problem()
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
     swept = folder.members(Path(summary["run_dir"])).values()

@@ -25,7 +25,7 @@ from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.data import archive
 from hybrid_rl.data.trained import SavedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
-from hybrid_rl.errors import UsageError, shown
+from hybrid_rl.errors import UsageError, printable
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
@@ -195,7 +195,7 @@ def read(name: str) -> Trained:
     except ValueError as error:
         raise UsageError(str(error)) from error
     except UNFIT as error:
-        raise UsageError(f"{prefix} its description fits no policy ({shown(error)})") from error
+        raise UsageError(f"{prefix} its description fits no policy ({printable(error)})") from error
 
 
 def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Trained:
@@ -262,7 +262,7 @@ def _origin(about: Mapping[str, Any]) -> list[str]:
     """Lines about how a policy was made."""
     lines = []
     if about.get("command"):
-        lines.append(f"trained by: {shown(about['command'])}")
+        lines.append(f"trained by: {printable(about['command'])}")
     match about.get("evaluation"):
         case {"mean": int() | float() as mean, "returns": list() as returns}:
             lines.append(f"evaluated then: {mean:,.1f} (mean of {len(returns)} episodes)")

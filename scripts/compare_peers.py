@@ -122,7 +122,8 @@ def side_by_side(given: Mapping[str, Any]) -> Iterator[tuple[int, Row]]:
                 except EOFError:
                     del running[reader]
                     process.join()
-                    failed += [str(seed)] if process.exitcode else []
+                    if process.exitcode:
+                        failed.append(str(seed))
                     continue
                 if isinstance(row, UsageError):
                     raise row
@@ -159,7 +160,7 @@ def clock(rows: Mapping[int, list[Row]]) -> dict[str, Any] | None:
 
 
 def check(given: Mapping[str, Any]) -> None:
-    """Before anything starts.
+    """Check the arguments before a learner starts.
 
     Raises:
         UsageError: if the library is missing, or an argument cannot be.
@@ -197,4 +198,4 @@ if __name__ == "__main__":
     from hybrid_rl.cli import command, interrupt  # here, as learners do not need what they import
 
     interrupt.install()
-    command.guarded(main)
+    command.run(main)

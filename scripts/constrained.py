@@ -22,7 +22,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import chosen
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
-from scripts.seeds import Row, every, write
+from scripts.seeds import Row, every, listed, write
 
 CHANCE = 0.1  # unless constraint.chance is given
 ARGUMENTS = (
@@ -82,7 +82,7 @@ def main() -> None:
     other = load(given["penalised"], "penalised") if given["penalised"] else None
     other = other and replace(other, episode=trained.episode)  # the same world and constraint
     known = acting(trained, other)
-    wanted = given["rows"].split(";") if given["rows"] else list(known)
+    wanted = listed(given["rows"]) or list(known)
     if lost := [name for name in wanted if name not in known]:
         raise UsageError(f"rows={lost[0]}: choose of {'; '.join(known)}")
 
@@ -95,4 +95,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

@@ -24,7 +24,9 @@ import jax
 import numpy as np
 
 from hybrid_rl import config as configuration
+from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, read
+from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import retargeted
 from hybrid_rl.run.provenance import device
 from hybrid_rl.trained import Trained
@@ -33,6 +35,7 @@ from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
 from hybrid_rl.view.subject import quicker
 from scripts.new_goals import overrides, rows
+from scripts.seeds import listed
 
 ARGUMENTS = (
     Argument("of", "methods", "or goals: planners for a new reward", one_of("methods", "goals")),
@@ -87,16 +90,13 @@ def goals(only: list[str], who: list[str]) -> Iterator[tuple[str, str, Agent]]:
         known["refits"] = refits.controllers["full"]
         known["both: gradient, quick"] = quicker(known["both: gradient"])
         for name in who or WHO:
+            if name not in known:
+                raise UsageError(f"who={name}: choose of {'; '.join(WHO)}")
             yield robot, name, replace(agent, controller=known[name])
 
 
 def _agent(words: list[str]) -> Agent:
     return configuration.build(configuration.load(words)).agent
-
-
-def listed(text: str) -> list[str]:
-    """The names in `text`, with ; between them."""
-    return [each.strip() for each in text.split(";") if each.strip()]
 
 
 def main() -> None:
@@ -132,4 +132,4 @@ def measured(agent: Agent, calls: int) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    main()
+    command.run(main)

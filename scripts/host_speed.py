@@ -78,7 +78,7 @@ class Slow(HalfCheetahEnv):
         self.busy = busy
 
     def step(self, action: Any) -> Any:
-        """As Gymnasium's."""
+        """Gymnasium's step, later."""
         end = time.perf_counter() + PAUSE_S
         if not self.busy:
             time.sleep(PAUSE_S)

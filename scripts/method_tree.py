@@ -7,7 +7,6 @@ import textwrap
 from typing import Any
 
 import matplotlib
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
@@ -37,7 +36,6 @@ def draw(branch: dict[str, Any]) -> Figure:
     height = ROW * (len(lines) + sum(1 for _, _, _, no in lines if no))
     with matplotlib.rc_context(STYLE):
         picture = Figure(figsize=(WIDTH, height))
-        FigureCanvasAgg(picture)
         axes = picture.add_axes((0, 0, 1, 1))
         axes.set(xlim=(0, WIDTH), ylim=(height, 0))
         axes.axis("off")

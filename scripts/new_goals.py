@@ -32,7 +32,7 @@ from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
 from hybrid_rl.types import Params
 from hybrid_rl.view.subject import exchanged
-from scripts.seeds import Row, every, write
+from scripts.seeds import Row, every, listed, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
 IMAGINED = "imagined"
@@ -171,12 +171,12 @@ def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
     run = load(given["run"])
-    named = [each.strip() for each in given["goals"].split(";")]
+    named = listed(given["goals"])
     there = [retargeted(run, overrides(name)) for name in named]
     first = replace(there[0], episode=replace(there[0].episode, steps=given["steps"]))
     goals = [each.episode.reward for each in there]
     known = rows(there[0])
-    wanted = given["rows"].split(";") if given["rows"] else list(known)
+    wanted = listed(given["rows"]) or list(known)
     params, gained = imagined(run, named, goals) if IMAGINED in str(wanted) else (None, None)
     if given["env"]:
         first, goals = in_another(first, goals, given["env"])
@@ -232,4 +232,4 @@ def in_another(trained: Trained, goals: list[Any], change: str) -> tuple[Trained
 
 
 if __name__ == "__main__":
-    command.guarded(main)
+    command.run(main)

@@ -9,7 +9,6 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from hybrid_rl.analysis.curves import band, iqm
@@ -56,7 +55,6 @@ def draw(robots: dict[str, Any]) -> Figure:
     widest = max(len(rows["policy"]) for rows in robots.values())
     with matplotlib.rc_context(STYLE):
         picture = Figure(figsize=(2.1 * widest, 2.0 * len(robots)), layout="constrained")
-        FigureCanvasAgg(picture)
         grid = picture.subplots(len(robots), widest, squeeze=False)
         for line, (robot, rows) in zip(grid, robots.items(), strict=True):
             goals = list(rows["policy"])

@@ -9,7 +9,6 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
@@ -64,7 +63,6 @@ def draw(others: dict[str, Any], ours: dict[str, Any]) -> Figure:
     """A row for each robot: returns over decisions, and over minutes of one learner."""
     with matplotlib.rc_context(STYLE | FONTS):
         picture = Figure(figsize=SIZE, layout="constrained")
-        FigureCanvasAgg(picture)
         grid = picture.subplots(len(ROBOTS), 2, sharey="row")
         for (left, right), robot in zip(grid, ROBOTS, strict=True):
             for method, (name, ink, marker) in SHOWN.items():

@@ -85,7 +85,7 @@ class Trial:
         return float("inf")
 
     def fault(self, kind: str) -> None:
-        """One of KINDS."""
+        """Make a fault, one of KINDS."""
         robot = self.robot()
         match kind:
             case "kill the learner":
@@ -133,9 +133,8 @@ class Trial:
         for i in range(memory.decisions):
             row = rows[i]
             assert row is not None
-            same += bool(
-                (made.obs[0, i] == row["obs"]).all() & (made.action[0, i] == row["action"])
-            )
+            pairs = (made.obs, row["obs"]), (made.action, row["action"])
+            same += all(np.array_equal(ours[0, i], theirs) for ours, theirs in pairs)
         return {
             "exit": code,
             "rows": sound,

@@ -17,6 +17,11 @@ from hybrid_rl.training.rollout import evaluation_keys
 Row = tuple[str, Mapping[str, Any]]  # who acts, and what it gave: name -> [S]
 
 
+def listed(text: str) -> list[str]:
+    """The names in `text`, with ; between them."""
+    return [each.strip() for each in text.split(";") if each.strip()]
+
+
 def every(trained: Trained, episodes: int, one: Callable[[Any, Array], Any]) -> Any:
     """What `one` gives for the parameters and the keys [episodes] of each learner: [S, ...]."""
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])

@@ -126,9 +126,7 @@ def test_the_summary_describes_the_run(trained):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
-    code = call(
-        lambda: command.guarded(evaluate.main), f"run={trained}", "episodes=1", f"mode={mode}"
-    )
+    code = call(lambda: command.run(evaluate.main), f"run={trained}", "episodes=1", f"mode={mode}")
     assert code == 0
     values = json.loads((trained / f"evaluation_{mode}.json").read_text())
     assert (values["mode"], values["step"], values["seeds"], values["episodes"]) == (
@@ -148,7 +146,7 @@ def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
 def test_evaluate_in_another_world(trained, capsys):
     """A pole of which the policy sees little, and actions that arrive late."""
     changes = ("episode.sensor_noise=3.0", "episode.delay=1")
-    main = partial(call, lambda: command.guarded(evaluate.main))
+    main = partial(call, lambda: command.run(evaluate.main))
     assert main(f"run={trained}", "episodes=3", "mode=policy", *changes) == 0
     assert f"step 600, {', '.join(changes)}" in capsys.readouterr().out
     name = "evaluation_policy_episode.sensor_noise=3.0_episode.delay=1.json"
@@ -191,7 +189,7 @@ def test_a_trained_policy_gets_what_the_evaluation_says(trained):
 def test_render_draws_an_episode(trained, tmp_path, capfd):
     out = tmp_path / "video.mp4"
     given = [f"run={trained}", f"out={out}", "episode_steps=4", "width=64", "height=48"]
-    code = call(lambda: command.guarded(render.main), *given)
+    code = call(lambda: command.run(render.main), *given)
     try:
         offscreen.backend()
     except offscreen.NoGraphicsError:
@@ -227,7 +225,7 @@ def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:
 def test_figures_draw_a_sweep(swept, monkeypatch, capsys):
     monkeypatch.chdir(swept)
     given = ["runs=runs/pendulum/*/*", "out=curves.png"]
-    assert call(lambda: command.guarded(figures.main), *given) == 0
+    assert call(lambda: command.run(figures.main), *given) == 0
     assert (swept / "curves.png").read_bytes().startswith(b"\x89PNG")
     drawn = json.loads((swept / "curves.json").read_text())["curves"]
     assert [(c["label"], c["seeds"]) for c in drawn] == [("nn_mppi", [0, 1]), ("sac", [0, 1])]

@@ -12,7 +12,7 @@ from hybrid_rl.cli import command
 from scripts.pages import __main__ as pages
 from scripts.pages import community
 
-main = partial(call, lambda: command.guarded(report.main))
+main = partial(call, lambda: command.run(report.main))
 PAGE = community.RESULTS / "community.md"
 ROW = {"task": "hop", "steps": 9, "seeds": [0, 1], "returns": [2, 4.0], "decisions_per_s": None}
 ENTRY = {"name": "a", "link": "https://a.org/b", "machine": "m", "rows": [ROW]}
@@ -28,7 +28,7 @@ def test_every_file_has_its_fields_and_its_lines_on_the_page():
     assert PAGE in pages.pages()
 
 
-def test_the_example_of_the_page_is_an_entry(tmp_path, monkeypatch):
+def test_the_example_of_the_page_is_an_entry(tmp_path):
     text = re.findall(r"```json\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[0]
     tmp_path.joinpath("example.json").write_text(text)
     assert community.read(tmp_path / "example.json")["rows"][0]["task"] == "HalfCheetah-v5"
@@ -87,7 +87,7 @@ def write(folder, algo, device="cpu: one"):
     return folder
 
 
-def test_the_report_of_a_run_is_an_entry_but_for_its_link(tmp_path, capsys):
+def test_the_report_of_a_run_is_an_entry_but_for_its_link(tmp_path):
     run, out = write(tmp_path / "run", "sac"), tmp_path / "mine.json"
     assert main(f"run={run}", f"out={out}") == 0
     with pytest.raises(ValueError, match="link"):

@@ -14,7 +14,7 @@ from tiny import call, only_line
 from hybrid_rl.cli import command
 from scripts import compare_peers
 
-main = partial(call, lambda: command.guarded(compare_peers.main))
+main = partial(call, lambda: command.run(compare_peers.main))
 GIVEN = ["method=Rest", "env=Pendulum-v1"]
 PEER = """
 class Rest:

@@ -110,7 +110,7 @@ def test_how_a_hybrid_method_learns_is_one_override() -> None:
     """By default from five imagined decisions; learning=mbpo was the default until 0.2."""
     c = config.load(["algo=hybrid_stochastic"])
     learner = c.learners.policy
-    assert (learner.steps, learner.value_expansion, learner.branch_memory) == (5, True, 25600)
+    assert (learner.steps, learner.value_steps, learner.branch_memory) == (5, None, 25600)
     assert (c.random_steps, config.load(["task=cartpole"]).random_steps) == (5000, 1000)
     for algo in ("hybrid_stochastic", "hybrid_disagreement"):
         c = config.load(["learning=mbpo", f"algo={algo}"])

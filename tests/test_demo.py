@@ -9,7 +9,7 @@ from hybrid_rl.envs.mujoco import offscreen
 
 
 def demonstrate(*words):
-    return call(lambda: command.guarded(demo.main), *words)
+    return call(lambda: command.run(demo.main), *words)
 
 
 def test_it_shows_a_robot_and_what_to_type_next(tmp_path, monkeypatch, capsys, can_draw):

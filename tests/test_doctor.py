@@ -183,7 +183,7 @@ def folder(tmp_path_factory):
     return folder
 
 
-main = partial(call, partial(command.guarded, doctor.main))
+main = partial(call, partial(command.run, doctor.main))
 
 
 def test_the_command_reads_a_run(folder, capsys):

@@ -239,7 +239,7 @@ def test_memory_that_runs_out_is_one_line(capfd):
     def fail():
         raise out
 
-    assert call(lambda: command.guarded(fail)) == 1
+    assert call(lambda: command.run(fail)) == 1
     printed = capfd.readouterr().err
     assert printed.count("\n") == 1
     assert "allocating 12 bytes.; fewer num_seeds or num_envs" in printed
@@ -249,7 +249,7 @@ def test_an_error_in_the_code_of_a_user_is_one_line_that_names_it(tmp_path, monk
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.py").write_text("def broken():\n    return {}['goal']\n")
     monkeypatch.syspath_prepend(tmp_path)
-    assert call(lambda: command.guarded(import_module("mine").broken)) == 1
+    assert call(lambda: command.run(import_module("mine").broken)) == 1
     assert only_line(capfd) == "hybrid_rl: mine.py:2: KeyError: 'goal'\n"
 
 
@@ -283,10 +283,10 @@ def test_devices_that_are_not_there_are_one_line(monkeypatch, capfd):
         raise AssertionError
 
     monkeypatch.setenv("JAX_PLATFORMS", "cuda")
-    assert call(lambda: command.guarded(fail)) == 1  # of something else: JAX has the devices
+    assert call(lambda: command.run(fail)) == 1  # of something else: JAX has the devices
     assert only_line(capfd).endswith(": AssertionError\n")
     monkeypatch.setattr(jax, "devices", fail)
-    assert call(lambda: command.guarded(fail)) == 2
+    assert call(lambda: command.run(fail)) == 2
     assert only_line(capfd) == (
         "hybrid_rl: JAX_PLATFORMS=cuda: JAX finds no such device here; unset it, or choose cpu\n"
     )

@@ -123,7 +123,7 @@ def nothing_lost(folders, tmp_path, monkeypatch):
 def test_the_other_commands_refuse(nothing_lost, folders, monkeypatch, capfd, given, code, words):
     monkeypatch.setattr(offscreen, "backend", lambda: "egl")
     name, *arguments = given.format(**folders).split()
-    assert call(lambda: command.guarded(MAINS[name]), *arguments) == code
+    assert call(lambda: command.run(MAINS[name]), *arguments) == code
     assert words in only_line(capfd)
 
 
@@ -166,6 +166,6 @@ def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):
     monkeypatch.setattr(offscreen, "TRIAL", "raise SystemExit(1)")
     monkeypatch.setattr(sys, "platform", "linux")
     offscreen.chosen.cache_clear()
-    code = call(lambda: command.guarded(render.main), f"run={folders['trained']}")
+    code = call(lambda: command.run(render.main), f"run={folders['trained']}")
     assert code == 1
     assert "install libegl1 or libosmesa6" in only_line(capfd)

@@ -93,7 +93,7 @@ def first(leaf):
     return leaf[0]
 
 
-main = partial(call, lambda: command.guarded(export.main), "run=x")
+main = partial(call, lambda: command.run(export.main), "run=x")
 
 
 def test_files_act_as_the_run_does_without_hybrid_rl(trained, tmp_path, capsys):

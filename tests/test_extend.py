@@ -99,7 +99,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert (summary["algo"], summary["finished"]) == ("kle3", True)
     folder = f"run={tmp_path / 'run'}"  # of a method that learns nothing
-    assert call(lambda: command.guarded(evaluate.main), folder, "episodes=1") == 0
+    assert call(lambda: command.run(evaluate.main), folder, "episodes=1") == 0
 
 
 @pytest.mark.parametrize(
@@ -144,7 +144,7 @@ def test_an_analytic_environment_is_one_file_and_one_yaml(conf, tmp_path, monkey
     assert trained.episode.env.power == 4
     assert (evaluate.evaluate(trained, episodes=2)["return"] < 0).all()
     monkeypatch.setattr(offscreen, "backend", lambda: "egl")
-    assert call(lambda: command.guarded(render.main), f"run={folder}") == 2
+    assert call(lambda: command.run(render.main), f"run={folder}") == 2
     assert "Kettle has no `scene` and no `pose`" in only_line(capfd)
 
 
@@ -180,7 +180,7 @@ def test_a_reward_is_one_file_that_the_environment_pays(conf, tmp_path, capsys):
     assert (np.abs(got) <= 5 * 1.2).all()
     train(conf, tmp_path / "other", "task=pendulum", "algo=nn_mppi", "episode.steps=5")
     words = f"run={tmp_path / 'other'}", "reward=upright", f"config_dir={conf}", "episodes=2"
-    assert call(lambda: command.guarded(evaluate.main), *words) == 0
+    assert call(lambda: command.run(evaluate.main), *words) == 0
     assert "reward=upright" in capsys.readouterr().out
 
 

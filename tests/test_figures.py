@@ -54,7 +54,7 @@ def toy(tmp_path, monkeypatch):
 
 def draw(*arguments):
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), *arguments)
+    return call(lambda: command.run(figures.main), *arguments)
 
 
 def runs(folder):

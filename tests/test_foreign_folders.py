@@ -137,12 +137,12 @@ def test_a_damaged_row_is_named_and_a_resumed_run_goes_on_without_it(folder, bad
 )
 def test_a_damaged_summary_is_one_line(folder, capfd, text):
     (folder / "summary.json").write_text(text)
-    assert call(lambda: command.guarded(report.main), f"run={folder}", "video=none") == 2
+    assert call(lambda: command.run(report.main), f"run={folder}", "video=none") == 2
     assert only_line(capfd).startswith(f"hybrid_rl: {folder}/summary.json: ")
 
 
 def test_a_run_without_a_finite_evaluation_has_no_curve(folder, capfd):
     (folder / "metrics.jsonl").write_text(json.dumps(ROW | {"eval/return": None}) + "\n")
     line = [f"runs={folder}", METRIC, "out=a.png"]
-    assert call(lambda: command.guarded(figures.main), *line) == 2
+    assert call(lambda: command.run(figures.main), *line) == 2
     assert "metric=eval/return: has no finite value in these runs" in only_line(capfd)

@@ -123,11 +123,11 @@ def test_every_command_refuses_it(folder, capfd, name):
     before = contents(folder)
     given = [f"run={folder}", *(["out=a.npz"] if name == "export" else [])]
     if name == "report":  # its page has the curves; only the film needs the parts
-        assert call(lambda: command.guarded(report.main), *given) == 0
+        assert call(lambda: command.run(report.main), *given) == 0
         assert "is no part of hybrid_rl" in (folder / "report.html").read_text()
         (folder / "report.html").unlink()
     else:
-        assert call(lambda: command.guarded(COMMANDS[name]), *given) == 2
+        assert call(lambda: command.run(COMMANDS[name]), *given) == 2
         assert "write_text: is no part of hybrid_rl" in only_line(capfd)
     assert contents(folder) == before
     assert not Path("ran").exists()
@@ -158,11 +158,11 @@ def test_words_that_a_terminal_or_matplotlib_obeys_are_shown_as_they_are(folder,
     for main, out in ((report.main, "a.html"), (figures.main, "a.svg")):
         line = [f"run={folder}"] if main is report.main else [f"runs={folder}", METRIC]
         line.append(f"out={out}")
-        assert call(lambda main=main: command.guarded(main), *line) == 0
+        assert call(lambda main=main: command.run(main), *line) == 0
     assert "$\\undefined{x}$" in Path("a.svg").read_text()
     capfd.readouterr()
     changed(folder, env={"_target_": "a\x1b]0;title\x07\nhybrid_rl: done"})
-    assert call(lambda: command.guarded(evaluate.main), f"run={folder}") == 2
+    assert call(lambda: command.run(evaluate.main), f"run={folder}") == 2
     line = only_line(capfd)
     assert "\\x1b]0;title\\x07\\nhybrid_rl: done" in line
     assert line.strip().isprintable()

@@ -100,7 +100,7 @@ def test_a_file_with_models_plans_as_the_run_does(
 ) -> None:
     """Up to the 16 bits of its weights; without them it has a policy alone."""
     file, bare = tmp_path / "both.npz", tmp_path / "bare.npz"
-    main = lambda *words: call(lambda: command.guarded(demonstrate.main), *words)  # noqa: E731
+    main = lambda *words: call(lambda: command.run(demonstrate.main), *words)  # noqa: E731
     assert main(f"run={trained}", f"policy={file}", "models=true") == 0
     assert main(f"run={trained}", f"policy={bare}") == 0
     assert "policy and models of" in capsys.readouterr().out
@@ -118,7 +118,7 @@ def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
     """Its own parameters and seed; one that the run does not have is one line."""
     folder, file = tmp_path / "run", tmp_path / "second.npz"
     run(folder, "task=cartpole", "algo=sac", "seed=3", "num_seeds=2")
-    main = lambda *words: call(lambda: command.guarded(demonstrate.main), *words)  # noqa: E731
+    main = lambda *words: call(lambda: command.run(demonstrate.main), *words)  # noqa: E731
     assert main(f"run={folder}", f"policy={file}", "learner=4") == 0
     was, now = load(folder), read(str(file))
     assert now.seeds == (4,)
@@ -131,7 +131,7 @@ def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
 
 def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
     """In its output and in the file's name; the policy alone has a line beside the planner."""
-    main = lambda *words: call(lambda: command.guarded(evaluate.main), *words)  # noqa: E731
+    main = lambda *words: call(lambda: command.run(evaluate.main), *words)  # noqa: E731
     policy = {}
 
     def returns(trained: Trained, mode: str, episodes: int, *_):
@@ -175,21 +175,21 @@ def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
 def test_a_mistake_is_one_line(trained: Path, known: Trained, words, line, capfd, monkeypatch):
     monkeypatch.setattr("hybrid_rl.trained.load", lambda folder: known)
     given = f"run={trained}", *words.split()
-    assert call(lambda: command.guarded(evaluate.main), *given) == 2
+    assert call(lambda: command.run(evaluate.main), *given) == 2
     assert line in only_line(capfd)
 
 
 @pytest.mark.parametrize("word", ["planner=gradient", "constraint=speed"])
 def test_a_shipped_planner_needs_a_reward(word: str, capfd) -> None:
     given = ("policy=halfcheetah", word)
-    assert call(lambda: command.guarded(evaluate.main), *given) == 2
+    assert call(lambda: command.run(evaluate.main), *given) == 2
     assert "policy=halfcheetah: was shipped without the reward and the critic" in only_line(capfd)
 
 
 @pytest.mark.parametrize("word", ["planner.horizon=3", "imagine=policy"])
 def test_a_policy_without_models_refuses_a_planner(word: str, capfd) -> None:
     given = ("policy=cartpole", "reward=speed", word)
-    assert call(lambda: command.guarded(evaluate.main), *given) == 2
+    assert call(lambda: command.run(evaluate.main), *given) == 2
     does = "imagine" if word.startswith("imagine") else "plan"
     assert f"{word}: there is no learned model to {does} with" in only_line(capfd)
 

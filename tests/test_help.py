@@ -24,7 +24,7 @@ def test_every_command_explains_itself(name, flag, capsys):
     """Purpose, an example, every argument with its default."""
     package = find_spec(f"hybrid_rl.{name}").submodule_search_locations
     module = import_module(f"hybrid_rl.{name}{'.__main__' if package else ''}")
-    assert call(lambda: command.guarded(module.main), flag) == 0
+    assert call(lambda: command.run(module.main), flag) == 0
     printed, err = capsys.readouterr()
     assert err == ""
     assert printed.startswith(module.__doc__.splitlines()[0])

@@ -15,7 +15,7 @@ def call(monkeypatch, *arguments):
     """Exit code of the command."""
     monkeypatch.setattr(sys, "argv", ["list", *arguments])
     try:
-        command.guarded(listed.main)
+        command.run(listed.main)
     except SystemExit as end:
         return end.code
     return 0

@@ -90,7 +90,9 @@ def test_what_is_saved_goes_on_and_acts(tmp_path):
     again = OnlineLearner.load(tmp_path / "run", learn="inline")
     assert again.decisions == 10
     assert np.array_equal(memory(again, 10), memory(learner, 10))
+    assert again.updates == 0
     drive(again, 5, first=10)
+    assert again.updates == 5
     again.save(tmp_path / "run")
     assert OnlineLearner.load(tmp_path / "run", learn="inline").decisions == 15
     policy = hybrid_rl.load(tmp_path / "run").policy()

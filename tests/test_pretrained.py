@@ -37,7 +37,7 @@ def test_a_policy_of_the_package_is_small_and_has_its_origin(name):
 
 def test_evaluating_it_gives_its_number(capsys):
     """On the lander, whose episodes are short."""
-    main = partial(call, lambda: command.guarded(evaluate.main))
+    main = partial(call, lambda: command.run(evaluate.main))
     assert main("policy=lander") == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("trained by: python -m hybrid_rl.train task=lander algo=analytic")
@@ -81,5 +81,5 @@ def test_a_file_without_a_description_is_one_line(tmp_path, capfd):
     with np.load(archive.find("policies/lander.npz")) as file:
         np.savez(tmp_path / "old.npz", **{name: file[name] for name in file if name != "about"})
     given = f"policy={tmp_path / 'old.npz'}"
-    assert call(lambda: command.guarded(evaluate.main), given) == 2
+    assert call(lambda: command.run(evaluate.main), given) == 2
     assert "has no description; write it again with `demonstrate`" in only_line(capfd)

@@ -21,7 +21,7 @@ from tiny import TINY, contents
 import hybrid_rl as hr
 from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.run.assembled import run_of
-from hybrid_rl.run.loggers import Function
+from hybrid_rl.run.loggers import Callback
 from hybrid_rl.run.session import Session
 from hybrid_rl.train import Result
 
@@ -129,7 +129,7 @@ def test_a_function_that_raised_is_not_called_again():
         called.append(row)
         raise ValueError
 
-    function = Function(broken)
+    function = Callback(broken)
     function.ask = asked.append
     function.write({"step": 1})
     function.write({"step": 2})

@@ -75,7 +75,7 @@ def call(monkeypatch, *arguments):
     """Exit code of the command."""
     monkeypatch.setattr(sys, "argv", ["render", *map(str, arguments)])
     try:
-        command.guarded(render.main)
+        command.run(render.main)
     except SystemExit as end:
         return end.code
     return 0

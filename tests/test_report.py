@@ -75,7 +75,7 @@ def runs(tmp_path):
     return first, second
 
 
-main = partial(call, lambda: command.guarded(report.main))
+main = partial(call, lambda: command.run(report.main))
 
 
 def test_a_page_about_two_runs_holds_everything(runs, tmp_path, capsys):

@@ -12,7 +12,7 @@ import numpy as np
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode
 from jax import Array
 
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 
 Numbers = np.ndarray | Array
 SILENT = 100  # level of Gymnasium's log
@@ -57,7 +57,7 @@ class Copies:
 
     @cached_property
     def _bounds(self) -> tuple[np.ndarray, np.ndarray, tuple[int, ...], Any]:
-        """Of actions: the lowest [m], their width [m], and shape and dtype of the space."""
+        """Bounds of actions: the lowest [m], their width [m]; shape and dtype of the space."""
         space = self.env.known.space
         low = space.low.ravel()
         return low, space.high.ravel() - low, space.shape, space.dtype
@@ -138,7 +138,7 @@ class Copies:
             line = f"{self.env.name}: {method}: took longer than env.timeout_s"
             raise WorldError(f"{line}={self.env.timeout_s}") from error
         except FAULTS as error:
-            line = str(error) if self.env.processes else in_user_code(error) or gist(error)
+            line = str(error) if self.env.processes else blame(error)
             if self.env.processes and isinstance(error, EOFError | ConnectionError):
                 line = self._lost()
             raise WorldError(f"{self.env.name}: {method}: {line}") from error
@@ -214,11 +214,11 @@ class Located(gymnasium.Wrapper):
         super().__init__(self._located(make))
 
     def reset(self, **options: Any) -> Any:
-        """As the environment."""
+        """The environment's reset."""
         return self._located(lambda: self.env.reset(**options))
 
     def step(self, action: Any) -> Any:
-        """As the environment."""
+        """The environment's step."""
         return self._located(lambda: self.env.step(action))
 
     @staticmethod
@@ -226,4 +226,4 @@ class Located(gymnasium.Wrapper):
         try:
             return call()
         except FAULTS as error:
-            raise RuntimeError(in_user_code(error) or gist(error)) from error
+            raise RuntimeError(blame(error)) from error

@@ -27,7 +27,7 @@ from jax import Array
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, imported
 from hybrid_rl.envs.contract import check
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.types import EnvState, Spec
 
 KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
@@ -139,7 +139,7 @@ def _known(env: External) -> Known:
         raise
     except FAULTS as error:
         key = "make" if env.make else "id"
-        line = in_user_code(error) or gist(error)
+        line = blame(error)
         raise UsageError(f"env.{key}={env.name}: {line}") from error
     space, obs = one.action_space, one.observation_space
     bounded = isinstance(space, Box) and bool(np.isfinite([space.low, space.high]).all())
@@ -215,7 +215,7 @@ def _check_first(name: str, one: gymnasium.Env, found: Any) -> None:
     except WorldError:
         raise
     except FAULTS as error:
-        raise WorldError(f"{name}: {method}: {in_user_code(error) or gist(error)}") from error
+        raise WorldError(f"{name}: {method}: {blame(error)}") from error
 
 
 def _entries(name: str, method: str, found: Any, wanted: str) -> tuple:

@@ -256,7 +256,8 @@ def _after_reset(state: Any, what: str) -> Any:
 def _infos(state: EnvState, known: np.ndarray) -> Info:
     """The metrics [E] of the environments `known` [E] as Gymnasium has them, with masks."""
     infos = {name: np.where(known, x, 0) for name, x in state.metrics.items()}
-    infos |= {FLAG: infos[FLAG].astype(bool)} if FLAG in infos else {}
+    if FLAG in infos:
+        infos[FLAG] = infos[FLAG].astype(bool)
     return infos | {f"_{name}": known for name in infos}
 
 

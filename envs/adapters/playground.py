@@ -22,7 +22,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.envs.adapters.unstepped import Items
-from hybrid_rl.errors import UsageError, gist, install
+from hybrid_rl.errors import UsageError, install, one_line
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -91,7 +91,7 @@ def _loaded(env: Playground) -> Any:
     try:
         return registry.load(env.name, config_overrides=dict(env.config or {}))
     except Exception as error:  # such as a setting that it does not have
-        raise UsageError(f"env.name={env.name}: cannot be loaded ({gist(error)})") from error
+        raise UsageError(f"env.name={env.name}: cannot be loaded ({one_line(error)})") from error
 
 
 @cache

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, imported
-from hybrid_rl.errors import FAULTS, UsageError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, blame
 from hybrid_rl.types import Spec
 
 METHODS = ("reset", "observe", "apply", "reward", "stop")
@@ -124,5 +124,5 @@ class Robot(Made):
         try:
             return self.kind(**(self.kwargs or {}))
         except FAULTS as error:
-            line = in_user_code(error) or gist(error)
+            line = blame(error)
             raise UsageError(f"env.make={self.name}: {line}") from error

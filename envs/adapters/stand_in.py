@@ -37,7 +37,7 @@ class StandIn:
     obs: ClassVar[int]
 
     def __init__(self, port: int = 7000) -> None:
-        """Of the stand-in on this machine."""
+        """Connect with the stand-in at a port of this machine."""
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
         self._socket.connect(("127.0.0.1", port))
@@ -128,7 +128,7 @@ class Cartpole(StandIn):
 
 
 class FastCartpole(Cartpole):
-    """The same with 100 decisions a second."""
+    """The cartpole with 100 decisions a second."""
 
     dt = 0.01
 

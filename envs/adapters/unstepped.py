@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.errors import FAULTS, UsageError, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, user_line
 from hybrid_rl.types import EnvState, Spec
 
 
@@ -74,5 +74,5 @@ def imported(make: Any) -> Callable[..., Any]:
     except FAULTS as error:  # whatever the user's module does
         file = re.fullmatch(r"(?:\./)?(\w+)\.py", module)
         hint = f"a module has no .py: {file[1]}:{name}" if file else str(error)
-        line = in_user_code(error) or hint
+        line = user_line(error) or hint
         raise UsageError(f"env.make={make}: cannot be imported ({line})") from error

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.frames import pandas
+from hybrid_rl.analysis.dataframes import pandas
 from hybrid_rl.analysis.logged import Learner, common, count_failures, learners, swept
-from hybrid_rl.analysis.results import NOT_ROWS, RunFolder, differences, find, short
+from hybrid_rl.analysis.results import NOT_METRICS, RunFolder, differences, find, short
 from hybrid_rl.errors import UsageError
 
 RESAMPLES = 2000  # of the bootstrap
@@ -127,23 +127,23 @@ def band(values: np.ndarray, resamples: int = RESAMPLES) -> tuple[np.ndarray, np
     return low, high
 
 
-def shown(value: float) -> str:
+def format_number(value: float) -> str:
     """A value with four digits, or with all digits of its whole part: "0.1234", "11,387"."""
     return f"{value:,.4g}" if abs(value) < 1000 else f"{value:,.0f}"
 
 
 def spread(values: np.ndarray) -> str:
     """IQM of [n] and its band as text: "8,250 [6,429, 8,979]"; no band for a single value."""
-    middle = shown(float(iqm(values)))
+    middle = format_number(float(iqm(values)))
     if len(values) == 1:
         return middle
-    low, high = (shown(float(end)) for end in band(values))
+    low, high = (format_number(float(end)) for end in band(values))
     return f"{middle} [{low}, {high}]"
 
 
 def plural(count: int, noun: str) -> str:
     """The count with its noun: "1 seed", "2 seeds"."""
-    return f"{count} {noun}{'s' * (count != 1)}"
+    return f"{count:,} {noun}{'s' * (count != 1)}"
 
 
 def area(curve: Curve) -> np.ndarray:
@@ -227,7 +227,7 @@ def _truncated(members: list[RunFolder]) -> list[str]:
 
 def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:
     """The error if no run has a value of the metric; it names those that the runs have."""
-    names = {name for run in folders for row in run.rows for name in row} - set(NOT_ROWS)
+    names = {name for run in folders for row in run.rows for name in row} - set(NOT_METRICS)
     if metric in names:
         return UsageError(f"metric={metric}: has no finite value in these runs")
     has = ", ".join(sorted(names)) or "none yet"

@@ -119,13 +119,14 @@ def episodes(run: Trained, controller: Any) -> tuple[np.ndarray, ...]:
     return states.obs[:, :-1][lived], actions[lived], states.obs[:, 1:][lived]
 
 
-def errors(run: Any, obs: Array, action: Array, after: Array) -> np.ndarray:
-    """The error [S] of the model of each seed; run: a Trained one."""
-    model = run.agent.learners["model"]
+def errors(run: Trained, obs: Array, action: Array, after: Array) -> np.ndarray:
+    """The error [S] of the model of each seed."""
+    assert run.agent is not None  # only a policy of a file has none
+    learner: Any = run.agent.learners["model"]
     scale = jnp.var(after - obs, 0)
 
     def one(params: Any) -> Array:
-        predicted = jax.vmap(model.model.step, (None, 0, 0))(params, obs, action)
+        predicted = jax.vmap(learner.model.step, (None, 0, 0))(params, obs, action)
         return jnp.sqrt(jnp.mean(jnp.mean((predicted - after) ** 2, 0) / scale))
 
     return np.asarray(jax.jit(lambda params: jax.lax.map(one, params))(run.params.model))

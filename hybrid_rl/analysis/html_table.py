@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import shown
+from hybrid_rl.analysis.curves import format_number
 
 NUMBER = re.compile(r"(-?[\d,.]+%?( \[.*\])?)?")  # with its band
 
@@ -31,7 +31,7 @@ def _text(value: Any) -> str:
         case None:
             return ""
         case float() | np.floating():
-            return shown(float(value))
+            return format_number(float(value))
         case int():
             return f"{value:,}"
         case _:

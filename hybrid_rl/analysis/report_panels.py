@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hybrid_rl.analysis.curves import Curve, curves
-from hybrid_rl.analysis.learning_curves import plot
-from hybrid_rl.analysis.results import NOT_ROWS, RunFolder
+from hybrid_rl.analysis.curves_picture import plot
+from hybrid_rl.analysis.results import NOT_METRICS, RunFolder
 from hybrid_rl.analysis.style import COLOURS, STYLE
 from hybrid_rl.errors import UsageError
 
@@ -39,7 +39,7 @@ INK = ("#000000", "#444444")  # of text and of notes
 
 def metrics(runs: Sequence[RunFolder]) -> dict[str, list[str]]:
     """Title of each section -> the metrics of the runs that belong there."""
-    names = sorted({name for run in runs for row in run.rows for name in row} - {*NOT_ROWS})
+    names = sorted({name for run in runs for row in run.rows for name in row} - {*NOT_METRICS})
     sections = {}
     for title, beginnings in SECTIONS.items():
         found = [name for start in beginnings for name in names if name.startswith(start)]

@@ -19,9 +19,9 @@ import yaml
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.reading import Loader, lines, yaml_file
-from hybrid_rl.run.records import COORDINATES, flat, row_of, summary_of
+from hybrid_rl.run.records import COORDINATES, WORD, flat, row_of, summary_of
 
-NOT_ROWS = (*COORDINATES, "diverged")  # of a row; every other name is a metric
+NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
 # what they write, when and where. None of them changes what a learner does up to a given step.
 NOT_SETTINGS = (
@@ -116,7 +116,8 @@ class RunFolder:
 
     def _word(self, key: str, argument: str) -> str | None:
         """The value at `key`, which `argument` names; None if there is none."""
-        words = {name: _shown(name, value) for name, value in _matches(self.settings, key).items()}
+        found = _matches(self.settings, key)
+        words = {name: _as_word(name, value) for name, value in found.items()}
         if len(set(words.values())) > 1:
             listed = ", ".join(f"{name}={word}" for name, word in words.items())
             raise UsageError(
@@ -124,7 +125,7 @@ class RunFolder:
                 "give one of these keys"
             )
         if not words and key in self.summary:
-            return _shown(key, self.summary[key])
+            return _as_word(key, self.summary[key])
         return next(iter(words.values()), None)
 
     def _near(self, key: str) -> str:
@@ -247,7 +248,7 @@ def _columns(settings: Sequence[Mapping[str, Any]]) -> dict[str, tuple[str, ...]
 def _column(settings: Sequence[Mapping[str, Any]], key: str) -> tuple[str, ...]:
     def one(each: Mapping[str, Any]) -> str:
         if key in each:
-            return _shown(key, each[key])
+            return _as_word(key, each[key])
         return SET if any(name.startswith(f"{key}.") for name in each) else UNSET
 
     return tuple(map(one, settings))
@@ -265,7 +266,8 @@ def _parents(key: str) -> list[str]:
     return [name for group in above for name in (group, f"{group}._target_") if name != key]
 
 
-def _shown(key: str, value: Any) -> str:
+def _as_word(key: str, value: Any) -> str:
+    """The value of a key as a word: of a part its class, of anything else but text its JSON."""
     if key.endswith("_target_"):
         return str(value).rpartition(".")[2]
     return value if isinstance(value, str) else json.dumps(value, default=str)

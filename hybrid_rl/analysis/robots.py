@@ -81,13 +81,11 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 def draw(numbers: dict[str, Any]) -> Any:
     """The picture."""
     import matplotlib
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     robots = numbers["robots"]
     with matplotlib.rc_context(STYLE):
         picture = Figure(figsize=(4.4 * len(robots), 4.2), layout="constrained")
-        FigureCanvasAgg(picture)
         for axes, (robot, rows) in zip(
             np.atleast_1d(picture.subplots(1, len(robots))), robots.items(), strict=True
         ):

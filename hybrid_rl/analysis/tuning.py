@@ -58,7 +58,6 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 def draw(numbers: dict[str, Any]) -> "Figure":
     """The picture: the importances, then a panel for each key."""
     import matplotlib
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     keys = numbers["keys"]
@@ -66,7 +65,6 @@ def draw(numbers: dict[str, Any]) -> "Figure":
     down = math.ceil((len(keys) + 1) / across)
     with matplotlib.rc_context(STYLE):
         picture = Figure(figsize=(3.0 * across, 2.6 * down + 0.4), layout="constrained")
-        FigureCanvasAgg(picture)
         panels = picture.subplots(down, across, squeeze=False).flat
         _importances(next(panels), numbers["importances"])
         for key, kind in keys.items():

@@ -33,7 +33,7 @@ class Still:
     actions: int
 
     def init(self, spec: Spec) -> tuple[()]:
-        """Nothing."""
+        """No state."""
         return ()
 
     def act(
@@ -43,7 +43,7 @@ class Still:
         return jnp.full(self.actions, 0.5), state, {}
 
     def greedy(self) -> "Still":
-        """The same."""
+        """The same controller."""
         return self
 
 

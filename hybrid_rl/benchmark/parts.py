@@ -15,10 +15,13 @@ from time import perf_counter
 from typing import Any
 
 from hybrid_rl import config
+from hybrid_rl.analysis.curves import plural
+from hybrid_rl.benchmark.race import Contestant, race
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.run.jax_settings import CACHE
+from hybrid_rl.training.agent import Agent
 
 TASKS = "halfcheetah,hopper,cartpole"
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "results" / "loop_speed.json"
@@ -45,8 +48,9 @@ def physics(settings: Settings, rounds: int) -> Iterator[Table]:
                     bare = others.bare_mjx(task, count, bare_steps, kind)
                 field += [bare, own]
             theirs = others.playground(count, decisions) if task == "halfcheetah" else None
-            field += [theirs] if theirs and settings["physics"] != "native" else []
-            name = f"{task}, {_many(count, 'world')}"
+            if theirs is not None and settings["physics"] != "native":
+                field.append(theirs)
+            name = f"{task}, {plural(count, 'world')}"
             table = _race("physics", name, "steps/s", field, rounds)
             yield table | {"solver": others.solver(task)}
 
@@ -56,16 +60,17 @@ def plan(settings: Settings, rounds: int) -> Iterator[Table]:
     from hybrid_rl.benchmark import others, ours
 
     agent, world = _agent(settings), _agent(settings, settings["physics"].split(",")[-1]).episode
+    controller: Any = agent.controller  # with fields of a planner by samples, if it is one
     for text in settings["plans"].split(","):
         samples, horizon = (whole()("plans", part) for part in text.split("x"))
         most = 2**20 // samples  # a large plan is for few learners
         try:
-            planner = replace(agent.controller, horizon=horizon, samples=samples)
+            planner = replace(controller, horizon=horizon, samples=samples)
         except TypeError as error:
             raise UsageError(f"plan: {settings['algo']} has no planner by samples") from error
         planning = replace(agent, controller=planner)
         field = [
-            ours.decisions(_many(learners, "learner"), planning, learners, samples * horizon)
+            ours.decisions(plural(learners, "learner"), planning, learners, samples * horizon)
             for learners in _counts(settings, "learners")
             if learners <= max(most, 1)
         ]
@@ -79,7 +84,7 @@ def act(settings: Settings, rounds: int) -> Iterator[Table]:
     from hybrid_rl.benchmark import ours
 
     agent = _agent(settings)
-    field = [ours.decisions(_many(n, "robot"), agent, n) for n in _counts(settings, "learners")]
+    field = [ours.decisions(plural(n, "robot"), agent, n) for n in _counts(settings, "learners")]
     real = f"real time: {1 / agent.spec.dt:,.0f} each"
     what = f"{settings['experiment']}, {settings['algo']}, {real}"
     yield _race("act", what, "acts/s", field, rounds)
@@ -97,7 +102,7 @@ def updates(settings: Settings, rounds: int) -> Iterator[Table]:
             if critic is not None:
                 size = learner.batch_size
                 field.append(others.brax_sac(agent.spec, critic.hidden, size, count))
-        what = f"{settings['algo']}, {_many(count, 'learner')}"
+        what = f"{settings['algo']}, {plural(count, 'learner')}"
         yield _race("updates", what, "gradient steps/s", field, rounds)
 
 
@@ -109,7 +114,7 @@ def shares(settings: Settings, rounds: int) -> Iterator[Table]:
     for size in settings["settings"] or ["default"]:
         agent = _agent(settings, size=size)
         for count in (n for n in _counts(settings, "learners") if n <= most):
-            what = f"{settings['algo']}, {size}, {_many(count, 'learner')}"
+            what = f"{settings['algo']}, {size}, {plural(count, 'learner')}"
             field, operations = ours.shares(agent, count, settings["seconds"])
             yield _race("shares", what, "decisions/s", field, rounds) | {"operations": operations}
     yield _race("shares", "float32", "operations/s", [ours.product()], rounds)
@@ -131,7 +136,7 @@ def loop(settings: Settings, rounds: int) -> Iterator[Table]:
                         made = ours.loop(name, agent, count, ours.MOST, settings["seconds"])
                     field.append(made[0])
                     print(f"  {name}: compiled in {made[1]:,.0f} s", flush=True)
-            what = f"{settings['algo']}, {size}, {_many(count, 'learner')}"
+            what = f"{settings['algo']}, {size}, {plural(count, 'learner')}"
             table = _race("loop", what, "decisions/s", field, rounds)
             if not settings["experiment"] and not any("." in key for key in settings):
                 _beside(table)
@@ -181,31 +186,26 @@ PARTS = {
 }
 
 
-def _agent(settings: Settings, physics: str = "auto", size: str = "default") -> Any:
+def _agent(settings: Settings, physics: str = "auto", size: str = "default") -> Agent:
     return config.build(_config(settings, physics, size)).agent
 
 
 def _config(settings: Settings, physics: str, size: str) -> Any:
     names = [f"experiment={settings['experiment']}"] if settings["experiment"] else []
-    names += [] if size == "default" else [f"settings={size}"]
+    if size != "default":
+        names.append(f"settings={size}")
     names += [f"algo={settings['algo']}", f"physics={physics}"]
     names += [f"{key}={value}" for key, value in settings.items() if "." in key]
     steps = "total_steps=20000"  # bounds the replay memory of many learners
     return config.load([*names, steps])
 
 
-def _many(count: int, what: str) -> str:
-    return f"{count:,} {what}{'s' * (count != 1)}"
-
-
 def _counts(settings: Settings, key: str) -> list[int]:
     return [whole()(key, text) for text in settings[key].split(",")]
 
 
-def _race(part: str, what: str, unit: str, field: list[Any], rounds: int) -> Table:
+def _race(part: str, what: str, unit: str, field: list[Contestant], rounds: int) -> Table:
     """One table, printed as it is done."""
-    from hybrid_rl.benchmark.race import race
-
     rows = race(field, rounds)
     print(f"\n{part}: {what} [{unit}]")
     for row in rows:

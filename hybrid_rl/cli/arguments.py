@@ -169,7 +169,7 @@ def read(
     groups = groups or {}
     line = sys.argv[1:]
     if set(HELP) & set(line):
-        print(shown(doc, known, groups))
+        print(help_text(doc, known, groups))
         sys.exit(0)
     named = {argument.name: argument for argument in known}
     values, changes = {argument.name: argument.default for argument in known}, {}
@@ -215,7 +215,7 @@ def as_pair(line: Sequence[str], at: int) -> str:
     return f"{name.replace('-', '_')}={value or 'VALUE'}"
 
 
-def shown(
+def help_text(
     doc: str | None, known: Sequence[Argument], groups: Mapping[str, str] | None = None
 ) -> str:
     """What --help prints."""

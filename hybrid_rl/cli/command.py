@@ -21,7 +21,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, file, options
-from hybrid_rl.errors import UsageError, in_user_code, shown
+from hybrid_rl.errors import UsageError, printable, user_line
 from hybrid_rl.overrides import LACKING, plain, select
 from hybrid_rl.run import inherited
 
@@ -149,7 +149,8 @@ def _ordered(line: Sequence[str]) -> list[str]:
                 raise UsageError(f"{text}: a run has one configuration; choose by experiment=NAME")
             follow = 0 if equals else FLAGS[flags[0]]
             found.append(at)
-            modes += [text] * (flags[0] in MODES)
+            if flags[0] in MODES:
+                modes.append(text)
         elif not equals and text.count("]") > text.count("["):
             raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
         elif not equals and not text.startswith("~"):
@@ -201,7 +202,7 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
     if str(error).startswith("RESOURCE_EXHAUSTED"):  # of XLA
         what = str(error).splitlines()[0]
         return 1, f"{what}; fewer num_seeds or num_envs, or a smaller replay.capacity, may fit"
-    if line := in_user_code(error, ours=True):
+    if line := user_line(error, ours=True):
         return 1, line
     return None
 
@@ -221,13 +222,13 @@ def _missing(error: BaseException) -> str | None:
 
 
 def _fail(code: int, line: str) -> NoReturn:
-    print(f"hybrid_rl: {shown(' '.join(line.split()))}", file=sys.stderr, flush=True)
+    print(f"hybrid_rl: {printable(' '.join(line.split()))}", file=sys.stderr, flush=True)
     sys.exit(code)
 
 
-def guarded(job: Callable[[], None]) -> None:
+def run(job: Callable[[], None]) -> None:
     """Run `job`; what goes wrong becomes one line and an exit code, after it has cleaned up."""
-    with interrupt.tidily():
+    with interrupt.as_exception():
         _reported(job)
 
 
@@ -237,7 +238,7 @@ def _reported(job: Callable[[], None]) -> None:
     except Exception as error:
         report(error)
     except SystemExit as end:
-        if line := in_user_code(end, ours=True):  # it would end without a word
+        if line := user_line(end, ours=True):  # it would end without a word
             _fail(1, line)
         raise
     except KeyboardInterrupt:

@@ -5,13 +5,13 @@ time limit. A command calls `install` before it imports anything slow. From then
 them, also while the main thread is importing, compiling or in compiled code:
 
 * by default the process ends immediately, with one line on stderr and exit code 128 + number;
-* within `tidily` the main thread gets KeyboardInterrupt and a few seconds to clean up; a
+* within `as_exception` the main thread gets KeyboardInterrupt and a few seconds to clean up; a
   second signal ends the process immediately;
-* within `answered` the first signal calls a function; a second Ctrl-C ends the process immediately,
+* within `as_call` the first signal calls a function; a second Ctrl-C ends the process immediately,
   and all others after the first have no effect.
 
 Importing this module installs nothing. In a program that never calls `install`, such as a notebook,
-only `answered` has an effect: it sets Python's handlers until its block ends. SIGHUP stays ignored
+only `as_call` has an effect: it sets Python's handlers until its block ends. SIGHUP stays ignored
 where it is, as under nohup.
 """
 
@@ -43,7 +43,7 @@ class _State:
     """What a signal does now."""
 
     installed = False
-    tidily = False
+    raises = False  # KeyboardInterrupt
     patience = PATIENCE
     ask: Ask | None = None
     first: int | None = None  # the first signal in the present state
@@ -74,21 +74,21 @@ def install() -> None:
 
 
 @contextmanager
-def tidily(patience: float = PATIENCE) -> Iterator[None]:
+def as_exception(patience: float = PATIENCE) -> Iterator[None]:
     """Within, a signal raises KeyboardInterrupt in the main thread of a command.
 
     patience: [s] for its clean-up, after which the process ends.
     """
-    _State.tidily, _State.patience = True, patience
+    _State.raises, _State.patience = True, patience
     _State.first, _State.pressed = None, False
     try:
         yield
     finally:
-        _State.tidily = False
+        _State.raises = False
 
 
 @contextmanager
-def answered(ask: Ask) -> Iterator[None]:
+def as_call(ask: Ask) -> Iterator[None]:
     """Within, the first signal calls ask(number), in another thread than the main one.
 
     Without `install` a second Ctrl-C raises KeyboardInterrupt.
@@ -162,7 +162,7 @@ def _asking(ask: Ask) -> Callable[[int, Any], None]:
 
 def _in_the_main_thread(number: int, frame: Any) -> None:
     """Python's handler: it runs when the main thread is back in Python."""
-    if _State.tidily:
+    if _State.raises:
         _State.raised = _State.raised or number
         raise KeyboardInterrupt
 
@@ -182,7 +182,7 @@ def _act(number: int) -> None:
             _State.ask(number)
         elif pressed and number == signal.SIGINT:
             leave(number)
-    elif _State.tidily and first is None:
+    elif _State.raises and first is None:
         timer = threading.Timer(_State.patience, leave, (number,))
         timer.daemon = True
         timer.start()

@@ -17,6 +17,7 @@ from hydra.core.override_parser.types import Override
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, Natural, part
+from hybrid_rl.run.records import Row
 from hybrid_rl.run.session import RETURNS
 
 if TYPE_CHECKING:
@@ -28,8 +29,6 @@ ANSWER = "line"  # attribute of the trials that have an answer
 GOLDEN = 0.618  # no whole number is so far between two of them
 DISTINCT = 2  # results, from which importances follow
 SAFE = 2  # evaluations, before the last of which no run is pruned
-
-Row = dict[str, Any]
 
 
 @part

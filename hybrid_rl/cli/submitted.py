@@ -52,7 +52,7 @@ def watched(results: dict[int, Result]) -> Iterator[None]:
         jobs = dict(zip(lists[2], sent, strict=True))
         for number, job in jobs.items():
             print(f"job {number} sent: {executor.cluster} {job.job_id}", flush=True)
-        with interrupt.tidily(PATIENCE + 5):
+        with interrupt.as_exception(PATIENCE + 5):
             try:
                 _wait(jobs, results)
             except BaseException:
@@ -99,7 +99,7 @@ def _wait(jobs: dict[int, Any], results: dict[int, Result], most: float = math.i
 
 
 def _result(job: Any) -> Result:
-    """Of a job of Submitit's that has ended."""
+    """The result of a job of Submitit's that has ended."""
     try:
         return job.results()[0].return_value
     except Exception as error:

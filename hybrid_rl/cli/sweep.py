@@ -28,7 +28,7 @@ from hybrid_rl.composition import check_task, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
 from hybrid_rl.run import together
-from hybrid_rl.run.folder import made
+from hybrid_rl.run.folder import new_folder
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.start import built
 
@@ -86,7 +86,7 @@ class Sweeper(BasicSweeper):
     """Checks, runs and reports every combination of the given values."""
 
     def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
-        """Hydra's: what to run, and by which launcher."""
+        """Get from Hydra what to run, and by which launcher."""
         self.task = Task(task_function)
         super().setup(hydra_context=hydra_context, task_function=self.task, config=config)
 
@@ -191,7 +191,7 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             complete.append(list(overrides))
             continue
         if config.run_dir is None:
-            folder = made(config, f"_{number}")
+            folder = new_folder(config, f"_{number}")
         else:
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")
@@ -226,7 +226,7 @@ def _report(
         rows.append({"job": number, "overrides": labels[number], "run_dir": run_dir, **result})
     (folder / "jobs.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     cells = [("job", "overrides", "run folder", "result")]
-    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _shown(r)) for r in rows]
+    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _outcome_text(r)) for r in rows]
     show(cells)
     failed = [str(row["job"]) for row in rows if row["code"] != 0]
     which = f"; not {', '.join(failed)}" if failed else ""
@@ -242,6 +242,6 @@ def show(cells: Sequence[Sequence[str]]) -> None:
         print("  ".join(columns).rstrip())
 
 
-def _shown(row: dict[str, Any]) -> str:
+def _outcome_text(row: dict[str, Any]) -> str:
     """The result of a job in the table."""
     return row["line"] if not row["code"] else f"failed ({row['code']}): {row['line']}"

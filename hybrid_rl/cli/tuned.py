@@ -46,7 +46,7 @@ class Tuner(sweep.Sweeper):
         self._watched: study.Watch | None = None  # its rows
 
     def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
-        """Hydra's: what to run."""
+        """Get from Hydra what to run."""
 
         def watched(job: DictConfig) -> Any:
             return task_function(job, self._watch(job))

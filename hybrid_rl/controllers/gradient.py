@@ -125,7 +125,7 @@ class GradientController:
     def considered(
         self, params: Params, state: GradientState, obs: Array, key: Array
     ) -> tuple[Array, GradientState, dict[str, Array], Considered]:
-        """The same, and the candidates: what acts, then the refined, their starts, the drawn."""
+        """As `act`, and the candidates: what acts, then the refined, their starts, the drawn."""
         preparing, drawing = jax.random.split(key)
         x = self.model.lift(params.model, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)

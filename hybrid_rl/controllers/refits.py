@@ -108,7 +108,7 @@ class RefitsController:
         noise = jax.random.normal(key, (self._own, *state.plan.shape))
         return sampling.imagine(
             lambda x, u: self.model.step(params.model, x, u),
-            lambda carry, x, *a: proposal(params, carry, lifting.seen(x), *a),
+            lambda carry, x, *a: proposal(params, carry, lifting.policy_input(x), *a),
             state.carries,
             x,
             state.plan,

@@ -83,13 +83,13 @@ class SamplingController:
     def considered(
         self, params: Params, state: SamplingState, obs: Array, key: Array
     ) -> tuple[Array, SamplingState, dict[str, Array], Considered]:
-        """The same, and the candidates."""
+        """What `act` returns, and the candidates."""
         rolling, choosing = jax.random.split(key)
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
         samples = sampling.imagine(
             lambda x, u: self.model.step(params.model, x, u),
-            lambda carry, x, *a: self.proposal(params, carry, lifting.seen(x), *a),
+            lambda carry, x, *a: self.proposal(params, carry, lifting.policy_input(x), *a),
             state.carries,
             x,
             state.plan,

@@ -10,4 +10,6 @@ FALLS = 3.0  # a decision, where episodes end by the robot's fall
 
 def bonus(world: Env, given: float | None) -> float:
     """The reward of a decision before the goal's own: `given`, or by whether episodes can end."""
-    return FALLS * hasattr(world, "ended") if given is None else given
+    if given is not None:
+        return given
+    return FALLS if hasattr(world, "ended") else 0.0

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.branching import where
+from hybrid_rl.core.batching import where
 from hybrid_rl.protocols import Policy, Reward, Trainable
 from hybrid_rl.types import Batch, Params
 

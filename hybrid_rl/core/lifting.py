@@ -27,8 +27,8 @@ def start(model: Any, params: Params, obs: Array) -> Any:
     return model.start(params) if hasattr(model, "start") else model.lift(params.model, obs)
 
 
-def seen(x: Array | EnvState) -> Array:
-    """What policies and critics see of a planning state."""
+def policy_input(x: Array | EnvState) -> Array:
+    """What policies and critics get of a planning state: the observation of a world's."""
     return x.obs if isinstance(x, EnvState) else x
 
 

@@ -21,6 +21,7 @@ from jax import Array
 
 from hybrid_rl.core import returns
 from hybrid_rl.core.adjoint import scan_unroll
+from hybrid_rl.core.batching import prepend, repeat
 from hybrid_rl.types import EnvState, Path, Reward, Step
 
 
@@ -46,7 +47,7 @@ def imagine(
     paths. x may be any tree of arrays.
     """
     count = len(jax.tree.leaves(noise)[0])
-    start = jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, (count, *leaf.shape)), x)
+    start = repeat(x, count)
     propose_all = jax.vmap(propose, in_axes=(0, 0, None, 0))
 
     def forward(state: tuple[Any, Any], inputs: tuple[Array, Any]) -> tuple:
@@ -62,9 +63,7 @@ def imagine(
         (plan, jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), noise)),
         unroll=1 if isinstance(x, EnvState) else scan_unroll(len(plan)),  # physics compiles slowly
     )
-    xs = jax.tree.map(
-        lambda first, rest: jnp.concatenate([first[None], rest]).swapaxes(0, 1), start, xs
-    )
+    xs = jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), prepend(start, xs))
     return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)
 
 

@@ -17,6 +17,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import statistics
+from hybrid_rl.core.optimisers import adam_step
 from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Spec
 
@@ -48,12 +49,6 @@ def init(part: Any, key: Array, spec: Spec) -> SACState:
         optax.adam(part.critic_learning_rate).init(critic),
         optax.adam(part.alpha_learning_rate).init(log_alpha),
     )
-
-
-def adam(rate: float, grads: Any, optimiser: Any, params: Any) -> tuple[Any, Any]:
-    """One step: new parameters, new state of the optimiser."""
-    change, optimiser = optax.adam(rate).update(grads, optimiser, params)
-    return optax.apply_updates(params, change), optimiser
 
 
 def observed(
@@ -88,7 +83,8 @@ def critic_step(
         return 0.5 * jnp.sum(jnp.mean(error, axis=-1)), q.mean()
 
     (value, q), grads = jax.value_and_grad(loss, has_aux=True)(state.critic)
-    critic, optimiser = adam(part.critic_learning_rate, grads, state.critic_optimiser, state.critic)
+    rate, optimiser = part.critic_learning_rate, state.critic_optimiser
+    critic, optimiser = adam_step(rate, grads, optimiser, state.critic)
     return state.replace(critic=critic, critic_optimiser=optimiser), (value, q)
 
 
@@ -104,15 +100,16 @@ def policy_step(
     if limit is not None:
         shrunk = jnp.minimum(1.0, limit / jnp.maximum(norm, 1e-12))
         grads = jax.tree.map(lambda g: g * shrunk, grads)
-    policy, optimiser = adam(part.policy_learning_rate, grads, state.policy_optimiser, state.policy)
+    rate, optimiser = part.policy_learning_rate, state.policy_optimiser
+    policy, optimiser = adam_step(rate, grads, optimiser, state.policy)
     return state.replace(policy=policy, policy_optimiser=optimiser), (value, more, norm)
 
 
 def temperature_and_target(part: Any, state: SACState, entropy: Array, actions: int) -> SACState:
     """`state` with a step of the temperature for `entropy` [], and the target critic following."""
     aim = -actions if part.target_entropy is None else part.target_entropy
-    log_alpha, optimiser = adam(
+    log_alpha, optimiser = adam_step(
         part.alpha_learning_rate, entropy - aim, state.alpha_optimiser, state.log_alpha
     )
-    target = statistics.following(state.target, state.critic, part.tau)
+    target = statistics.soft_target_update(state.target, state.critic, part.tau)
     return state.replace(target=target, log_alpha=log_alpha, alpha_optimiser=optimiser)

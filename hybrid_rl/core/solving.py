@@ -13,6 +13,8 @@ import jax.numpy as jnp
 from jax import Array
 from jax.custom_batching import custom_vmap
 
+from hybrid_rl.core.batching import batch_all
+
 
 @custom_vmap
 def solve(A: Array, B: Array) -> Array:
@@ -22,10 +24,7 @@ def solve(A: Array, B: Array) -> Array:
 
 @solve.def_vmap
 def _(size: int, batched: Any, A: Array, B: Array) -> tuple[Array, bool]:
-    def repeat(is_batched: bool, x: Array) -> Array:
-        return x if is_batched else jnp.broadcast_to(x, (size, *x.shape))
-
-    A, B = (repeat(is_batched, x) for is_batched, x in zip(batched, (A, B), strict=True))
+    A, B = batch_all(size, batched, [A, B])
     if jax.default_backend() == "cpu":
         return jax.lax.map(lambda pair: solve(*pair), (A, B)), True
     return jax.vmap(jnp.linalg.solve)(A, B), True

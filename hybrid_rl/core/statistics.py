@@ -59,18 +59,18 @@ def update(
     return now.replace(min_std=FLOOR * (now.magnitude if magnitude is None else magnitude))
 
 
-def following(old: Any, new: Any, tau: float) -> Any:
+def soft_target_update(old: Any, new: Any, tau: float) -> Any:
     """Target parameters: (1 - tau) old + tau new, with the statistics of `new`.
 
     A network's inputs and outputs have the units of its statistics, so a target in older units
     would have another value for the same weights.
     """
 
-    def followed(new: Any, old: Any) -> Any:
+    def one(new: Any, old: Any) -> Any:
         running = isinstance(new, Running)
         return new if running else optax.incremental_update(new, old, tau)
 
-    return jax.tree.map(followed, new, old, is_leaf=lambda node: isinstance(node, Running))
+    return jax.tree.map(one, new, old, is_leaf=lambda node: isinstance(node, Running))
 
 
 def normalise(stats: Running, x: Array) -> Array:

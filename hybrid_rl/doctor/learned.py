@@ -71,7 +71,7 @@ def forecast(run: Evidence) -> str | None:
 
 
 def _within(known: np.ndarray, rows: tuple[np.ndarray, ...]) -> tuple[np.ndarray, ...]:
-    """Those of `rows` whose obs [n, o] are within the limits of `known` [N, o]."""
+    """The part of `rows` whose obs [n, o] are within the limits of `known` [N, o]."""
     inside = ((rows[0] >= known.min(0)) & (rows[0] <= known.max(0))).all(1)
     return tuple(each[inside] for each in rows)
 

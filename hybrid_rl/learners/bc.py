@@ -20,8 +20,8 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lift
+from hybrid_rl.core.optimisers import adamw
 from hybrid_rl.core.ranges import edge_and_saturation
 from hybrid_rl.fields import Inside, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model

@@ -23,7 +23,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core import labels, statistics, teaching
-from hybrid_rl.core.branching import when_any
+from hybrid_rl.core.batching import when_any
 from hybrid_rl.core.ranges import edge_and_saturation
 from hybrid_rl.core.teaching import Answer
 from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, Positive, Share, part

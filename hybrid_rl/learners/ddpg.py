@@ -8,6 +8,7 @@ pi is the mean of any policy; the controller explores. Q is the minimum over the
 the original has one. A time limit does not terminate the task.
 """
 
+from functools import partial
 from typing import Any, ClassVar
 
 import jax
@@ -91,7 +92,7 @@ class DDPG:
 
         state, (of_policy, *_) = steps.policy_step(self, state, loss)
         metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
-        return state.replace(
-            target_policy=statistics.following(state.target_policy, state.policy, self.tau),
-            target_critic=statistics.following(state.target_critic, state.critic, self.tau),
-        ), metrics
+        update = partial(statistics.soft_target_update, tau=self.tau)
+        policy = update(state.target_policy, state.policy)
+        critic = update(state.target_critic, state.critic)
+        return state.replace(target_policy=policy, target_critic=critic), metrics

@@ -21,7 +21,8 @@ import jax.numpy as jnp
 import optax
 from jax import Array
 
-from hybrid_rl.core.soft_actor_critic import SACState, adam
+from hybrid_rl.core.optimisers import adam_step
+from hybrid_rl.core.soft_actor_critic import SACState
 from hybrid_rl.fields import Count, Discount, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Params, PyTree, Spec
@@ -132,12 +133,12 @@ class FlashSAC:
         (of_policy, (entropy, statistics)), grads = jax.value_and_grad(loss, has_aux=True)(
             state.policy["weights"]
         )
-        weights, optimiser = adam(
+        weights, optimiser = adam_step(
             self.learning_rate, grads, state.policy_optimiser, state.policy["weights"]
         )
         policy = self.policy.constrained({"weights": weights, "statistics": statistics})
         aim = batch.action.shape[-1] * math.log(self.target_sigma * math.sqrt(2 * math.pi * math.e))
-        log_alpha, alpha_optimiser = adam(
+        log_alpha, alpha_optimiser = adam_step(
             self.learning_rate, alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
         )
         metrics = {"sac/policy_loss": of_policy, "sac/alpha": alpha, "sac/entropy": entropy}
@@ -168,7 +169,7 @@ class FlashSAC:
         (of_critic, statistics), grads = jax.value_and_grad(loss, has_aux=True)(
             state.critic["weights"]
         )
-        weights, optimiser = adam(
+        weights, optimiser = adam_step(
             self.learning_rate, grads, state.critic_optimiser, state.critic["weights"]
         )
         critic = self.critic.constrained({"weights": weights, "statistics": statistics})

@@ -41,7 +41,7 @@ class ModelHistory:
         return HistoryState(empty, jnp.zeros((), jnp.int32))
 
     def params(self, state: HistoryState) -> dict[str, Any]:
-        """Nothing."""
+        """No parameters: the copies are for studies."""
         return {}
 
     def update(

@@ -4,9 +4,9 @@ From each of B start states the policy makes H decisions in the model,
 
     u_t ~ pi(x_t),   x_{t+1} ~ f(x_t, u_t),   r_t, c_t = reward(x_t, u_t, x_{t+1})
 
-with c_t the chance that the episode continues. The policy maximises their soft return V_0; with
-`value_expansion` the critic learns the y_t of the same decisions (`core.soft_return`), else one
-decision, as in SAC. The start states are those of branches that go on from one update to the next
+with c_t the chance that the episode continues. The policy maximises their soft return V_0; the
+critic learns the y_t of the first `value_steps` of the same decisions (`core.soft_return`); with
+none of them, from one decision, as in SAC. The start states are those of branches that go on from one update to the next
 (`core.branches`), or of the replay memory. Sources: stochastic value gradients (Heess et al. 2015),
 MAAC (Clavera et al. 2020), model-based value expansion (Feinberg et al. 2018), MBPO (Janner et al.
 2019).
@@ -41,7 +41,7 @@ class ModelBased:
     """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model.
 
     Raises:
-        ValueError: for a value expansion without steps, or a memory that batches do not fill.
+        ValueError: for more value steps than steps, or a memory that batches do not fill.
     """
 
     policy: LearnedPolicy
@@ -49,7 +49,7 @@ class ModelBased:
     model: Trainable
     reward: Reward
     steps: Natural = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
-    value_expansion: bool = True  # the critic learns from the H decisions, too
+    value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     policy_learning_rate: Positive = 3e-4
@@ -70,11 +70,17 @@ class ModelBased:
 
     def __post_init__(self) -> None:
         """Check what depends on two fields."""
-        if self.value_expansion and not self.steps:
-            raise FieldError(self, "value_expansion", "needs steps of 1 or more")
+        if self.value_steps is not None and not 0 <= self.value_steps <= self.steps:
+            words = f"must be a whole number from 0 to steps={self.steps}, or null for all"
+            raise FieldError(self, "value_steps", words)
         if self.branch_memory % self.batch_size:
             words = f"must be 0 or a multiple of the batch, {self.batch_size}"
             raise FieldError(self, "branch_memory", words)
+
+    @property
+    def _value_steps(self) -> int:
+        """Imagined decisions at whose states the critic learns."""
+        return self.steps if self.value_steps is None else self.value_steps
 
     def init(self, key: Array, spec: Spec) -> ModelBasedState:
         """Initial parameters, without branches. The key is consumed."""
@@ -104,7 +110,7 @@ class ModelBased:
         acting, ahead = jax.random.split(key)
         noise = jax.random.normal(acting, (2, *batch.action.shape))
         of_critic = None
-        if not self.value_expansion:
+        if not self._value_steps:
             y = steps.target(self, learner, alpha, batch, noise[0])
             learner, of_critic = steps.critic_step(self, learner, batch.obs, batch.action, y)
 
@@ -179,9 +185,11 @@ class ModelBased:
         )
 
     def _expanded(self, state: SACState, alpha: Array, paths: Imagined) -> tuple:
-        """`state` after a step of the critic towards the returns along `paths`; loss and mean Q."""
+        """`state` after a step of the critic towards returns along `paths`; its loss and mean Q."""
         paths = jax.lax.stop_gradient(paths)
         last = self.critic.value(state.target, paths.x[-1], paths.u[-1])
         y = soft_return.returns(paths, alpha, self.discount, last)
-        x, u = (each[:-1].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
-        return steps.critic_step(self, state, x, u, y.ravel(), soft_return.reached(paths).ravel())
+        first = slice(self._value_steps)
+        x, u = (each[first].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
+        y, reached = y[first].ravel(), soft_return.reached(paths)[first].ravel()
+        return steps.critic_step(self, state, x, u, y, reached)

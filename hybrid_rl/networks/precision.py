@@ -30,13 +30,13 @@ def choose(name: str) -> None:
 
 
 def chosen() -> str:
-    """bf16, tf32 or float32."""
+    """The precision of networks in this process: bf16, tf32 or float32."""
     name = _CHOSEN.value
     return OF_DEVICE[name].get(jax.default_backend(), "float32") if name in OF_DEVICE else name
 
 
 def of_products() -> Precision:
-    """That of a network's products of float32 matrices."""
+    """The precision of a network's products of float32 matrices."""
     return Precision.HIGHEST if chosen() == "float32" else Precision.DEFAULT
 
 

@@ -13,7 +13,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import returns
-from hybrid_rl.core.lifting import seen
+from hybrid_rl.core.lifting import policy_input
 from hybrid_rl.fields import Share, part
 from hybrid_rl.protocols import Critic, Policy, Reward
 from hybrid_rl.types import Params, Path, Return, Spec
@@ -63,7 +63,7 @@ class PredictedReturn:
         rewards, ends = self._outcomes(params, path)
         last = jnp.zeros(())
         if self.critic is not None and self.policy is not None:
-            x = seen(jax.tree.map(lambda leaf: leaf[-1], path.x))
+            x = policy_input(jax.tree.map(lambda leaf: leaf[-1], path.x))
             last = self.critic.value(params.critic, x, self.policy.mean(params.policy, x))
         goes_on = self.discount * jax.nn.sigmoid(-ends)
         return returns.to_go(rewards, goes_on, last, unroll=True)

@@ -45,7 +45,7 @@ class Constraint(Protocol):
 
     @property
     def price(self) -> float:
-        """Of a violated decision, for learners and planners."""
+        """What a violated decision costs, for learners and planners."""
 
     @property
     def chance(self) -> float | None:
@@ -53,7 +53,7 @@ class Constraint(Protocol):
 
     @property
     def width(self) -> float:
-        """Of the smooth indicator sigmoid(excess / width), in the unit of `excess`."""
+        """The width of the smooth indicator sigmoid(excess / width), in the unit of `excess`."""
 
     def excess(self, x: Array, u: Array, after: Array) -> Array:
         """How far [] action u [m] at x [n], which led to `after` [n], is beyond the limit.

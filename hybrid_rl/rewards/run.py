@@ -36,7 +36,7 @@ class Run:
     def __post_init__(self) -> None:
         """Check that the environment has what the reward measures."""
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
-        for name in ("speed", *["pitch"] * (self.level is not None)):
+        for name in ("speed",) if self.level is None else ("speed", "pitch"):
             if name not in known:
                 raise FieldError(self, "world", f"has no {name}, only {', '.join(known)}")
 

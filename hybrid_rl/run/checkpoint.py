@@ -36,7 +36,7 @@ NAME = re.compile(r"(\d+)|\.(\d+)\.replaced(?:\.\d+)?\.tmp")  # of a finished ch
 
 
 def nbytes(state: PyTree) -> int:
-    """Size of a checkpoint of `state` on the disk [bytes], to a few kB."""
+    """Size of the arrays of `state` [bytes]; that of its checkpoint, to a few kB."""
     return sum(leaf.size * leaf.dtype.itemsize for leaf in jax.tree.leaves(state))
 
 

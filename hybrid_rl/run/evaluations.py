@@ -72,11 +72,11 @@ class Evaluator:
         self, params: Params, keys: Array, cut: Callable[[], bool]
     ) -> dict[str, np.ndarray] | None:
         """The `scores` [S, N]; None once `cut` is true."""
-        more = partial(self._advance, self.numbers, params)
-        return in_calls(self._begin(self.numbers, keys), more, self.steps, lambda made: cut())
+        begun, more = self._begin(self.numbers, keys), partial(self._advance, self.numbers, params)
+        return finish_episodes(begun, more, self.steps, lambda made: cut())
 
 
-def in_calls(
+def finish_episodes(
     carry: tuple,
     more: Callable[[tuple, Array], tuple],
     steps: int,

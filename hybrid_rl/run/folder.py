@@ -23,7 +23,7 @@ from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBase
 from hybrid_rl import __version__, parts
 from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
-from hybrid_rl.errors import MisfitError, PartError, UsageError, shown
+from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.overrides import quoted
 from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
@@ -46,7 +46,7 @@ def fresh(config: DictConfig) -> Iterator[Path]:
     Raises:
         UsageError: if it holds a run, another process holds it, or it cannot be written to.
     """
-    folder = made(config) if config.run_dir is None else Path(str(config.run_dir))
+    folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
     new = config.run_dir is None or not folder.exists()
     try:
         with locked(writable(folder, "run_dir"), "run_dir"), _cleared(folder):
@@ -85,7 +85,7 @@ def rowless(folder: Path) -> bool:
     return empty and not checkpoint.steps(folder / "checkpoints")
 
 
-def made(config: DictConfig, suffix: str = "") -> Path:
+def new_folder(config: DictConfig, suffix: str = "") -> Path:
     """A new folder runs/TASK/ALGO/TIME[suffix].
 
     Raises:
@@ -246,7 +246,7 @@ def going_on(folder: str | Path) -> str:
 
 def words(values: Mapping[str, float]) -> str:
     """What sets a run of a sweep apart, as typed; empty if nothing does."""
-    return shown(" ".join(f"{key}={value}" for key, value in values.items()))
+    return printable(" ".join(f"{key}={value}" for key, value in values.items()))
 
 
 def parsed(folder: Path, key: str = "runs") -> DictConfig:

@@ -1,10 +1,10 @@
 """What a program trains, and where: a run in its folder, or those of a sweep in theirs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from omegaconf import DictConfig, OmegaConf
 
@@ -13,7 +13,7 @@ from hybrid_rl.config import Run
 from hybrid_rl.networks import precision
 from hybrid_rl.run import integrity, loggers, provenance
 from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.records import flat
+from hybrid_rl.run.records import Row, flat
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.store import Store
@@ -26,8 +26,18 @@ from hybrid_rl.training.loops import loop_of
 class Output:
     """Where a run reports, besides its folder."""
 
-    on_row: loggers.Function | None = None  # gets every row
-    shown: bool = True  # on the console
+    on_row: loggers.Callback | None = None  # gets every row
+    progress: bool = True  # on the console
+
+    @classmethod
+    def of(cls, function: Callable[[Row], Any] | None, progress: bool = True) -> Self:
+        """With a function of the user's that gets every row; None: none."""
+        return cls(None if function is None else loggers.Callback(function), progress)
+
+    def raise_problem(self) -> None:
+        """Raise what the function raised, if it did; the run has ended with a checkpoint."""
+        if self.on_row is not None and self.on_row.problem is not None:
+            raise self.on_row.problem
 
 
 @dataclass(frozen=True)
@@ -39,7 +49,7 @@ class Job:
     axis: Axis = field(default_factory=Axis)
 
     def loop(self) -> Loop:
-        """That of all learners."""
+        """The loop that trains all learners."""
         run = self.runs[0]
         stride = -(-run.config.log_every // run.config.num_envs)
         seeds = run.seeds * len(self.runs)
@@ -51,12 +61,12 @@ class Job:
         return self.folders[0] if len(self.folders) == 1 else self.folders[0].parent
 
     def logs(self, output: Output, stack: ExitStack) -> list[RunLog]:
-        """Their records, open until the end of `stack`."""
+        """The records of the runs, open until the end of `stack`."""
         logs = []
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             settings: Any = OmegaConf.to_container(run.config)
             names = loggers.check(run.config.get("logger"))
-            copies = loggers.made(names, run_dir, run.seeds, settings)
+            copies = loggers.create(names, run_dir, run.seeds, settings)
             if output.on_row is not None:
                 more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
                 copies.append(output.on_row.of(more))
@@ -83,7 +93,7 @@ class Job:
 
 
 def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) -> dict[str, Any]:
-    """That of the learners in `share`."""
+    """What summary.json of the learners in `share` holds."""
     values: Any = OmegaConf.to_container(config)
     ends, rate = session.diverged.ends, session.record.learning.rate
     return {

@@ -82,7 +82,7 @@ def train(
 def begin(
     run: Run, handled: Handler, output: Output = CONSOLE, start: Start | None = None
 ) -> dict[str, Any]:
-    """The same for a run that is built, in a new folder; start: what another run gave it."""
+    """Run what is built, in a new folder, as `train`; start: what another run gave it."""
     size = _fits([run])
     loggers.check(run.config.get("logger"))
     with folder.fresh(run.config) as run_dir:
@@ -90,7 +90,7 @@ def begin(
 
 
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
-    """The same from the newest checkpoint in the folder `config.resume`."""
+    """Continue what is built from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
     with locked(folder.writable(run_dir, "run_dir"), "run_dir"):
         return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
@@ -99,7 +99,7 @@ def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, A
 def _resume(
     config: DictConfig, given: Mapping[str, str], handled: Handler, output: Output
 ) -> dict[str, Any]:
-    """The same for the run, or the runs of a sweep, in the folder `config.resume`."""
+    """Continue the run, or the runs of a sweep, in the folder `config.resume`, as `train`."""
     parent = Path(str(config.resume))
     values = folder.members(parent) or {parent: {}}
     swept, folders = parent not in values, list(values)
@@ -111,7 +111,7 @@ def _resume(
 
     done = [_done(settings(each), each) for each in folders]
     if ends := [each for each in done if each is not None and None not in done]:
-        if output.shown:
+        if output.progress:
             line = f"finished already at {ends[0]['total_steps']:,}; raise total_steps to go on"
             print(f"{parent}: {line}")
         return (together.summary(parent, ends) if swept else ends[0]) | {"signal": None}
@@ -148,7 +148,7 @@ def _run(
     label = f"{config.task} {config.algo}"
     with ExitStack() as stack:
         logs = job.logs(output, stack)
-        progress = stack.enter_context(_progress(run, label, output.shown))
+        progress = stack.enter_context(_progress(run, label, output.progress))
         each = zip(job.folders, job.axis.names, strict=True)
         notes = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in each]
         notes += [size, *run.notes]
@@ -244,12 +244,12 @@ def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     return summary if done and integrity.verify(newest) is None else None
 
 
-def _progress(run: Run, label: str, shown: bool) -> Progress:
+def _progress(run: Run, label: str, visible: bool) -> Progress:
     """The display of a run, whose last round may end beyond total_steps."""
     config = run.config
     rounds = -(-config.total_steps // config.num_envs)
     steady = max(run.agent.changes())
-    kind = Progress if shown else Silent
+    kind = Progress if visible else Silent
     return kind(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
 
 

@@ -20,7 +20,7 @@ class RunLog:
     """Writes rows of numbers to a run folder, which exists; `loggers` get them, too."""
 
     def __init__(self, run_dir: Path, seeds: Sequence[int], loggers: Sequence[Logger] = ()) -> None:
-        from hybrid_rl.run.board import TensorBoard  # 0.2 s
+        from hybrid_rl.run.tensorboard import TensorBoard  # 0.2 s
 
         self.run_dir = run_dir
         self._lines = Lines(run_dir)

@@ -227,7 +227,7 @@ class Trackio(Logger):
         self.flush()
 
 
-class Function(Logger):
+class Callback(Logger):
     """A function of the user's, which is called with every new row, a dictionary.
 
     Where it returns False, `ask` is called with 0, and it gets the rows up to the end. Where it
@@ -287,7 +287,7 @@ def check(given: Any) -> tuple[str, ...]:
     return names
 
 
-def made(
+def create(
     names: Iterable[str], folder: Path, seeds: Sequence[int], config: dict[str, Any]
 ) -> list[Logger]:
     """The loggers `names` of the run in `folder`."""

@@ -10,6 +10,7 @@ import jax
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
+from hybrid_rl.run.checkpoint import nbytes
 from hybrid_rl.training import rollout
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
@@ -44,11 +45,8 @@ def episodes(
     if number * seeds < MANY:
         return  # tracing the reset of a robot takes a second
     one = jax.eval_shape(lambda: jax.random.split(jax.random.key(0), 1))
-    sizes = [
-        sum(leaf.size * leaf.dtype.itemsize for leaf in jax.tree.leaves(begun))
-        for each in controllers
-        if (begun := jax.eval_shape(partial(rollout.begin, episode, each), one))
-    ]
+    begun = (jax.eval_shape(partial(rollout.begin, episode, each), one) for each in controllers)
+    sizes = map(nbytes, begun)
     need, have = max(sizes, default=0) * number * seeds, available()
     if need > have:
         raise UsageError(

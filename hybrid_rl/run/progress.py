@@ -35,12 +35,12 @@ def say(text: str) -> None:
 
     That ends no run, as its records are in its folder.
     """
-    with shown():
+    with ignore_closed_output():
         print(text, flush=True)
 
 
 @contextmanager
-def shown() -> Iterator[None]:
+def ignore_closed_output() -> Iterator[None]:
     """Within, output that cannot be written is dropped, and so is all after it."""
     try:
         yield
@@ -105,7 +105,7 @@ class Progress:
     ) -> None:
         self._ended.set()
         if self._live is not None:
-            with shown():
+            with ignore_closed_output():
                 self._live.stop()
             self._live = None
         elif self._pending:
@@ -143,7 +143,7 @@ class Progress:
     def note(self, text: str) -> None:
         """Print a line above the display."""
         if self._live is not None:
-            with shown():
+            with ignore_closed_output():
                 self._live.console.print(text, markup=False, highlight=False)
         else:
             with self._lock:
@@ -204,11 +204,11 @@ class Silent(Progress):
         return self
 
     def update(self, step: int, scalars: dict[str, float], say: bool | None = None) -> None:
-        """Nothing but the step."""
+        """Keep the step, and show nothing."""
         self.step = step
 
     def note(self, text: str) -> None:
-        """Nothing."""
+        """Print nothing."""
 
 
 class _Count(TextColumn):

@@ -155,13 +155,15 @@ def _measure(content: str) -> None:
             case yaml.CollectionEndEvent():
                 size, anchor = sizes.pop(), anchors.pop()
                 sizes[-1] += size
-                known |= {anchor: size} if anchor else {}
+                if anchor:
+                    known[anchor] = size
             case yaml.AliasEvent():
                 if event.anchor not in known:
                     raise ValueError(f"*{event.anchor} refers to itself, or to nothing")
                 sizes[-1] += known[event.anchor]
             case yaml.ScalarEvent():
-                known |= {event.anchor: 1} if event.anchor else {}
+                if event.anchor:
+                    known[event.anchor] = 1
                 sizes[-1] += 1
                 _check_scalar(event)
         if getattr(event, "tag", None) not in (None, "!"):

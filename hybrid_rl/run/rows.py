@@ -5,12 +5,13 @@ of E worlds of each of S learners. Rows have the number of a learner here, and i
 """
 
 from collections.abc import Container, Mapping, Sequence
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
+from hybrid_rl.run.records import Row
+
 Metrics = dict[str, np.ndarray]
-Row = dict[str, Any]
 ACTION = "world/action"
 
 
@@ -119,6 +120,7 @@ def means(metrics: Metrics, learners: int, end: int, ended: Container[int] = ())
         row: Row = {"step": end, "learner": s}
         for name, values in metrics.items():
             known = values[:, s][~np.isnan(values[:, s])]
-            row |= {name: known.mean(dtype=np.float64)} if known.size else {}
+            if known.size:
+                row[name] = known.mean(dtype=np.float64)
         averages.append(row)
     return averages

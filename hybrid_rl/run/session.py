@@ -23,6 +23,7 @@ from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.duration import Duration
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.progress import DRAWN, Progress
+from hybrid_rl.run.records import Row
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.start import Start
@@ -242,7 +243,7 @@ class Session:
         means = {n: float(np.mean([each[n] for each in left.values()])) for n in outcomes[0]}
         self._show({**means, DRAWN: means[result]}, say=True)
 
-    def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[rows.Row]:
+    def _end(self, failures: Mapping[int, tuple[int, str]]) -> list[Row]:
         """A row for each learner that diverged just now; failures: learner -> (step, quantity)."""
         new = self.diverged.add(failures, self.state, self.step)
         if left := self.diverged.left:  # else the error names it
@@ -272,7 +273,7 @@ class Session:
             self.progress.note(note)
         self.saved = self.step, self.record.unevaluated
 
-    def _write(self, new: list[rows.Row]) -> None:
+    def _write(self, new: list[Row]) -> None:
         self.shelf.write(new, self.wall_s)
 
     def _show(self, scalars: Mapping[str, float] = NOTHING, say: bool | None = None) -> None:

@@ -56,8 +56,10 @@ class Store:
         """
         names, array = gathered.pack()
         leaves = {part.name: getattr(state, part.name) for part in fields(state)}
-        leaves |= {} if self.replay else {"memory": None}
-        leaves |= {} if array is None else {"gathered": array}
+        if not self.replay:
+            leaves["memory"] = None
+        if array is not None:
+            leaves["gathered"] = array
         shape, step = [] if array is None else list(array.shape), record.step
         meta = {"seeds": list(self.loop.seeds), "capacity": self.loop.agent.replay.capacity}
         meta |= {"settings": dict(self.settings), "gathered": {"names": names, "shape": shape}}

@@ -175,7 +175,7 @@ def fresh(members: Sequence[Member]) -> Iterator[list[Path]]:
     """A new run folder for each run of a sweep, as `folder.fresh`, and sweep.json beside them."""
     config = members[0].config
     given = config.run_dir is not None
-    parent = Path(str(config.run_dir)) if given else folder.made(config)
+    parent = Path(str(config.run_dir)) if given else folder.new_folder(config)
     for name in (SWEEP, "config.yaml"):
         if (parent / name).exists():
             line = f"run_dir={parent}: holds a run already; choose another"

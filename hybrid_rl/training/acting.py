@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.core.batching import repeat
 from hybrid_rl.protocols import Controller
 from hybrid_rl.types import Params, Spec
 
@@ -46,21 +47,19 @@ class TrainedPolicy:
         """The action [m] at obs [o], or actions [N, m] at [N, o].
 
         Raises:
-            ValueError: for observations of another size, or another N than since the reset, or
-                numbers that are not finite, of which a planner would make an action that is.
+            ValueError: for observations of another size or that are not finite, or another N than
+                since the reset.
         """
         obs = np.asarray(obs, np.float32)
         o = self.spec.obs
         if obs.ndim not in (1, 2) or obs.shape[-1] != o:
             raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
-        if not np.isfinite(obs).all():
-            raise ValueError(f"obs is not finite at {np.argwhere(~np.isfinite(obs))[0].tolist()}")
         rows = np.atleast_2d(obs)
+        if not np.isfinite(rows).all():
+            raise ValueError(f"obs: entry {np.argwhere(~np.isfinite(rows))[0, 1]} is not finite")
         if self._state is None:
             self._worlds = len(rows)
-            self._state = jax.tree.map(
-                lambda leaf: jnp.broadcast_to(leaf, (len(rows), *jnp.shape(leaf))), self._begin()
-            )
+            self._state = repeat(self._begin(), len(rows))
         if len(rows) != self._worlds:
             raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
         u, self._state, self._key = self._act(self._state, rows, self._key)

@@ -27,7 +27,7 @@ import numpy as np
 from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
@@ -39,7 +39,7 @@ LOST = 3  # exit code: the robot does not answer
 
 @dataclass
 class Counts:
-    """Since the process began."""
+    """What happened since the process began."""
 
     decisions: int = 0
     missed: int = 0  # deadlines
@@ -234,7 +234,7 @@ class Actor:
         except (OSError, WorldError):  # of a connection; TimeoutError is one
             raise
         except FAULTS as error:
-            line = in_user_code(error) or gist(error)
+            line = blame(error)
             raise WorldError(f"{self.env.name}: {method}: {line}") from error
         finally:
             self._allowed = math.inf

@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.branching import where
+from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
 from hybrid_rl.protocols import Controller, Learner, Model
@@ -267,8 +267,7 @@ class Agent:
 
     def first_control(self) -> Any:
         """The controller's initial state in every environment [E, ...]."""
-        first = self.controller.init(self.spec)
-        return jax.tree.map(lambda x: jnp.broadcast_to(x, (self.num_envs, *jnp.shape(x))), first)
+        return repeat(self.controller.init(self.spec), self.num_envs)
 
 
 def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, int]:

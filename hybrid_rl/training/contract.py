@@ -16,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl import protocols
-from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, gist, in_user_code
+from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, one_line, user_line
 from hybrid_rl.types import EnvState, Params, Spec
 
 ROLES = {  # kind of a part -> its methods and what they take
@@ -233,10 +233,10 @@ def _called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -
     except UsageError:
         raise
     except FAULTS as error:
-        line = in_user_code(error)
+        line = user_line(error)
         if line is None and isinstance(error, AttributeError) and _of_user(error.obj):
             line = f"{Own(error.obj).at()} has no {error.name}{_where(error.name)}"
-        line = line or f"{mine.at()}: {gist(error)}"
+        line = line or f"{mine.at()}: {one_line(error)}"
         raise PartError(f"{line.rstrip('.')}; in {type(part).__name__}.{method}") from error
 
 

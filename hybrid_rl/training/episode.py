@@ -12,10 +12,10 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.branching import when_any, where
+from hybrid_rl.core.batching import when_any, where
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.protocols import Constraint, Env, Goal
-from hybrid_rl.training import paid
+from hybrid_rl.training import user_functions
 from hybrid_rl.types import EnvState, Spec
 
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
@@ -58,8 +58,8 @@ class Episode:
             if type(value) is not int or value < least:
                 line = f"must be a whole number, {least} or more"
                 raise ValueError(f"episode.{name}={value}: {line}")
-        for name in paid.METHODS:
-            paid.check(name, getattr(self, name), self.env.spec)
+        for name in user_functions.METHODS:
+            user_functions.check(name, getattr(self, name), self.env.spec)
         if self.action_noise < 0:
             raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
         if not any(self._std):

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.errors import UsageError, gist
+from hybrid_rl.errors import UsageError, one_line
 
 
 def numbers(name: str, given: Any, *shape: int, most: float = np.inf) -> np.ndarray:
@@ -17,7 +17,7 @@ def numbers(name: str, given: Any, *shape: int, most: float = np.inf) -> np.ndar
         with np.errstate(over="ignore"):
             values = np.array(given, np.float32)
     except (TypeError, ValueError) as error:
-        raise UsageError(f"{name}: must be numbers {list(shape)} ({gist(error)})") from error
+        raise UsageError(f"{name}: must be numbers {list(shape)} ({one_line(error)})") from error
     if values.shape != shape:
         must = f"[{shape[0]}]" if shape else "one number"
         raise UsageError(f"{name} is {list(values.shape)}; it must be {must}")

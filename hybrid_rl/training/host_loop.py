@@ -24,7 +24,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core.branching import where
+from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.envs.adapters.copies import Copies, Outcome
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.protocols import Controller
@@ -33,7 +33,7 @@ from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.rollout import act
-from hybrid_rl.training.sending import letters, send
+from hybrid_rl.training.sending import mailbox, send
 from hybrid_rl.types import EnvState, Params
 
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
@@ -49,7 +49,7 @@ class HostLoop(Loop):
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     def __post_init__(self) -> None:
-        """Whether all learners can."""
+        """Find out whether all learners can learn early."""
         self.early = all(each.data == "uniform" for each in self.agent.learners.values())
 
     @property
@@ -60,7 +60,7 @@ class HostLoop(Loop):
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that decides; that of the other one is kept."""
         began, at, agent = perf_counter(), jnp.zeros(4, jnp.int32), self.agent
-        got = _standing(state.env)
+        got = outcome_like(state.env)
         u, _, planned = jax.eval_shape(jax.vmap(agent.decide, (0, None)), state, at[0])
         led = jax.eval_shape(jax.vmap(self._observed, (0, 0, 0, None)), state, u, got, at[0])[1]
         learned = jax.eval_shape(jax.vmap(agent.learn, (0, None)), state, at[0])[1]
@@ -161,9 +161,9 @@ class HostProgram:
             self.copies = loop.copies()
             state = loop.restarted(state, self.copies.reset().reshape(*each, -1))
         rows = jax.tree.map(lambda row: np.zeros(row.shape, row.dtype), loop.rows)
-        got = jax.tree.map(np.array, _standing(state.env))  # the state itself is donated
+        got = jax.tree.map(np.array, outcome_like(state.env))  # the state itself is donated
         u = np.zeros((*each, loop.agent.spec.act), np.float32)
-        with letters(loop.mesh.size) as sent:
+        with mailbox(loop.mesh.size) as sent:
             for i in range(int(rounds)):
                 at = np.array([i, first + i * envs, made, sent.ticket], np.int32)
                 state, rows = self.act(state, rows, u, got, at)
@@ -175,8 +175,8 @@ class HostProgram:
         return state, jax.device_get(rows)
 
 
-def _standing(env: EnvState) -> Outcome:
-    """An outcome of the shapes of one at `env`, for a decision that has none before it."""
+def outcome_like(env: EnvState) -> Outcome:
+    """An outcome of the shapes of one at `env`, in place of one that is not there."""
     return Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
 
 
@@ -190,12 +190,12 @@ class HostEvaluator:
         self, episode: Episode, controller: Controller, params: Params, keys: Array
     ) -> None:
         """Compile one decision in all of them."""
-        self.episode, rest, shape = episode, controller.init(episode.spec), keys.shape
-        self.control = jax.tree.map(lambda x: jnp.broadcast_to(x, (*shape, *jnp.shape(x))), rest)
+        self.episode, shape = episode, keys.shape
+        self.control = repeat(controller.init(episode.spec), *shape)
         empty = episode.reset(jax.random.key(0))
 
         def decide(params: Params, control: Any, obs: Array, keys: Array) -> tuple:
-            env = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(obs), *x.shape)), empty)
+            env = repeat(empty, len(obs))
             keys, now = jnp.moveaxis(jax.vmap(jax.random.split)(keys), 1, 0)
             u, control, _ = act(controller, params, control, env.replace(obs=obs), now)
             return u, control, keys

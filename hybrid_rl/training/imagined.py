@@ -6,8 +6,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.batching import where
 from hybrid_rl.core.branches import Branches
-from hybrid_rl.core.branching import where
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.members import predicted
 from hybrid_rl.fields import Count, Natural, NotNegative, part
@@ -40,7 +40,7 @@ class Continuing(Protocol):
         ...
 
     def init(self, key: Array, spec: Spec) -> Any:
-        """Its first state."""
+        """The first state of the learner."""
 
     def params(self, state: Any) -> dict[str, Any]:
         """The fields of Params that it learns."""

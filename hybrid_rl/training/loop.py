@@ -90,7 +90,7 @@ class Loop:
 
     @property
     def numbers(self) -> dict[str, Array]:
-        """Those of each learner on the axis, [S] each."""
+        """The numbers of the axis by path, of each learner [S]."""
         each = len(self.seeds) // self.axis.count
         return {
             path: jnp.repeat(jnp.array(values, jnp.float32), each)

@@ -18,14 +18,14 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core.branching import where
+from hybrid_rl.core.batching import where
 from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.copies import Outcome
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.training.actor import check_one
 from hybrid_rl.training.agent import AgentState
-from hybrid_rl.training.host_loop import states
+from hybrid_rl.training.host_loop import outcome_like, states
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.robot_process import RobotProcess
@@ -56,9 +56,8 @@ class RobotLoop(Loop):
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that learns; that of the other one is kept."""
         began, zero, no = time.perf_counter(), np.int32(0), np.bool_(False)
-        env = state.env
-        got = Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
-        action = jnp.zeros((*env.obs.shape[:-1], self.agent.spec.act))
+        got = outcome_like(state.env)
+        action = jnp.zeros((*got.obs.shape[:-1], self.agent.spec.act))
         now = jax.eval_shape(jax.vmap(self._observed), state, action, got)[1]
         learned = jax.eval_shape(jax.vmap(self.agent.learn, (0, None)), state, zero)[1]
         self.rows = self.rows_of({**now, **learned})
@@ -108,8 +107,9 @@ class RobotLoop(Loop):
     def _observe(
         self, state: Any, rows: Any, action: Array, got: Outcome, gap: Array, first: Array, i: Array
     ) -> tuple[Any, Any]:
-        """The same into row i; gap: since the decision before. first: of an episode.
+        """All learners with a decision more, and its metrics in row i.
 
+        gap: whether decisions are missing before it; first: whether it begins an episode.
         `got.following` is the observation before the decision.
         """
 

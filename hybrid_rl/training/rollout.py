@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.branching import where
+from hybrid_rl.core.batching import prepend, repeat, where
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Params
@@ -28,8 +28,7 @@ def begin(episode: Episode, controller: Controller, keys: Array) -> tuple:
     starts, keys = _split(keys)
     env = jax.vmap(episode.reset)(starts)
     rest = controller.init(episode.spec)
-    control = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(keys), *jnp.shape(x))), rest)
-    return env, control, keys
+    return env, repeat(rest, len(keys)), keys
 
 
 def advance(
@@ -92,8 +91,7 @@ def rollout(
 
     carry = begin(episode, controller, key[None])
     _, states = jax.lax.scan(decide, carry, length=steps)
-    join = jax.tree.map(lambda first, rest: jnp.concatenate([first[None], rest]), carry[0], states)
-    return jax.tree.map(lambda leaf: leaf[:, 0], join)
+    return jax.tree.map(lambda leaf: leaf[:, 0], prepend(carry[0], states))
 
 
 def rollout_with_actions(
@@ -112,8 +110,7 @@ def rollout_with_actions(
 
     carry = (env, controller.init(episode.spec))
     _, (actions, states) = jax.lax.scan(decide, carry, jax.random.split(key, steps))
-    join = jax.tree.map(lambda first, rest: jnp.concatenate([first[None], rest]), env, states)
-    return actions, join
+    return actions, prepend(env, states)
 
 
 def evaluation_keys(seed: int, episodes: int) -> Array:

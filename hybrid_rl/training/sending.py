@@ -23,7 +23,7 @@ from hybrid_rl.envs.mujoco import xla_callback
 
 TARGET = "hybrid_rl.training.sending"
 POLL_S = 1.0  # [s] after which it is asked whether the program failed before it sent
-_boxes: dict[int, SimpleQueue] = {}  # of those who wait, by ticket
+_boxes: dict[int, SimpleQueue] = {}  # of open mailboxes, by ticket
 _tickets = count()
 
 
@@ -46,8 +46,8 @@ def send(u: Array, ticket: Array, axis: str) -> Array:
     return y[:, :m].reshape(u.shape)
 
 
-class Letters:
-    """What programs send with this `ticket`."""
+class Mailbox:
+    """Gets what programs send with this `ticket`."""
 
     def __init__(self, ticket: int, parts: int) -> None:
         """parts: devices that send."""
@@ -74,12 +74,12 @@ class Letters:
 
 
 @contextmanager
-def letters(parts: int) -> Iterator[Letters]:
-    """Opened for programs that send; what comes later is dropped."""
+def mailbox(parts: int) -> Iterator[Mailbox]:
+    """A mailbox for programs that send; what comes after the block is dropped."""
     ticket = next(_tickets) % 2**24  # a whole number in float32
     _boxes[ticket] = SimpleQueue()
     try:
-        yield Letters(ticket, parts)
+        yield Mailbox(ticket, parts)
     finally:
         del _boxes[ticket]
 

@@ -58,9 +58,10 @@ def reading(episode: Episode) -> Reading | None:
 
 
 def _of_robot(episode: Episode, states: EnvState) -> Reading | None:
-    """Of a robot of MuJoCo, each of whose positions is observed, or moves as an observed speed.
+    """The reading of a robot of MuJoCo.
 
-    What is drawn beside it, such as a target, stays.
+    Each of its positions is observed, or moves as an observed speed. What is drawn beside it, such
+    as a target, stays.
     """
     found, pose = simulated(states), pose_of(episode.env)
     if len(found) != 1:
@@ -110,12 +111,12 @@ def _turn(angle: Any) -> Any:
 
 
 def _integral(speed: Array) -> Array:
-    """Its sum along time [T+1] by trapezoids, 0 at first."""
+    """The integral [T+1] of a speed [T+1] over decisions by trapezoids, 0 at first."""
     return jnp.concatenate([jnp.zeros(1), jnp.cumsum((speed[1:] + speed[:-1]) / 2)])
 
 
 def _of_data(episode: Episode, states: EnvState) -> Reading | None:
-    """Of a world whose state is its observation."""
+    """The reading of a world whose state is its observation."""
     data = states.data
     if not isinstance(data, jax.Array) or data.shape != states.obs.shape:
         return None
@@ -123,7 +124,7 @@ def _of_data(episode: Episode, states: EnvState) -> Reading | None:
 
 
 def _of_local(episode: Episode, states: EnvState) -> Reading | None:
-    """Of an analytic world whose state is in local coordinates."""
+    """The reading of an analytic world whose state is in local coordinates."""
     env: Any = episode.env
     if not hasattr(env, "to_local") or not isinstance(states.data, jax.Array):
         return None

@@ -106,7 +106,7 @@ class Player:
         self._pool.shutdown(wait=False, cancel_futures=True)
 
     def _numbers(self, subject: Subject) -> Numbers:
-        """Of the goals of `subject`: as chosen, else as they are by default."""
+        """The numbers of the goals of `subject`: as chosen, else the defaults."""
         each = {one.key: self.numbers.get(one.key, one.value) for one in subject.goals}
         return {key: np.float32(value) for key, value in each.items()}
 

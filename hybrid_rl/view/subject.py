@@ -103,7 +103,7 @@ def _allowed(kind: Any, value: float) -> bool:
 
 
 def _rules(kind: Any) -> list[Must]:
-    """Those of a field's type."""
+    """The rules of a field's type."""
     return [rule for each in choices(kind) for rule in get_args(each) if isinstance(rule, Must)]
 
 

@@ -95,7 +95,7 @@ def robot(name: str) -> str:
 
 
 def keys() -> Array:
-    """Of the episodes that the page runs, [STARTS]: it begins where `Episode.reset` does."""
+    """Keys [STARTS] of the episodes that the page runs: it begins where `Episode.reset` does."""
     return jax.random.split(jax.random.key(0), STARTS)
 
 

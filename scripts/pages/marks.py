@@ -79,11 +79,11 @@ def filled(text: str, expression: str) -> str:
     if len(tokens) > len(values):
         raise ValueError(f"{expression}: {len(values)} numbers for {text.strip()!r}")
     for token, value in reversed(list(zip(tokens, values, strict=False))):
-        text = text[: token.start()] + shown(value, token[0]) + text[token.end() :]
+        text = text[: token.start()] + formatted(value, token[0]) + text[token.end() :]
     return text
 
 
-def shown(value: float, like: str) -> str:
+def formatted(value: float, like: str) -> str:
     """The value with the decimals, and with commas as, of a number; -0 is 0."""
     decimals = len(like.partition(".")[2])
     comma = "," if "," in like or len(like.lstrip("-").partition(".")[0]) < 4 else ""

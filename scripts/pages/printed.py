@@ -34,12 +34,12 @@ def _reason(block: dict[str, Any]) -> str:
 
 
 def _values(block: dict[str, Any]) -> str:
-    shown = {key: _shown(value) for key, value in block.get("values", {}).items()}
+    shown = {key: _text(value) for key, value in block.get("values", {}).items()}
     for key, values in block.get("any", {}).items():
-        shown[key] = " or ".join(map(_shown, values))
+        shown[key] = " or ".join(map(_text, values))
     return ", ".join(f"`{key}` {value}" for key, value in shown.items())
 
 
-def _shown(value: Any) -> str:
+def _text(value: Any) -> str:
     text = str(value).lower() if isinstance(value, bool) else str(value)
     return text if len(text) < 100 else f"{text[:60]} ..."

@@ -50,7 +50,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_study_measures_each_seed_on_both_kinds_of_decisions(folder: Path) -> None:
     out = folder.with_name("held_out.png")
     line = ("study=held_out", f"runs={folder}", "decisions=100", f"out={out}")
-    assert call(lambda: command.guarded(figures.main), *line) == 0
+    assert call(lambda: command.run(figures.main), *line) == 0
     (one,) = json.loads(out.with_suffix(".json").read_text())["runs"].values()
     assert (one["step"], one["seeds"]) == (60, [0, 1])
     assert all(error > 0 for kind in held_out.SETS for error in one[kind]["each"])
@@ -72,7 +72,5 @@ def test_a_run_without_a_model_is_refused(
     """In one line."""
     tiny.run(tmp_path / "sac", "algo=sac", "total_steps=100")
     capfd.readouterr()
-    assert (
-        call(lambda: command.guarded(figures.main), "study=held_out", f"runs={tmp_path}/sac") == 2
-    )
+    assert call(lambda: command.run(figures.main), "study=held_out", f"runs={tmp_path}/sac") == 2
     assert "has no learned model" in only_line(capfd)

@@ -206,7 +206,7 @@ def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
         for old, new in zip(drawn, again, strict=True):
             np.testing.assert_allclose(getattr(new, name), getattr(old, name), rtol=1e-6)
     first, second = (
-        call(lambda: command.guarded(figures.main), f"{key}={source}", f"out={tmp_path / name}.svg")
+        call(lambda: command.run(figures.main), f"{key}={source}", f"out={tmp_path / name}.svg")
         for key, name in (("runs", "a"), ("from", "b"))
     )
     assert (first, second) == (0, 0)
@@ -217,7 +217,7 @@ def test_a_picture_is_redrawn_from_its_numbers(tmp_path):
 def test_a_file_without_curves_is_refused(tmp_path, capsys):
     (tmp_path / "c.json").write_text("{}")
     arguments = f"runs={tmp_path / 'c.json'}", f"out={tmp_path / 'c.png'}"
-    assert call(lambda: command.guarded(figures.main), *arguments) == 2
+    assert call(lambda: command.run(figures.main), *arguments) == 2
     assert "c.json: has no curves written by figures" in capsys.readouterr().err
 
 
@@ -241,7 +241,7 @@ def test_a_table_has_a_row_for_each_value_of_each_seed(tmp_path, capsys):
     drawn = [one, curve("ant", "hybrid, long", seeds=1, points=3)]
     save(plot(drawn), numbers_of(drawn, "eval/return"), tmp_path / "a.png")
     arguments = f"runs={tmp_path / 'a.json'}", f"out={tmp_path / 'a.csv'}"
-    assert call(lambda: command.guarded(figures.main), *arguments) == 0
+    assert call(lambda: command.run(figures.main), *arguments) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(tmp_path / "a.csv")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.json", "a.png"]
     with (tmp_path / "a.csv").open(newline="") as file:
@@ -261,5 +261,5 @@ def test_a_table_over_time_is_refused(tmp_path, capsys):
     one = curve()
     save(plot([one]), numbers_of([one], x="wall_s"), tmp_path / "b.png")
     arguments = f"runs={tmp_path / 'b.json'}", f"out={tmp_path / 'b.csv'}"
-    assert call(lambda: command.guarded(figures.main), *arguments) == 2
+    assert call(lambda: command.run(figures.main), *arguments) == 2
     assert "x=wall_s: a table is over decisions; give x=step" in capsys.readouterr().err

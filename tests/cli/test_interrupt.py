@@ -101,7 +101,7 @@ def press(code, *numbers):
 
 
 def test_a_run_is_asked_once_and_a_second_ctrl_c_ends_it():
-    code = "with interrupt.answered(say):\n    say('ready')\n    time.sleep(60)\n"
+    code = "with interrupt.as_call(say):\n    say('ready')\n    time.sleep(60)\n"
     process = press(code, signal.SIGINT, signal.SIGINT)  # the second one after it printed 2
     ended(process, signal.SIGINT)
 
@@ -112,7 +112,7 @@ def test_after_sigterm_one_more_signal_of_any_kind_changes_nothing(first, second
     if signal.getsignal(first) == signal.SIG_IGN:
         pytest.skip(f"{first.name} is ignored here, as by nohup")
     code = (
-        "with interrupt.answered(say):\n    say('ready')\n    sys.stdin.readline()\n"
+        "with interrupt.as_call(say):\n    say('ready')\n    sys.stdin.readline()\n"
         "    time.sleep(0.2)\n    say('saved')\n"
     )
     process = press(code, first, second)
@@ -121,9 +121,7 @@ def test_after_sigterm_one_more_signal_of_any_kind_changes_nothing(first, second
 
 
 def test_signals_that_come_together_ask_once():
-    code = (
-        "with interrupt.answered(say):\n    say('ready')\n    time.sleep(0.3)\n    say('saved')\n"
-    )
+    code = "with interrupt.as_call(say):\n    say('ready')\n    time.sleep(0.3)\n    say('saved')\n"
     process = press(code, signal.SIGSTOP)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGCONT):
         process.send_signal(number)
@@ -135,7 +133,7 @@ def test_a_process_under_nohup_is_deaf_to_its_terminal():
     code = BEGIN.replace(
         "interrupt.install", "signal.signal(signal.SIGHUP, signal.SIG_IGN)\ninterrupt.install"
     )
-    code += "with interrupt.answered(say):\n    signal.raise_signal(signal.SIGHUP)\n"
+    code += "with interrupt.as_call(say):\n    signal.raise_signal(signal.SIGHUP)\n"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
@@ -175,7 +173,7 @@ def job():
         time.sleep(60)
     finally:
         say('clean')
-command.guarded(job)
+command.run(job)
 """
     assert ended(press(code, number), number) == "clean\n"
 
@@ -197,7 +195,7 @@ command.guarded(job)
     ids=["caught", "in a destructor"],
 )
 def test_a_swallowed_interrupt_ends_the_process_all_the_same(swallow):
-    process = press(f"with interrupt.tidily():\n    {swallow}\n", signal.SIGINT)
+    process = press(f"with interrupt.as_exception():\n    {swallow}\n", signal.SIGINT)
     ended(process, signal.SIGINT)
 
 
@@ -205,7 +203,7 @@ def test_a_notebook_is_asked_too_and_keeps_its_handlers():
     asked, before = [], signal.getsignal(signal.SIGINT)
 
     def job():
-        with interrupt.answered(asked.append):
+        with interrupt.as_call(asked.append):
             os.kill(os.getpid(), signal.SIGINT)
             while not asked:
                 time.sleep(0.001)

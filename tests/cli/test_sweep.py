@@ -93,7 +93,7 @@ def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):
     assert "run_dir=it's/0: holds a run already" in capfd.readouterr().err
 
 
-def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path, capfd):
+def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path):
     """One of them ends without a result, as where the system kills it.
 
     Submitit's local executor stands for Slurm: a process each, the same run folders.

@@ -98,7 +98,7 @@ def trained(tmp_path_factory):
 def test_evaluate_reports_the_violations_of_a_run(trained, capsys) -> None:
     """In its table and its file; by the policy they are those of its own observations."""
     given = f"run={trained} mode=policy episodes=2 constraint=speed constraint.most=2"
-    assert call(lambda: command.guarded(evaluate.main), *given.split()) == 0
+    assert call(lambda: command.run(evaluate.main), *given.split()) == 0
     assert "violations" in capsys.readouterr().out
     file = trained / "evaluation_policy_constraint=speed_constraint.most=2.json"
     values = json.loads(file.read_text())

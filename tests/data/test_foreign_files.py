@@ -211,7 +211,7 @@ def test_numbers_that_become_infinite_are_refused(tmp_path, policy, recorded):
 def test_words_of_a_file_are_printed_on_one_line(tmp_path, policy, capfd):
     np.savez(tmp_path / "a.npz", **described(policy, command="x\nhybrid_rl: \x1b]0;t\x07 y"))
     given = [f"policy={tmp_path / 'a.npz'}", "episodes=1"]
-    assert call(lambda: command.guarded(evaluate.main), *given) == 0
+    assert call(lambda: command.run(evaluate.main), *given) == 0
     assert "trained by: x\\nhybrid_rl: \\x1b]0;t\\x07 y\n" in capfd.readouterr().out
 
 
@@ -264,6 +264,6 @@ def test_mutated_files_are_read_whole_or_refused(tmp_path, policy, recorded):
 def test_a_file_is_not_written_to_a_folder_that_does_not_exist(tmp_path, capfd):
     """A folder with a slip in its name is not made."""
     given = ["policy=lander", f"out={tmp_path / 'no' / 'a.npz'}"]
-    assert call(lambda: command.guarded(export.main), *given) == 2
+    assert call(lambda: command.run(export.main), *given) == 2
     assert only_line(capfd).endswith(f"a.npz: there is no folder {tmp_path / 'no'}\n")
     assert not (tmp_path / "no").exists()

@@ -159,7 +159,7 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
     monkeypatch.chdir(tmp_path)
     run(tmp_path / "run", "algo=sac", "num_seeds=2")
     write = [f"run={tmp_path / 'run'}", "policy=policy.npz", "command=as above"]
-    assert call(lambda: command.guarded(demonstrate.main), *write) == 0
+    assert call(lambda: command.run(demonstrate.main), *write) == 0
     given = load(tmp_path / "run")
     line = ["task=pendulum", "algo=sac", "expert=trained"]
     expert = config.expert(config.load([*line, "expert.policy.file=policy.npz"]))
@@ -182,5 +182,5 @@ def test_the_policy_of_a_run_becomes_the_expert_of_its_task(
         ("must end in .npz", [write[0], "policy=policy.txt"]),
         ("a run has its own", [*write, "env.x=1"]),
     ):
-        assert call(lambda wrong=wrong: command.guarded(demonstrate.main), *wrong) == 2
+        assert call(lambda wrong=wrong: command.run(demonstrate.main), *wrong) == 2
         assert words in only_line(capfd)

@@ -177,7 +177,7 @@ def test_a_policy_is_evaluated_in_another_body(capsys):
     outputs = []
     for given in ("", body):
         main = f"policy=halfcheetah episodes=1 episode.steps=50 {given}"
-        assert call(lambda: command.guarded(evaluate.main), *main.split()) == 0
+        assert call(lambda: command.run(evaluate.main), *main.split()) == 0
         outputs.append(capsys.readouterr().out)
     assert ", ".join(body.split()) in outputs[1]
     returns = [re.search(r"│ +\d+ │ +(-?[\d.]+)", output)[1] for output in outputs]

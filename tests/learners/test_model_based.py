@@ -150,17 +150,20 @@ class Staying:
 
 
 @pytest.mark.parametrize(("chance", "wanted"), [(1.0, 2.0), (0.5, 4 / 3)])
-@pytest.mark.parametrize("expanded", [True, False])
+@pytest.mark.parametrize("value_steps", [None, 1, 0])
 def test_the_critic_learns_the_imagined_returns(
-    chance: float, wanted: float, expanded: bool
+    chance: float, wanted: float, value_steps: int | None
 ) -> None:
-    """Q = 1 / (1 - c / 2), by three decisions or by one; the rewards of the batch do not matter."""
+    """Q = 1 / (1 - c / 2), at three states, at the first, or by one decision, as in SAC.
+
+    The rewards of the batch do not matter.
+    """
     world: Any = Staying(chance)
     policy, critic = TanhGaussian(hidden=(32,)), EnsembleQ(hidden=(32, 32))
     rates = {"critic_learning_rate": 3e-3, "alpha_learning_rate": 1e-9, "alpha": 1e-6}
     learner = ModelBased(
         *(policy, critic, world, world),
-        **{"steps": 3, "value_expansion": expanded, "branch_steps": 2, "branch_memory": 128},
+        **{"steps": 3, "value_steps": value_steps, "branch_steps": 2, "branch_memory": 128},
         **{"discount": 0.5, "tau": 0.05, "batch_size": 64, **rates},
     )
     zero = jnp.zeros(64)
@@ -181,7 +184,7 @@ def test_the_critic_learns_the_imagined_returns(
     ("given", "line"),
     [
         ({"steps": -1}, "steps=-1: must be a whole number"),
-        ({"steps": 0}, "value_expansion=true: needs steps"),
+        ({"steps": 3, "value_steps": 4}, "value_steps=4: must be a whole number from 0 to steps=3"),
         ({"branch_memory": 300}, "branch_memory=300: must be 0 or a multiple of the batch, 256"),
     ],
 )

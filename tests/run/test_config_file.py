@@ -62,7 +62,7 @@ def test_it_is_short_and_builds_the_same_run(algo, tmp_path):
     assert config.build(written).agent == config.build(composed).agent
 
 
-def test_a_word_that_reads_as_a_number_stays_a_word(tmp_path):
+def test_a_word_that_reads_as_a_number_stays_a_word():
     values = {"a": "1e-3", "b": "12", "c": "on", "d": 1e-3, "e": None, "f": ["1", 2], "g": True}
     part = {"_target_": "a.B", **values}
     text = run_folder.as_yaml(OmegaConf.create({"x": part, "y": {"x": part}, "z": [[1], [2]]}))
@@ -99,7 +99,7 @@ def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, c
             out = [] if command_name == "evaluate" else [f"out={tmp_path}/a.npz"]
             out = [f"out={tmp_path}/a.mp4"] if command_name == "render" else out
             main = READERS[command_name]
-            assert call(lambda: command.guarded(main), f"run={old}", *out) == 2
+            assert call(lambda: command.run(main), f"run={old}", *out) == 2
         assert contents(tmp_path) == before
         return only_line(capfd)
 
@@ -131,7 +131,7 @@ def test_a_run_of_another_minor_version_is_refused(trained, tmp_path):
             run_folder.read(folder, "run")
 
 
-def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path, capsys):
+def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path):
     """They are one curve: keys that older versions wrote are no settings."""
     with (old / "config.yaml").open("a") as file:
         file.write("planner: {horizon: 5}\ndemonstrations: demonstrations/pendulum.npz\n")
@@ -139,13 +139,13 @@ def test_figures_draw_an_old_run_together_with_a_new_one(old, trained, tmp_path,
     out = tmp_path / "curves.png"
     for runs, seeds in ((old, 1), (f"{tmp_path}/*", 1)):
         line = [f"runs={runs}", "metric=eval/return", f"out={out}"]
-        assert call(lambda line=line: command.guarded(figures.main), *line) == 0
+        assert call(lambda line=line: command.run(figures.main), *line) == 0
         (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
         assert (curve["label"], len(curve["seeds"])) == ("sac", seeds)
     shutil.copytree(trained, tmp_path / "both" / "new")
     shutil.copytree(old, tmp_path / "both" / "old")
     line = [f"runs={tmp_path}/both", "metric=eval/return", f"out={out}"]
-    assert call(lambda: command.guarded(figures.main), *line) == 0
+    assert call(lambda: command.run(figures.main), *line) == 0
     (curve,) = json.loads(out.with_suffix(".json").read_text())["curves"]
     assert (curve["label"], curve["seeds"]) == ("sac", [0, 0])
     assert contents(old) == before

@@ -53,7 +53,7 @@ def cut(folder):
 @pytest.mark.parametrize("damage", [harm, cut])
 def test_a_damaged_checkpoint_is_passed_over(copied, capfd, damage):
     damage(copied / "checkpoints" / "600")
-    assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
+    assert call(lambda: command.run(evaluate.main), f"run={copied}", "episodes=1") == 0
     assert "checkpoint 600 is skipped" in " ".join(capfd.readouterr().out.split())
     assert json.loads((copied / "evaluation_full.json").read_text())["step"] == 500
     assert call_train(f"resume={copied}") == 0
@@ -70,7 +70,7 @@ def test_without_a_sound_checkpoint_nothing_is_done(copied, capfd):
     before = contents(copied)
     assert call_train(f"resume={copied}") == 1
     assert "holds no sound checkpoint" in only_line(capfd)
-    assert call(lambda: command.guarded(evaluate.main), f"run={copied}") == 1
+    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 1
     assert "holds no sound checkpoint" in only_line(capfd)
     assert contents(copied) == before
 

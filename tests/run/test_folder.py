@@ -116,7 +116,7 @@ def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
     before = contents(copied)
     lines = []
     for name, main in READERS.items():
-        assert call(lambda main=main: command.guarded(main), f"run={copied}") == 2, name
+        assert call(lambda main=main: command.run(main), f"run={copied}") == 2, name
         lines.append(only_line(capfd))
         assert words in lines[-1]
     assert call_train(f"resume={copied}", "total_steps=200") == 2
@@ -151,7 +151,7 @@ def test_an_evaluation_of_a_run_that_cannot_be_written_to_is_shown(copied, monke
         raise OSError(errno.EROFS, "Read-only file system", str(path))
 
     monkeypatch.setattr(evaluate, "write_text", read_only)
-    assert call(lambda: command.guarded(evaluate.main), f"run={copied}", "episodes=1") == 0
+    assert call(lambda: command.run(evaluate.main), f"run={copied}", "episodes=1") == 0
     printed = capfd.readouterr().out
     assert "mean return" in printed
     assert f"not written: {copied}/evaluation_full.json: Read-only file system" in printed
@@ -160,7 +160,7 @@ def test_an_evaluation_of_a_run_that_cannot_be_written_to_is_shown(copied, monke
 def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd):
     """And ends with a row for the episodes of all seeds."""
     folder = shutil.copytree(trained, tmp_path / ("long" * 20) / "run")
-    assert call(lambda: command.guarded(evaluate.main), f"run={folder}", "episodes=2") == 0
+    assert call(lambda: command.run(evaluate.main), f"run={folder}", "episodes=2") == 0
     lines = capfd.readouterr().out.splitlines()
     assert f"{folder}, mode full, step 100" in lines
     assert f"2 episodes a seed; written to {folder}/evaluation_full.json" in lines
@@ -209,7 +209,7 @@ def test_a_start_that_fails_leaves_the_disk_as_it_was(tmp_path, monkeypatch, cap
     assert contents(tmp_path) == before
 
 
-def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp_path, capfd):
+def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp_path):
     folder = tmp_path / "run"
     folder.mkdir()
     config = load([*TINY, "algo=sac", f"run_dir={folder}"])

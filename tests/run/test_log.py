@@ -225,7 +225,7 @@ def test_no_speed_is_shown_before_it_is_steady(capsys, now):
     assert "/s" not in capsys.readouterr().out
 
 
-def test_a_terminal_shows_a_bar(monkeypatch):
+def test_a_terminal_shows_a_bar():
     """In a pseudo-terminal of 60 columns, since nothing else is one."""
     code = (
         "from hybrid_rl.run.progress import Progress\n"

@@ -220,7 +220,7 @@ def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
     assert finite(folder)
 
 
-def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path, capfd):
+def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path):
     folder = tmp_path / "run"
     call = Evaluations.__call__
     with pytest.MonkeyPatch.context() as patch:
@@ -284,7 +284,7 @@ def test_with_debug_nans_a_run_ends_in_the_call_that_made_them_and_not_before(
         run(tmp_path / "run", *SAC)
 
 
-def test_a_learner_is_read_back_from_the_loop(tmp_path):
+def test_a_learner_is_read_back_from_the_loop():
     """A row of the state is replaced, and nothing else."""
     made = {"a": jnp.arange(6.0).reshape(3, 2), "key": jax.random.split(jax.random.key(0), 3)}
     loop = Loop(agent=None, seeds=(0, 1, 2), stride=1)

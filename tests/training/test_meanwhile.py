@@ -20,7 +20,7 @@ from hybrid_rl.training import sending
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import REPLICATED, SEEDS
 from hybrid_rl.training.loops import loop_of
-from hybrid_rl.training.sending import letters, send
+from hybrid_rl.training.sending import mailbox, send
 
 pytestmark = pytest.mark.turns(3)
 
@@ -121,7 +121,7 @@ def test_nothing_is_awaited_from_a_program_that_ended(raised, line, monkeypatch)
                 raise raised
 
     monkeypatch.setattr(sending, "POLL_S", 0.01)
-    with pytest.raises((ArithmeticError, RuntimeError), match=line), sending.letters(1) as sent:
+    with pytest.raises((ArithmeticError, RuntimeError), match=line), sending.mailbox(1) as sent:
         sent.next(Result())
 
 
@@ -137,7 +137,7 @@ def test_the_host_gets_what_a_program_sends_once(backend, monkeypatch):
         return 2 * (sent if backend == "cpu" else u)
 
     compiled = loop.shard(program, (SEEDS, REPLICATED), SEEDS)
-    with letters(1) as sent:
+    with mailbox(1) as sent:
         for _ in range(3):
             result = compiled(u, np.int32(sent.ticket))
             np.testing.assert_array_equal(sent.next(result), u[0])

@@ -128,6 +128,8 @@ def test_a_trained_policy_refuses_bad_arguments() -> None:
     for wrong in (np.zeros(2), np.zeros((1, 1, 1)), 0.0):
         with pytest.raises(ValueError, match=r"it must be \[1\] or \[N, 1\]"):
             policy(wrong)
+    with pytest.raises(ValueError, match="obs: entry 0 is not finite"):
+        policy(np.array([[0.0], [np.nan]]))
     policy(np.zeros((2, 1)))
     with pytest.raises(ValueError, match=r"obs of 3 worlds after 2; reset\(\) first"):
         policy(np.zeros((3, 1)))

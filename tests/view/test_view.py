@@ -180,7 +180,7 @@ def test_plots_leave_out_what_does_not_apply():
     ],
 )
 def test_what_does_not_fit_is_one_line(words, line, capfd):
-    assert call(lambda: command.guarded(view.main), *words.split()) == 2
+    assert call(lambda: command.run(view.main), *words.split()) == 2
     assert line in only_line(capfd)
 
 
@@ -189,7 +189,7 @@ def test_without_viser_it_names_what_to_install(monkeypatch, capfd):
         raise ImportError(name)
 
     monkeypatch.setattr(view, "import_module", missing)
-    assert call(lambda: command.guarded(view.main), "policy=pendulum") == 2
+    assert call(lambda: command.run(view.main), "policy=pendulum") == 2
     assert 'pip install "hybrid_rl[view]"' in only_line(capfd)
 
 

@@ -21,6 +21,7 @@ from scipy import ndimage, stats
 
 from hybrid_rl.analysis.recorded import Recorded, labels, matching, one_episode, read
 from hybrid_rl.core import poses
+from hybrid_rl.core.batching import repeat
 from hybrid_rl.errors import UsageError
 
 TASKS = ("contact_plane", "sprk", "sawyer_probe")
@@ -112,7 +113,7 @@ def decisions(run: Trials, marks: list[int]) -> np.ndarray:
         lambda state: jax.lax.map(lambda s: belief.decision(state, s), points, batch_size=1024)
     )
     first = belief.init(jax.random.key(0), run.recorded.run.agent.spec)
-    state = jax.tree.map(lambda a: jnp.broadcast_to(a, (len(run.y), *a.shape)), first)
+    state = repeat(first, len(run.y))
     result = []
     for begin, end in zip([0, *marks], marks, strict=False):
         state = part(state, (jnp.asarray(run.s[:, begin:end]), jnp.asarray(run.y[:, begin:end])))

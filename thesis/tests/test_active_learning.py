@@ -33,7 +33,7 @@ SHORT = [
 
 def draw(*arguments: str) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=active_learning", *arguments)
+    return call(lambda: command.run(figures.main), "study=active_learning", *arguments)
 
 
 def data(*_: Any) -> unseen.Unseen:

@@ -23,7 +23,7 @@ from hybrid_rl.types import Params, Spec
 
 def draw(*arguments) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=imitation", *arguments)
+    return call(lambda: command.run(figures.main), "study=imitation", *arguments)
 
 
 def test_safety_is_that_of_the_states() -> None:

@@ -87,7 +87,7 @@ def test_a_panel_shows_the_last_view_only() -> None:
 def draw(*arguments: str | Path) -> int:
     """Exit code of the study."""
     line = "study=contact_maps", "view=frames"
-    return call(lambda: command.guarded(figures.main), *line, *arguments)
+    return call(lambda: command.run(figures.main), *line, *arguments)
 
 
 def test_frames_have_the_errors_of_the_log(
@@ -127,7 +127,7 @@ def test_render_draws_training(
     if not can_draw:
         return
     line = f"run={contact_runs['map']}", "mode=training", f"out={tmp_path}/a.gif"
-    main = lambda: command.guarded(render.main)  # noqa: E731
+    main = lambda: command.run(render.main)  # noqa: E731
     assert call(main, *line, "width=64", "height=48", "episode_steps=3") == 0
     pictures = iio.imread(tmp_path / "a.gif")
     assert pictures.shape == (4, 48, 64 + 48, 3)

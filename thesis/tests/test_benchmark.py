@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def run(*arguments):
     """Exit code of the command."""
-    return call(lambda: command.guarded(benchmark.main), *arguments)
+    return call(lambda: command.run(benchmark.main), *arguments)
 
 
 def test_a_race_takes_turns_and_divides_by_the_first():

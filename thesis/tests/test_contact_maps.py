@@ -158,7 +158,7 @@ def test_the_entropy_of_poses_is_that_of_their_density(copies) -> None:
 
 def draw(*arguments: str | Path) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=contact_maps", *arguments)
+    return call(lambda: command.run(figures.main), "study=contact_maps", *arguments)
 
 
 def test_maps_of_a_small_run_and_a_map_file(contact_runs: dict[str, Path], tmp_path: Path) -> None:

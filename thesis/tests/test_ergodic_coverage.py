@@ -16,7 +16,7 @@ from hybrid_rl.thesis.studies.time_averages import averages, divergences
 
 def draw(*arguments) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=ergodic_coverage", *arguments)
+    return call(lambda: command.run(figures.main), "study=ergodic_coverage", *arguments)
 
 
 def test_divergence_falls_as_the_path_becomes_the_target() -> None:

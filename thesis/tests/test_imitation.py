@@ -31,7 +31,7 @@ SHORT = [
 
 def draw(*arguments: str) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=imitation", *arguments)
+    return call(lambda: command.run(figures.main), "study=imitation", *arguments)
 
 
 @pytest.fixture(scope="module")

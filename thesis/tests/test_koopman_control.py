@@ -30,7 +30,7 @@ B = np.array([[0.0], [0.2]])
 
 def draw(*arguments) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=koopman", *arguments)
+    return call(lambda: command.run(figures.main), "study=koopman", *arguments)
 
 
 def linear_world() -> Any:

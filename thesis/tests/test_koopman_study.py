@@ -37,7 +37,7 @@ SHORT = [
 
 def draw(*arguments) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=koopman", *arguments)
+    return call(lambda: command.run(figures.main), "study=koopman", *arguments)
 
 
 def test_settled_is_the_start_of_the_last_stretch_below() -> None:

@@ -32,7 +32,7 @@ SHORT = [
 
 def draw(*arguments) -> int:
     """Exit code of the command."""
-    return call(lambda: command.guarded(figures.main), "study=model_learning", *arguments)
+    return call(lambda: command.run(figures.main), "study=model_learning", *arguments)
 
 
 def flight(**fields: np.ndarray) -> flights.Flight:

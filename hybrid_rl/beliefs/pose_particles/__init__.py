@@ -27,7 +27,7 @@ from jax import Array
 
 from hybrid_rl.beliefs.pose_particles import rejuvenation
 from hybrid_rl.core import poses, resampling
-from hybrid_rl.core.branching import when_any
+from hybrid_rl.core.batching import when_any
 from hybrid_rl.core.domain import Box
 from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.types import Spec

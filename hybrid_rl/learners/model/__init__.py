@@ -21,8 +21,8 @@ import optax
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core.decay import adamw
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
+from hybrid_rl.core.optimisers import adamw
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, has, part
 from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import Reward, Trainable

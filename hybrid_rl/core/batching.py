@@ -1,4 +1,4 @@
-"""Choices for each member of a batch; a costly change only if some member needs it."""
+"""Trees of arrays with a leading axis of members: repeat, join, choose, and change if needed."""
 
 from collections.abc import Callable
 from typing import Any
@@ -9,6 +9,24 @@ from jax import Array
 from jax.custom_batching import custom_vmap
 
 Change = Callable[[Any, Any], Any]
+
+
+def repeat(tree: Any, *sizes: int) -> Any:
+    """A tree [...] once for each member: [*sizes, ...]."""
+    return jax.tree.map(lambda leaf: jnp.broadcast_to(leaf, (*sizes, *jnp.shape(leaf))), tree)
+
+
+def prepend(first: Any, rest: Any) -> Any:
+    """The tree [T+1, ...] of `first` [...] and what follows it, `rest` [T, ...]."""
+    return jax.tree.map(lambda a, b: jnp.concatenate([a[None], b]), first, rest)
+
+
+def batch_all(size: int, batched: Any, arguments: Any) -> Any:
+    """The arguments of a `custom_vmap` rule, all with the leading axis: [size, ...].
+
+    batched: a tree of whether they have it.
+    """
+    return jax.tree.map(lambda has, x: x if has else repeat(x, size), batched, arguments)
 
 
 def where(flags: Array, a: Any, b: Any) -> Any:
@@ -34,10 +52,7 @@ def when_any(needs: Callable[[Any], Array], change: Change) -> Change:
 
     @branch.def_vmap
     def _(size: int, batched: Any, state: Any, argument: Any) -> tuple[Any, Any]:
-        def repeat(is_batched: bool, x: Array) -> Array:
-            return x if is_batched else jnp.broadcast_to(x, (size, *x.shape))
-
-        state, argument = jax.tree.map(repeat, batched, [state, argument])
+        state, argument = batch_all(size, batched, [state, argument])
         after = when_any(jax.vmap(needs), jax.vmap(change))(state, argument)
         return after, jax.tree.map(lambda _: True, after)
 

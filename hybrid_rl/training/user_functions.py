@@ -1,4 +1,4 @@
-"""What a reward or a constraint of the user's must be; ours are tested."""
+"""A check of a reward or a constraint of the user's; those of this library have tests."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.indices import check as check_indices
-from hybrid_rl.errors import FAULTS, gist, in_user_code
+from hybrid_rl.errors import FAULTS, blame
 from hybrid_rl.types import Spec
 
 METHODS = {"reward": "reward_of", "constraint": "excess"}  # of (x [o], u [m], after [o]) -> []
@@ -32,7 +32,7 @@ def check(name: str, part: Any, spec: Spec) -> None:
         got = jax.eval_shape(call, x[0], u[0], x[1])
         check_indices(call, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
     except FAULTS as error:
-        raise ValueError(what + (in_user_code(error) or gist(error))) from error
+        raise ValueError(what + blame(error)) from error
     if getattr(got, "shape", None) != () or not jnp.issubdtype(got.dtype, jnp.floating):
         gives = f"{got.dtype}{list(got.shape)}" if hasattr(got, "shape") else type(got).__name__
         remedy = "sum it, or take its entry; a whole number is no float"

@@ -1,6 +1,9 @@
-"""The picture of docs/results/lookahead.md: five robots, with and without layer normalisation.
+"""Two pictures of docs/results/lookahead.md: the default and another setting on five robots.
 
-python -m scripts.plain_models_picture out=docs/results/plain_models.png
+    python -m scripts.five_robots_picture of=plain_models out=docs/results/plain_models.png
+    python -m scripts.five_robots_picture of=fast out=docs/results/fast.png
+
+of=plain_models: beside models with layer normalisation; fast: beside settings=fast.
 """
 
 import json
@@ -9,16 +12,17 @@ from typing import Any
 
 import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from hybrid_rl.analysis.curves import band, iqm
 from hybrid_rl.analysis.style import BLACK, BLUE, STYLE, VERMILION, thousands
-from hybrid_rl.cli.arguments import Argument, read
+from hybrid_rl.cli.arguments import Argument, one_of, read
 from scripts.peers_picture import FONTS, evaluated
 
+OTHERS = {"plain_models": "with layer normalisation (10)", "fast": "settings=fast (10)"}
 ARGUMENTS = (
+    Argument("of", "plain_models", "or fast", one_of(*OTHERS)),
     Argument("folder", "docs/results", "of the JSON files"),
     Argument("out", "docs/results/plain_models.png", "the picture"),
 )
@@ -32,9 +36,9 @@ BEFORE = {  # robot -> file of the runs with layer normalisation and the curve, 
 SIZE, DPI, LAST = (9.6, 5.6), 170, 100_000
 
 
-def before(folder: Path, robot: str) -> tuple[np.ndarray, np.ndarray]:
-    """Decisions [G] and returns [S, G] with layer normalisation."""
-    name, label = BEFORE[robot]
+def other(of: str, folder: Path, robot: str) -> tuple[np.ndarray, np.ndarray]:
+    """Decisions [G] and returns [S, G] of the other setting."""
+    name, label = BEFORE[robot] if of == "plain_models" else (of, None)
     file = json.loads((folder / f"{name}.json").read_text())
     if label is None:
         return evaluated(file["tasks"][robot].get("both", file["tasks"][robot]))
@@ -42,7 +46,7 @@ def before(folder: Path, robot: str) -> tuple[np.ndarray, np.ndarray]:
     return np.array(curve["x"]), np.array(curve["each"])
 
 
-def draw(folder: Path) -> Figure:
+def draw(of: str, folder: Path) -> Figure:
     """A panel for each robot: returns over decisions."""
     ours, theirs = (
         json.loads((folder / f"{name}.json").read_text())["tasks"]
@@ -50,12 +54,11 @@ def draw(folder: Path) -> Figure:
     )
     with matplotlib.rc_context(STYLE | FONTS):
         picture = Figure(figsize=SIZE, layout="constrained")
-        FigureCanvasAgg(picture)
         panels = picture.subplots(2, 3).ravel()
         for axes, robot in zip(panels, BEFORE, strict=False):
             shown = {
                 "hybrid_stochastic (10 seeds)": (*evaluated(ours[robot]["both"]), VERMILION, "-"),
-                "with layer normalisation (10)": (*before(folder, robot), BLUE, "--"),
+                OTHERS[of]: (*other(of, folder, robot), BLUE, "--"),
             }
             for name, (x, each, ink, line) in shown.items():
                 axes.plot(x, iqm(each), line, color=ink, lw=2, label=name)
@@ -77,7 +80,7 @@ def draw(folder: Path) -> Figure:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    draw(Path(given["folder"])).savefig(given["out"], dpi=DPI)
+    draw(given["of"], Path(given["folder"])).savefig(given["out"], dpi=DPI)
 
 
 if __name__ == "__main__":
