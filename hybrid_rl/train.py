@@ -152,6 +152,8 @@ def train(
         if settings:
             texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
             raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
+        if own and isinstance(method, DictConfig):
+            raise UsageError("train: config_dir goes with a list of overrides, not a DictConfig")
         given = given if isinstance(method, DictConfig) else overrides.given(method)
         result = Result(launch.train(together.load(method, own), given, interrupt.as_call, output))
     if result["signal"] is not None:

@@ -6,10 +6,10 @@ From each of B start states the policy makes H decisions in the model,
 
 with c_t the chance that the episode continues. The policy maximises their soft return V_0; the
 critic learns the y_t of the first `value_steps` of the same decisions (`core.soft_return`); with
-none of them, from one decision, as in SAC. The start states are those of branches that go on from one update to the next
-(`core.branches`), or of the replay memory. Sources: stochastic value gradients (Heess et al. 2015),
-MAAC (Clavera et al. 2020), model-based value expansion (Feinberg et al. 2018), MBPO (Janner et al.
-2019).
+none of them, from one decision, as in SAC. The start states are those of branches that go on from
+one update to the next (`core.branches`), or of the replay memory. Sources: stochastic value
+gradients (Heess et al. 2015), MAAC (Clavera et al. 2020), model-based value expansion (Feinberg et
+al. 2018), MBPO (Janner et al. 2019).
 """
 
 from typing import Any, ClassVar
