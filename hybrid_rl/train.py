@@ -148,18 +148,33 @@ def train(
         go = launch.begin if run.config.resume is None else launch.proceed
         result = Result(go(run, interrupt.as_call, output), run)
     else:
-        own = settings.pop("config_dir", None)
-        if settings:
-            texts = ", ".join(f'"{key}={value}"' for key, value in settings.items())
-            raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
-        if own and isinstance(method, DictConfig):
-            raise UsageError("train: config_dir goes with a list of overrides, not a DictConfig")
-        given = given if isinstance(method, DictConfig) else overrides.given(method)
-        result = Result(launch.train(together.load(method, own), given, interrupt.as_call, output))
+        runs, given = _composed(method, given, **settings)
+        result = Result(launch.train(runs, given, interrupt.as_call, output))
     if result["signal"] is not None:
         signal.raise_signal(result["signal"])
     output.raise_problem()
     return result
+
+
+def _composed(
+    method: Sequence[str] | DictConfig,
+    given: Mapping[str, str],
+    config_dir: str | Path | None = None,
+    **others: Any,
+) -> tuple[list[together.Member], Mapping[str, str]]:
+    """The runs of a list or a configuration, and the user's overrides.
+
+    Raises:
+        UsageError: for keywords of an agent, or config_dir beside a configuration.
+    """
+    if others:
+        texts = ", ".join(f'"{key}={value}"' for key, value in others.items())
+        raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
+    if not isinstance(method, DictConfig):
+        given = overrides.given(method)
+    elif config_dir:
+        raise UsageError("train: config_dir goes with a list of overrides, not a DictConfig")
+    return together.load(method, config_dir), given
 
 
 def _run_of(agent: Agent, settings: dict[str, Any]) -> Run:

@@ -6,6 +6,7 @@ actions, states and metrics, the fields of `Params` that a learner owns. What go
 that begins with the user's file, as in `envs.contract` for worlds.
 """
 
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import partial
@@ -34,6 +35,7 @@ FIELDS = {  # of a learner, by its data
 }
 OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
 OF_WORLD = ("world/reward", "world/obs", "world/action")
+OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
 COLUMNS = ("step", "seed", "wall_s")  # of a row, beside its metrics
 
 
@@ -251,9 +253,9 @@ def _where(method: str | None) -> str:
 
 
 def _of_user(part: Any) -> bool:
-    """Whether the class of a part is none of the library's."""
+    """Whether the class of a part is of the user's code."""
     kind = part if isinstance(part, type) else type(part)
-    return kind.__module__.partition(".")[0] not in ("hybrid_rl", "builtins", "jax", "jaxlib")
+    return kind.__module__.partition(".")[0] not in OTHERS
 
 
 def _mine(part: Any) -> Iterator[Any]:

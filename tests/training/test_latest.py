@@ -42,6 +42,9 @@ class Half:
     def act(self, params: Params, state: tuple, obs: Array, key: Array) -> tuple:
         return jnp.full(1, 0.5), state, {}
 
+    def greedy(self) -> "Half":
+        return self
+
 
 @dataclass(frozen=True)
 class Recorder:
