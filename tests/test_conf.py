@@ -120,7 +120,9 @@ def test_how_a_hybrid_method_learns_is_one_override() -> None:
         config.build(c)
         config.build(config.load(["learning=replay", f"algo={algo}"]))
     c = config.load(["settings=fast"])
-    assert (c.learners.policy.updates, c.learners.model.updates) == (1, 1)
+    learner = c.learners.policy
+    assert (learner.updates, c.learners.model.updates, learner.value_steps) == (1, 1, 1)
+    config.build(c)
 
 
 PLANNERS = [  # methods that have mode=planner
