@@ -22,8 +22,9 @@ import numpy as np
 from jax.extend.core import ClosedJaxpr, Jaxpr
 
 from hybrid_rl.envs.indices import check as check_indices
-from hybrid_rl.envs.mujoco import mjcf, native, physics
+from hybrid_rl.envs.mujoco import mjcf, native, physics, plausible
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
+from hybrid_rl.envs.pairs import refused
 from hybrid_rl.errors import GYMNASIUM, Own, WorldError
 from hybrid_rl.types import EnvState, Spec
 
@@ -76,7 +77,8 @@ def _traced(world: Own, method: str, *arguments: Any) -> Any:
         _check_state(world, method, result)
         return result
 
-    return world.blamed(method, jax.jit(call).trace, *arguments)
+    with refused():
+        return world.blamed(method, jax.jit(call).trace, *arguments)
 
 
 def _check_members(world: Own) -> None:
@@ -198,6 +200,8 @@ def _decide(world: Own, reset: Any, step: Any, decisions: int) -> tuple[str, ...
     state, ended, tried = world.blamed("reset", resetting, keys[0]), 0, []
     if not np.isfinite(state.obs).all():
         raise WorldError(f"{world.at('reset')}: returned obs {state.obs}; it must be finite")
+    notes = _lines(world, "reset", plausible.of_start, state)
+    moved = []
     for i in range(1, decisions + 1):
         action = rng.uniform(-1, 1, world.it.spec.act).astype(np.float32)
         after = world.blamed("step", stepping, state, action)
@@ -209,13 +213,22 @@ def _decide(world: Own, reset: Any, step: Any, decisions: int) -> tuple[str, ...
                 at = world.at("step")
                 raise WorldError(f"{at}: {name} is {_numbers(value)} at decision {i}, {seen}")
         ended += bool(after.terminated)
+        moved.append(after)
         kept = after.replace(info={**state.info, **after.info})
         state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
     for method, examples in (("reset", [(key,) for key in keys[:2]]), ("step", tried[::9])):
         world.blamed(method, check_indices, getattr(world.it, method), *examples)
-    if ended < decisions:
-        return ()
-    return (f"{world.at('step')}: every episode ended after one decision, of {decisions} tried",)
+    notes += _lines(world, "step", plausible.of_controls, *moved)
+    if ended == decisions:
+        line = f"every episode ended after one decision, of {decisions} tried"
+        notes.append(f"{world.at('step')}: {line}")
+    return tuple(notes)
+
+
+def _lines(world: Own, method: str, about: Any, *states: EnvState) -> list[str]:
+    """Notes that `about` gives of states of MuJoCo; of others none."""
+    data = [state.data for state in states if isinstance(state.data, PhysicsState)]
+    return [f"{world.at(method)}: {line}" for line in about(data)]
 
 
 def _text(traced: Any) -> str:

@@ -2,23 +2,23 @@
 
 A method of the library's parts alone is not checked. Of one with a part of the user's, controllers
 and learners are traced, and compared with `protocols.Controller` and `protocols.Learner`: shapes of
-actions, states and metrics, the fields of `Params` that a learner owns. What goes wrong is one line
-that begins with the user's file, as in `envs.contract` for worlds.
+actions, states and metrics, the fields of `Params` that a learner owns; so is the return J of an
+objective of the user's. What goes wrong is one line that begins with the user's file, as in
+`envs.contract` for worlds.
 """
 
-import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import Any
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
-from hybrid_rl import protocols
-from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, one_line, user_line
-from hybrid_rl.types import EnvState, Params, Spec
+from hybrid_rl.core import lifting
+from hybrid_rl.core.batching import repeat
+from hybrid_rl.errors import Own, PartError
+from hybrid_rl.training.traced import called, of_user, parts, shapes, traced, users, words
+from hybrid_rl.types import EnvState, Params, Path, Spec
 
 ROLES = {  # kind of a part -> its methods and what they take
     "controller": {"init": ("spec",), "act": ("params", "state", "obs", "key"), "greedy": ()},
@@ -35,7 +35,6 @@ FIELDS = {  # of a learner, by its data
 }
 OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
 OF_WORLD = ("world/reward", "world/obs", "world/action")
-OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
 COLUMNS = ("step", "seed", "wall_s")  # of a row, beside its metrics
 
 
@@ -59,7 +58,7 @@ def check_members(controller: Any, learners: Mapping[str, Any]) -> None:
 
 def _check_members(part: Any, role: str) -> None:
     """Raise PartError for a method or a field that a part of the user's lacks."""
-    if not _of_user(part):
+    if not of_user(part):
         return
     own = Own(part)
     if isinstance(part, type):
@@ -91,18 +90,18 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         PartError: in one line: the file and line, what a method gives, and what it must give.
     """
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
-    if not any(_mine([*controllers, *agent.learners.values()])):
+    if not any(users([*controllers, *agent.learners.values()])):
         return
     key = jax.eval_shape(lambda: jax.random.key(0))
-    for part in _mine([*controllers, *agent.learners.values()]):
+    for part in users([*controllers, *agent.learners.values()]):
         if all(hasattr(part, method) for method in MODEL):
             _check_model(part, agent.spec, key)
     states, learned = {}, {}
     for name, learner in agent.learners.items():
-        states[name] = _shapes(learner, "init", lambda key, of=learner: agent._first(of, key), key)
-        given = _shapes(learner, "params", learner.params, states[name])
+        states[name] = shapes(learner, "init", lambda key, of=learner: agent._first(of, key), key)
+        given = shapes(learner, "params", learner.params, states[name])
         if not isinstance(given, Mapping) or {*given} != {*learner.owns}:
-            got = f"{list(given)}" if isinstance(given, Mapping) else _words(given)
+            got = f"{list(given)}" if isinstance(given, Mapping) else words(given)
             must = f"it must be a dict of what it owns, {list(learner.owns)}"
             raise PartError(f"{Own(learner).at('params')}: returned {got}; {must}")
         learned |= given
@@ -115,17 +114,19 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
             drawing, updating = jax.random.split(key)
             return of.update(state, params, agent._batch(memory, of, params, drawing), updating)
 
-        result = _traced(learner, "update", update, states[name], params, memory, key)
+        result = traced(learner, "update", update, states[name], params, memory, key)
         if not isinstance(result, tuple) or len(result) != 2:
             raise PartError(f"{Own(learner).at('update')}: {_returned(result, 'state, metrics')}")
         _check_metrics(learner, "update", result[1], names)
         _check_state(learner, "update", states[name], result[0])
     env = jax.eval_shape(agent.episode.reset, key)
+    for owner in (*agent.learners.values(), *controllers):
+        _check_objectives(owner, agent, params, env)
     for controller in controllers:
         _check_members(controller, "controller")
-        greedy = _called(controller, "greedy", controller.greedy)
+        greedy = called(controller, "greedy", controller.greedy)
         if not callable(getattr(greedy, "act", None)):
-            got = f"returned {_words(greedy)}; it must be a controller"
+            got = f"returned {words(greedy)}; it must be a controller"
             raise PartError(f"{Own(controller).at('greedy')}: {got}")
         for each in [controller] if greedy is controller else [controller, greedy]:
             _check_acting(each, agent, params, env, {**names} if each is controller else {})
@@ -134,14 +135,14 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
 def _check_model(part: Any, spec: Spec, key: Any) -> None:
     """Raise PartError unless `lift` and `step` of a model give planning states [n]."""
     obs, u = (jax.ShapeDtypeStruct((size,), jnp.float32) for size in (spec.obs, spec.act))
-    params = _shapes(part, "init", lambda key: part.init(key, spec), key)
-    x = _shapes(part, "lift", part.lift, params, obs)
-    after = _shapes(part, "step", part.step, params, x, u)
+    params = shapes(part, "init", lambda key: part.init(key, spec), key)
+    x = shapes(part, "lift", part.lift, params, obs)
+    after = shapes(part, "step", part.step, params, x, u)
     if getattr(x, "ndim", 1) != 1:
-        raise PartError(f"{Own(part).at('lift')}: returned {_words(x)}; it must be float32[n]")
+        raise PartError(f"{Own(part).at('lift')}: returned {words(x)}; it must be float32[n]")
     if _leaves(x) != _leaves(after):
-        must = f"it must be {_words(x)}, as lift returned"
-        raise PartError(f"{Own(part).at('step')}: returned {_words(after)}; {must}")
+        must = f"it must be {words(x)}, as lift returned"
+        raise PartError(f"{Own(part).at('step')}: returned {words(after)}; {must}")
 
 
 def _check_acting(
@@ -149,21 +150,50 @@ def _check_acting(
 ) -> None:
     """Raise PartError unless the controller `part` gives an action, its state and metrics."""
     key = jax.eval_shape(lambda: jax.random.key(0))
-    state = _shapes(part, "init", lambda: part.init(agent.spec))
+    state = shapes(part, "init", lambda: part.init(agent.spec))
 
     def act(params: Params, state: Any, env: EnvState, key: Any) -> Any:
         return part.act(params._replace(world=env), state, env.obs, key)
 
-    result = _traced(part, "act", act, params, state, env, key)
+    result = traced(part, "act", act, params, state, env, key)
     at = Own(part).at("act")
     if not isinstance(result, tuple) or len(result) != 3:
         raise PartError(f"{at}: {_returned(result, 'action, state, metrics')}")
     wanted = jax.ShapeDtypeStruct((agent.spec.act,), jnp.float32)
-    if _words(result[0]) != _words(wanted):
-        must = f"it must be {_words(wanted)} in [-1, 1]"
-        raise PartError(f"{at}: returned the action {_words(result[0])}; {must}")
+    if words(result[0]) != words(wanted):
+        must = f"it must be {words(wanted)} in [-1, 1]"
+        raise PartError(f"{at}: returned the action {words(result[0])}; {must}")
     _check_state(part, "act", state, result[1])
     _check_metrics(part, "act", result[2], names)
+
+
+def _check_objectives(owner: Any, agent: Any, params: Params, env: EnvState) -> None:
+    """Raise PartError unless the user's objectives in a controller or a learner give numbers.
+
+    J [], and with `reward_to_go` S [T+1], with `rewards` r [T], of T decisions without motion.
+    """
+    key, every = jax.eval_shape(lambda: jax.random.key(0)), [*parts(owner)]
+    model = next((each for each in every if all(hasattr(each, name) for name in MODEL)), None)
+    T = next((each.horizon for each in every if isinstance(getattr(each, "horizon", None), int)), 5)
+    for part in (each for each in users(owner) if hasattr(each, "prepare")):
+
+        def judged(params: Params, env: EnvState, key: Any, name: str, of: Any = part) -> Any:
+            params, u = params._replace(world=env), jnp.zeros((T, agent.spec.act))
+            x = env.obs if model is None else lifting.start(model, params, env.obs)
+            path = Path(repeat(x, T + 1), u)
+            if name != "prepare":
+                return getattr(of, name)(params, path)
+            return of.prepare(params, of.init(agent.spec), x, u[0], key)[0](path)
+
+        for name, size in (("prepare", ()), ("reward_to_go", (T + 1,)), ("rewards", (T,))):
+            if not hasattr(part, name):
+                continue
+            got = shapes(part, name, partial(judged, name=name), params, env, key)
+            must = words(jax.ShapeDtypeStruct(size, jnp.float32))
+            if words(got) != must:
+                what = "J of a path" if name == "prepare" else "it"
+                line = f"{what} is {words(got)}; it must be {must}, with T = {T} decisions"
+                raise PartError(f"{Own(part).at(name)}: {line}")
 
 
 def _check_state(part: Any, method: str, before: Any, after: Any) -> None:
@@ -187,103 +217,21 @@ def _check_metrics(part: Any, method: str, metrics: Any, names: dict[str, str]) 
     """
     if not isinstance(metrics, Mapping):
         must = "it must be a dict of numbers"
-        raise PartError(f"{Own(part).at(method)}: returned metrics {_words(metrics)}; {must}")
+        raise PartError(f"{Own(part).at(method)}: returned metrics {words(metrics)}; {must}")
     for name in metrics:
-        if name in names and _of_user(part):
+        if name in names and of_user(part):
             line = f"metric {name}: {names[name] or 'every row'} has it, too; write mine/{name}"
             raise PartError(f"{Own(part).at(method)}: {line}")
         names[name] = type(part).__name__
 
 
-def _traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
-    """Shapes of what `call` returns, traced twice.
-
-    Raises:
-        PartError: if the two differ, as NumPy or Python drew numbers.
-    """
-
-    def judged(*arguments: Any) -> Any:
-        result = call(*arguments)
-        metrics = result[-1] if isinstance(result, tuple) else None
-        for name, value in metrics.items() if isinstance(metrics, Mapping) else ():
-            if not isinstance(value, (jax.Array, np.generic, np.ndarray, int, float)):
-                line = f"metric {name} is {_words(value)}; it must be a number, float32[]"
-                raise PartError(f"{Own(part).at(method)}: {line}")
-        return result
-
-    programs = [jax.jit(partial(judged)) for _ in range(2)]  # two functions: neither is kept
-    both = [_called(part, method, each.trace, *arguments) for each in programs]
-    first, second = (f"{each.jaxpr}{[*map(str, each.jaxpr.consts)]}" for each in both)
-    if _of_user(part) and first != second:
-        raise PartError(
-            f"{Own(part).at(method)}: gives other numbers when it is traced again: what NumPy or "
-            "Python draws is a constant of the compiled program; use jax.random, with the key"
-        )
-    return both[0].out_info
-
-
-def _shapes(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
-    """Shapes of what `call` returns."""
-    return _called(part, method, jax.eval_shape, call, *arguments)
-
-
-def _called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
-    """What `call` returns; its errors name the user's part and the line."""
-    mine = Own(next(_mine(part), part))
-    try:
-        return call(*arguments)
-    except UsageError:
-        raise
-    except FAULTS as error:
-        line = user_line(error)
-        if line is None and isinstance(error, AttributeError) and _of_user(error.obj):
-            line = f"{Own(error.obj).at()} has no {error.name}{_where(error.name)}"
-        line = line or f"{mine.at()}: {one_line(error)}"
-        raise PartError(f"{line.rstrip('.')}; in {type(part).__name__}.{method}") from error
-
-
-def _where(method: str | None) -> str:
-    """The protocols that say what a method is."""
-    kinds = {name: getattr(protocols, name) for name in protocols.__all__}
-    has = {
-        name: {*dir(kind), *getattr(kind, "__annotations__", ())} for name, kind in kinds.items()
-    }
-    names = [name for name in has if method in has[name]]
-    return f"; see {', '.join(f'protocols.{name}' for name in names)}" if names else ""
-
-
-def _of_user(part: Any) -> bool:
-    """Whether the class of a part is of the user's code."""
-    kind = part if isinstance(part, type) else type(part)
-    return kind.__module__.partition(".")[0] not in OTHERS
-
-
-def _mine(part: Any) -> Iterator[Any]:
-    """The parts of the user's in a part, itself first; of worlds none."""
-    if isinstance(part, list | tuple | dict):
-        for each in part.values() if isinstance(part, dict) else part:
-            yield from _mine(each)
-    elif is_dataclass(part) and not hasattr(part, "reset"):
-        if _of_user(part):
-            yield part
-        for field in fields(part):
-            yield from _mine(getattr(part, field.name, None))
-
-
 def _leaves(tree: Any) -> dict[str, str]:
     """Path of each leaf -> its type, such as float32[2]."""
     paths = jax.tree_util.tree_leaves_with_path(tree)
-    return {jax.tree_util.keystr(path): _words(leaf) for path, leaf in paths}
-
-
-def _words(value: Any) -> str:
-    """float32[2], or the kind of a Python value."""
-    if hasattr(value, "shape") and hasattr(value, "dtype"):
-        return f"{value.dtype}{list(value.shape)}"
-    return "None" if value is None else f"a {type(value).__name__}"
+    return {jax.tree_util.keystr(path): words(leaf) for path, leaf in paths}
 
 
 def _returned(result: Any, must: str) -> str:
     """What a method returned that must return several things."""
-    got = f"a tuple of {len(result)}" if isinstance(result, tuple) else _words(result)
+    got = f"a tuple of {len(result)}" if isinstance(result, tuple) else words(result)
     return f"returned {got}; it must be ({must})"

@@ -1,0 +1,51 @@
+"""What MuJoCo allows and few mean: degrees for radians, no rotation, controls that are cut off.
+
+    2 pi in degrees, 0.11 rad, <= range of a hinge <= 4 pi,
+    |quaternion(0)| = 1,   ctrl in [ctrlrange] of each actuator, which MuJoCo clips
+
+Source: the MJCF reference of MuJoCo, "compiler/angle", "joint/range", "general/ctrlrange".
+"""
+
+from collections.abc import Iterator, Sequence
+
+import mujoco
+import numpy as np
+
+from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.physics import PhysicsState
+
+RANGE = np.deg2rad(2 * np.pi), 4 * np.pi  # [rad] of a hinge: narrowest and widest
+NEAR = 1e-3  # of a norm, and of a control: what counts as within
+QUATERNION = {mujoco.mjtJoint.mjJNT_FREE: 3, mujoco.mjtJoint.mjJNT_BALL: 0}  # its first entry
+
+
+def of_start(states: Sequence[PhysicsState]) -> Iterator[str]:
+    """Lines about the joints of a first state, if there is one."""
+    for state in states[:1]:
+        model, qpos = mjcf.load(state.asset), np.asarray(state.qpos)
+        for i, kind in enumerate(model.jnt_type):
+            name, (low, high) = model.joint(i).name or i, model.jnt_range[i]
+            if kind in QUATERNION:
+                first = model.jnt_qposadr[i] + QUATERNION[kind]
+                norm = np.linalg.norm(qpos[first : first + 4])
+                if abs(norm - 1) > NEAR:
+                    yield f"joint {name} has a quaternion of norm {norm:.3g}; it must be 1"
+            elif kind == mujoco.mjtJoint.mjJNT_HINGE and model.jnt_limited[i]:
+                if not RANGE[0] <= high - low <= RANGE[1]:
+                    has = f"joint {name} turns from {low:.3g} to {high:.3g} rad"
+                    yield f'{has}; MJCF has degrees, unless <compiler angle="radian"/>'
+
+
+def of_controls(states: Sequence[PhysicsState]) -> Iterator[str]:
+    """A line about the controls that led to `states`, if some are cut off."""
+    if not states or states[0].ctrl is None:
+        return
+    model, ctrl = mjcf.load(states[0].asset), np.array([state.ctrl for state in states])
+    low, high = model.actuator_ctrlrange.T
+    outside = (ctrl < low - NEAR) | (ctrl > high + NEAR)
+    if len(cut := np.flatnonzero(model.actuator_ctrllimited * outside.any(0))):
+        names, i = ", ".join(str(model.actuator(k).name or k) for k in cut), cut[0]
+        given = f"{ctrl[outside[:, i], i][0]:.3g} where {low[i]:.3g} to {high[i]:.3g} is allowed"
+        yield f"random actions give actuator {names} controls outside ctrlrange, as {given}; " + (
+            "MuJoCo cuts them off: map [-1, 1] to the range"
+        )
