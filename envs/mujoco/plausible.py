@@ -30,10 +30,10 @@ def of_start(states: Sequence[PhysicsState]) -> Iterator[str]:
                 norm = np.linalg.norm(qpos[first : first + 4])
                 if abs(norm - 1) > NEAR:
                     yield f"joint {name} has a quaternion of norm {norm:.3g}; it must be 1"
-            elif kind == mujoco.mjtJoint.mjJNT_HINGE and model.jnt_limited[i]:
-                if not RANGE[0] <= high - low <= RANGE[1]:
-                    has = f"joint {name} turns from {low:.3g} to {high:.3g} rad"
-                    yield f'{has}; MJCF has degrees, unless <compiler angle="radian"/>'
+            hinge = kind == mujoco.mjtJoint.mjJNT_HINGE and model.jnt_limited[i]
+            if hinge and not RANGE[0] <= high - low <= RANGE[1]:
+                turns = f"joint {name} turns from {low:.3g} to {high:.3g} rad"
+                yield f'{turns}; MJCF has degrees, unless <compiler angle="radian"/>'
 
 
 def of_controls(states: Sequence[PhysicsState]) -> Iterator[str]:

@@ -27,7 +27,7 @@ import numpy as np
 from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
+from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame, one_line
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
@@ -71,6 +71,7 @@ class Actor:
         self._decide = Decider(self.agent, self.seed, self.recording)
         self._version, self._beat, self._allowed = 0, time.monotonic(), math.inf
         self._made, self._ended = time.time(), False
+        self._since = math.inf  # when the robot fell silent, if it has begun no episode since
 
     def run(self, seconds: float = math.inf) -> None:
         """Move until asked to stop, or for so many seconds.
@@ -113,8 +114,10 @@ class Actor:
         """An episode, or what there is of it until the robot falls silent."""
         try:
             self._call("reset", self.robot.reset, RESET_S)
-        except OSError:
-            return self._silent()
+        except OSError as error:
+            time.sleep(RETRY_S)
+            return self._silent(f"reset: {one_line(error)}")
+        self._since = math.inf
         self._episode, self._stretch = self._episode + 1, self._stretch + 1
         self._decide.begin()
         pending, taken, self._return = None, 0, 0.0
@@ -125,7 +128,7 @@ class Actor:
             obs, stamp = self._observed(past)
             if obs is None:
                 if time.monotonic() - heard > self.env.silence_s:
-                    return self._silent()
+                    return self._silent(f"no observation for {self.env.silence_s:g} s")
                 past, pending = [self._safe(), *past[:-1]], self._broken(pending)
                 k += 1
                 continue
@@ -185,8 +188,11 @@ class Actor:
         if obs.shape != (self.env.kind.obs,):
             line = f"gives {list(obs.shape)}, and the class says obs = {self.env.kind.obs}"
             raise WorldError(f"{self.env.name}: observe: {line}")
-        old = time.monotonic() - stamp > self.env.stale * self.spec.dt
-        if old or not np.isfinite(obs).all():
+        age, most = time.monotonic() - stamp, self.env.stale * self.spec.dt
+        if age < -most:
+            line = f"its time is {-age:.3g} s ahead of time.monotonic(), whose it must be"
+            raise WorldError(f"{self.env.name}: observe: {line}")
+        if age > most or not np.isfinite(obs).all():
             self.counts.stale += 1
             return None, 0.0
         return np.concatenate([obs, *past[: self.env.past_actions]]), float(stamp)
@@ -201,15 +207,24 @@ class Actor:
         self._apply(self.env.safe)
         return self.env.safe
 
-    def _silent(self) -> None:
-        """End motion, and wait until the robot answers again."""
+    def _silent(self, why: str) -> None:
+        """End motion, and wait until the robot answers again; the learner shows why.
+
+        Raises:
+            TimeoutError: if it has begun no episode for `alone_s`.
+        """
         self.robot.stop()
-        silent = time.monotonic()
-        while not self._over() and self._observed([])[0] is None:
-            if time.monotonic() - silent > self.env.alone_s:
-                raise TimeoutError(f"{self.env.name}: no observation for {self.env.alone_s:g} s")
+        line = f"{self.env.name}: {why}"
+        (self.folder / "error").write_text(f"{line}; waiting for it")
+        self._since = min(self._since, time.monotonic())
+        while not self._over():
+            if time.monotonic() - self._since > self.env.alone_s:
+                raise TimeoutError(f"{line}, nothing else for {self.env.alone_s:g} s")
+            if self._observed([])[0] is not None:
+                break
             self._beat = time.monotonic()
             time.sleep(RETRY_S)
+        (self.folder / "error").unlink(missing_ok=True)
 
     def _broken(self, pending: tuple | None) -> None:
         """The decision without an outcome is left out, and another stretch begins."""

@@ -22,7 +22,7 @@ class RobotProcess:
         """folder: of the files that it shares."""
         self.env, self.folder = env, folder
         self.child: subprocess.Popen | None = None
-        self.tries, self.ended, self.checked = 0, False, 0.0
+        self.tries, self.ended, self.checked, self.shown = 0, False, 0.0, ""
 
     def alive(self) -> bool:
         """Whether a process owns the robot: a child of this one, or of a learner before it."""
@@ -36,7 +36,7 @@ class RobotProcess:
         return False
 
     def watch(self) -> None:
-        """Start the process if there is none.
+        """Start the process if there is none; show why a robot is waited for.
 
         Raises:
             WorldError: if it ended for a mistake in the robot's class, or does not stay alive.
@@ -44,18 +44,26 @@ class RobotProcess:
         if time.monotonic() - self.checked < 0.2:
             return
         self.checked = time.monotonic()
-        if self.alive():
-            return
+        alive, line, error = self.alive(), "", self.folder / "error"
+        with suppress(OSError):
+            line = error.read_text()
+        if alive:
+            return self._show(line)
         code = None if self.child is None else self.child.returncode
-        error = self.folder / "error"
-        line = error.read_text() if error.exists() else ""
         if code == 0:
             self.ended = True
         elif code == 2 or self.tries >= TRIES:
             raise WorldError(line or f"{self.env.name}: its process ended with {code}")
         else:
+            self._show(line)
             error.unlink(missing_ok=True)
             self._start()
+
+    def _show(self, line: str) -> None:
+        """Print what the robot's process says, once."""
+        if line and line != self.shown:
+            print(f"hybrid_rl: {line}", file=sys.stderr, flush=True)
+        self.shown = line
 
     def _start(self) -> None:
         self.tries += 1

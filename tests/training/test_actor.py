@@ -163,9 +163,28 @@ def test_a_robot_that_falls_silent_is_stopped_and_awaited(agent, tmp_path, monke
     assert rows[-1]["episode"] > 2
 
 
+def test_a_robot_whose_reset_fails_is_tried_again_and_given_up(agent, tmp_path, monkeypatch):
+    monkeypatch.setattr(actors, "RETRY_S", 0.02)
+    made = []
+
+    class Stuck(Counting):
+        def reset(self) -> None:
+            made.append(time.monotonic())
+            raise ConnectionError("no bus")
+
+    with pytest.raises(TimeoutError, match=r"Stuck: reset: ConnectionError: no bus, nothing else"):
+        moved(agent, tmp_path, Stuck, seconds=2.0, alone_s=0.3)
+    assert 5 < len(made) < 30
+    process = RobotProcess(of(agent, Stuck).episode.env, tmp_path)
+    monkeypatch.setattr(process, "alive", lambda: True)
+    process.watch()
+    assert "Stuck: reset: ConnectionError: no bus; waiting for it" in process.shown
+
+
 @pytest.mark.parametrize(
     ("method", "line"),
     [
+        ("clock", r"observe: its time is 1.+ s ahead of time\.monotonic\(\), whose it must be"),
         ("observe", r"observe: gives \[3\], and the class says obs = 4"),
         ("alone", r"observe: must return \(observation, its time\.monotonic\(\)\)"),
         ("reward", r"reward: gives nan"),
@@ -176,10 +195,11 @@ def test_a_mistake_in_the_class_ends_motion_with_its_line(agent, tmp_path, metho
     wrong = {
         "observe": lambda self: (np.zeros(3), time.monotonic()),
         "alone": lambda self: np.zeros(4),
+        "clock": lambda self: (np.zeros(4), time.time()),
         "reward": lambda self, obs, action, next_obs: float("nan"),
         "apply": lambda self, action: 1 / 0,
     }
-    stopped, name = [], "observe" if method == "alone" else method
+    stopped, name = [], "observe" if method in ("alone", "clock") else method
     given = {name: wrong[method], "stop": lambda self: stopped.append(1)}
     kind = type("Wrong", (Counting,), given)
     with pytest.raises(WorldError, match=line):

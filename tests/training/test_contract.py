@@ -57,6 +57,8 @@ class Fit:
             return ((after - batch.next_obs) ** 2).mean()
 
         error, gradient = jax.value_and_grad(loss)(state[0])
+        if self.wrong == "pairs":
+            error = (batch.reward - batch.obs[:, :1]).mean()
         now = jax.tree.map(lambda p, g: p - 0.1 * g, state[0], gradient), state[1] + 1
         name = "world/obs" if self.wrong == "name" else "mine/error"
         metrics: Any = {name: "low" if self.wrong == "word" else error, "mine/count": state[1]}
@@ -84,6 +86,7 @@ class Planner:
         drawn = np.random.default_rng().normal() if self.wrong == "numpy" else 0.0
         u = jnp.tanh(self.model.step(params.model, obs, state[0])[:1] + drawn)
         u = {"many": jnp.tile(u, 2), "whole": jnp.sign(u).astype(int)}.get(self.wrong, u)
+        u = {"large": u + 3, "nan": u / 0 * 0}.get(self.wrong, u)
         kept = u[:0] if self.wrong == "state" else state[0]
         return u, (kept, state[1] + 1), {"mine/u": u[0]}
 
@@ -125,6 +128,7 @@ def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
         (Fit(wrong="longer"), "returned state[2] int32[], and init no state[2]; both must be"),
         (Fit(wrong="type"), "returned state[1] float32[], and init state[1] int32[]; both must be"),
         (Fit(wrong="word"), "Fit.update: metric mine/error is a str; it must be a number"),
+        (Fit(wrong="pairs"), "subtract of [4, 1] and [4] gives [4, 4], every one with every other"),
         (Fit(wrong="name"), "metric world/obs: every row has it, too; write mine/world/obs"),
         (Fit(Wide()), "Wide.step: returned float32[1, 3]; it must be float32[3], as lift returned"),
         (Fit(Actless()), "TypeError: Actless.init() takes 2 positional arguments but 3 were given"),
@@ -136,6 +140,11 @@ def check(planner: Any = Planner(), learner: Any = Fit()) -> None:
         (Planner(wrong="numpy"), "Planner.act: gives other numbers when it is traced again"),
         (Planner(wrong="many"), "returned the action float32[2]; it must be float32[1] in [-1, 1]"),
         (Planner(wrong="whole"), "returned the action int32[1]; it must be float32[1] in [-1, 1]"),
+        (
+            Planner(wrong="large"),
+            "in the action at a first state; it must be in [-1, 1]: clip it",
+        ),
+        (Planner(wrong="nan"), "Planner.act: returned nan in the action at a first state"),
         (
             Planner(wrong="state"),
             "returned state[0] float32[0], and init state[0] float32[1]; both",
@@ -159,6 +168,29 @@ def test_a_part_of_the_library_names_what_the_users_part_lacks():
         PartError, match=r"Actless has no outcome; see protocols\.Reward.*; in Samp"
     ):
         check(planner)
+
+
+@dataclass(frozen=True)
+class Cost:
+    """J, or with `wrong` a number for each state of the path."""
+
+    wrong: bool = False
+
+    def init(self, spec):
+        return ()
+
+    def prepare(self, params, memory, x, u_before, key):
+        return lambda path: path.x[:, 0] if self.wrong else path.x[:, 0].sum(), memory
+
+
+def test_an_objective_gives_one_number_of_a_path():
+    planner = SamplingController(Line(), Cost(), NoiseProposal(), samples=4, horizon=3)
+    check(planner)
+    with pytest.raises(
+        PartError,
+        match=r"^\S*test_contract\.py:\d+: Cost\.prepare: J of a path is float32\[4\]; it m",
+    ):
+        check(replace(planner, objective=Cost(wrong=True)))
 
 
 def test_a_right_method_learns_and_acts_with_python_numbers_in_its_states(tmp_path):

@@ -32,6 +32,10 @@ GIVES = "it must be float32[]: sum it, or take its entry; a whole number is no f
         (lambda x, u: x[0], "positional arguments but 3 were given"),
         (lambda x, u, after: 1.0 if x[0] > 0 else 0.0, "write jnp.where or jax.lax.cond"),
         (lambda x, u, after: x[3], "index 3 is out of bounds for axis 0 with size 3; JAX takes"),
+        (
+            lambda x, u, after: (x[:, None] - after).sum(),
+            "subtract of [3, 1] and [3] gives [3, 3], every one with every other; write x[..",
+        ),
         (lambda x, u, after: sys.exit(), "SystemExit; raise an error in place of sys.exit()"),
     ],
 )
