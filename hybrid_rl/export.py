@@ -158,7 +158,7 @@ def _saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
         save_onnx(out, task, spec, net)
     except ImportError as error:
         raise UsageError(f"out={out}: needs onnx; {install('onnx')}") from error
-    return f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs}})'
+    return f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs[None]}})'
 
 
 def main() -> None:

@@ -128,7 +128,7 @@ class OnlineLearner:
         """
         self._check()
         if self._pending is not None:
-            raise UsageError("act: the last action has no outcome yet; call observe first")
+            raise UsageError("act: the last action has no outcome yet; observe or interrupt first")
         obs = numbers("obs", obs, self._spec.obs)
         action = self._decide(self._params, obs, self.decisions)
         if not np.isfinite(action).all():

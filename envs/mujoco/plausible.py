@@ -16,7 +16,10 @@ from hybrid_rl.envs.mujoco.physics import PhysicsState
 
 RANGE = np.deg2rad(2 * np.pi), 4 * np.pi  # [rad] of a hinge: narrowest and widest
 NEAR = 1e-3  # of a norm, and of a control: what counts as within
-QUATERNION = {mujoco.mjtJoint.mjJNT_FREE: 3, mujoco.mjtJoint.mjJNT_BALL: 0}  # its first entry
+QUATERNION = {  # its first entry in qpos of a joint
+    mujoco.mjtJoint.mjJNT_FREE.value: 3,
+    mujoco.mjtJoint.mjJNT_BALL.value: 0,
+}
 
 
 def of_start(states: Sequence[PhysicsState]) -> Iterator[str]:

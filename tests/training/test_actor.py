@@ -172,10 +172,12 @@ def test_a_robot_whose_reset_fails_is_tried_again_and_given_up(agent, tmp_path, 
             made.append(time.monotonic())
             raise ConnectionError("no bus")
 
+    stuck, params = of(agent, Stuck, alone_s=0.3), agent.params(agent.init(jax.random.key(0)))
+    actor = Actor(stuck, tmp_path, params=params, recording=False)
     with pytest.raises(TimeoutError, match=r"Stuck: reset: ConnectionError: no bus, nothing else"):
-        moved(agent, tmp_path, Stuck, seconds=2.0, alone_s=0.3)
+        actor.run(seconds=2.0)
     assert 5 < len(made) < 30
-    process = RobotProcess(of(agent, Stuck).episode.env, tmp_path)
+    process = RobotProcess(stuck.episode.env, tmp_path)
     monkeypatch.setattr(process, "alive", lambda: True)
     process.watch()
     assert "Stuck: reset: ConnectionError: no bus; waiting for it" in process.shown
