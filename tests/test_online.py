@@ -105,7 +105,7 @@ def test_what_is_saved_goes_on_and_acts(tmp_path):
         (lambda each: each.act([0]), r"obs is \[1\]; it must be \[2\]"),
         (lambda each: each.act([0, np.nan]), "obs: entry 1 is not finite"),
         (lambda each: each.observe(0.0, [0, 0]), "there is no action yet"),
-        (lambda each: (each.act([0, 0]), each.act([0, 0])), "call observe first"),
+        (lambda each: (each.act([0, 0]), each.act([0, 0])), "observe or interrupt first"),
         (lambda each: (each.act([0, 0]), each.observe(np.inf, [0, 0])), "reward is not finite"),
         (lambda each: (each.act([0, 0]), each.observe(1e39, [0, 0])), "reward is not finite"),
         (
