@@ -167,6 +167,9 @@ def main() -> None:
     others = (".py",) if given["out"].endswith(".npz") else ()
     out = output("out", given["out"], SUFFIXES, *others)
     trained = chosen(given)
+    if given["mode"] == "policy" and "policy" not in trained.controllers:
+        line = "the run has no policy, only a planner; give mode=full out=FILE.stablehlo"
+        raise UsageError(f"mode=policy: {line}")
     controller, params = trained.learner(given["seed"], given["mode"])
     spec = trained.episode.spec
     if out.suffix == ".npz":

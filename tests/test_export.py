@@ -289,3 +289,10 @@ def test_what_cannot_be_exported_is_one_line(trained, tmp_path, monkeypatch, cap
     assert main(*given.split()) == 2
     assert line in only_line(capfd)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.py"]
+
+
+def test_of_a_run_without_a_policy_its_planner_is_exported(trained, tmp_path, monkeypatch, capfd):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delitem(trained.controllers, "policy")
+    assert main("out=a.npz") == 2
+    assert "the run has no policy, only a planner; give mode=full" in only_line(capfd)

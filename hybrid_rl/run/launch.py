@@ -192,6 +192,9 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
     """
     run_dir = Path(str(config.resume))
     old = folder.read(run_dir, "resume")
+    if old.task == "online":
+        line = "was written by OnlineLearner.save; OnlineLearner.load goes on"
+        raise UsageError(f"resume={run_dir}: {line}")
     if not checkpoint.steps(run_dir / "checkpoints"):
         raise UsageError(f"resume={run_dir}: holds no checkpoint; start the run again")
     for key in given.keys() - {"resume", "total_steps", "compile_cache", "precision"}:

@@ -136,7 +136,8 @@ def _learners(
         step, state, _, notes = checkpoint.restore(source / "checkpoints", like, part=True)
     except MisfitError as error:
         lines = changes(_values(then), _values(config))
-        own = [line for line in lines if not line.startswith(("env.", "episode.", "reward."))]
+        world = ("env.", "episode.", "reward.")
+        own = [line for line in lines if "." in line.split()[0] and not line.startswith(world)]
         what, detail = ", ".join((own or lines)[:2]), str(error).partition("this run: ")[2]
         raise UsageError(f"{what}: parameters of run={source} do not fit ({detail})") from error
     return step, state.learners, notes
