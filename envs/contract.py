@@ -24,7 +24,6 @@ from jax.extend.core import ClosedJaxpr, Jaxpr
 from hybrid_rl.envs.indices import check as check_indices
 from hybrid_rl.envs.mujoco import mjcf, native, physics, plausible
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.envs.pairs import refused
 from hybrid_rl.errors import GYMNASIUM, Own, WorldError
 from hybrid_rl.types import EnvState, Spec
 
@@ -77,8 +76,7 @@ def _traced(world: Own, method: str, *arguments: Any) -> Any:
         _check_state(world, method, result)
         return result
 
-    with refused():
-        return world.blamed(method, jax.jit(call).trace, *arguments)
+    return world.blamed(method, jax.jit(call).trace, *arguments)
 
 
 def _check_members(world: Own) -> None:

@@ -95,7 +95,7 @@ def test_what_is_saved_goes_on_and_acts(tmp_path):
     assert again.updates == 5
     again.save(tmp_path / "run")
     assert OnlineLearner.load(tmp_path / "run", learn="inline").decisions == 15
-    with pytest.raises(UsageError, match="OnlineLearner.load goes on"):
+    with pytest.raises(UsageError, match="load goes on"):
         hybrid_rl.train([f"resume={tmp_path / 'run'}"])
     policy = hybrid_rl.load(tmp_path / "run").policy()
     assert policy(np.zeros(2)).shape == (1,)

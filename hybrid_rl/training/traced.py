@@ -10,8 +10,8 @@ import jax
 import numpy as np
 
 from hybrid_rl import protocols
-from hybrid_rl.envs.pairs import refused
 from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, one_line, user_line
+from hybrid_rl.training import pairs
 
 OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
 
@@ -52,7 +52,7 @@ def called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) ->
     """What `call` returns; its errors name the user's part and the line."""
     mine = Own(next(users(part), part))
     try:
-        with refused():
+        with pairs.refused():
             return call(*arguments)
     except UsageError:
         raise

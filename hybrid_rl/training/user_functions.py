@@ -7,8 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.indices import check as check_indices
-from hybrid_rl.envs.pairs import refused
 from hybrid_rl.errors import FAULTS, blame
+from hybrid_rl.training import pairs
 from hybrid_rl.types import Spec
 
 METHODS = {"reward": "reward_of", "constraint": "excess"}  # of (x [o], u [m], after [o]) -> []
@@ -30,7 +30,7 @@ def check(name: str, part: Any, spec: Spec) -> None:
     call, rng, sizes = getattr(part, METHODS[name]), np.random.default_rng(0), (spec.obs, spec.act)
     x, u = (rng.normal(size=(2, size)).astype(np.float32) for size in sizes)
     try:
-        with refused():
+        with pairs.refused():
             got = jax.eval_shape(call, x[0], u[0], x[1])
         check_indices(call, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
     except FAULTS as error:
