@@ -197,6 +197,11 @@ def test_the_function_of_c_refuses_what_is_not_finite(tmp_path):
         in_c(tmp_path, clones()[0].perceptron(clones()[1], SPEC), np.array([[0, np.nan, 0]]))
 
 
+def test_the_function_of_numpy_refuses_what_is_not_finite(tmp_path):
+    with pytest.raises(ValueError, match="obs: an entry is not finite"):
+        in_numpy(tmp_path, clones()[0].perceptron(clones()[1], SPEC), [0, np.nan, 0])
+
+
 def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(monkeypatch):
     """Without ROS: the safe action before the first observation and after a stale one."""
     page = (Path(__file__).parents[1] / "docs" / "howto.md").read_text(encoding="utf-8")

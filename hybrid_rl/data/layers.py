@@ -48,6 +48,8 @@ P = dict(np.load(Path(__file__).with_suffix(".npz")))
 {defined}def act(obs):
     """The action [{m}] at obs [{o}]; or [N, {m}] at [N, {o}]."""
     x = (np.asarray(obs, np.float32) - P["mean"]) / P["scale"]
+    if not np.isfinite(x).all():
+        raise ValueError("obs: an entry is not finite")
     for i in range(1, {last}):
         x = {activation}
     return {squash}
