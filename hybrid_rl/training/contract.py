@@ -1,10 +1,10 @@
-"""What the parts of a method must be, checked before a run: JAX traces them.
+"""What the parts of a method must be, checked before a run: JAX traces them, nothing is compiled.
 
 A method of the library's parts alone is not checked. Of one with a part of the user's, controllers
 and learners are traced, and compared with `protocols.Controller` and `protocols.Learner`: shapes of
 actions, states and metrics, the fields of `Params` that a learner owns; so is the return J of an
-objective of the user's. A controller of the user's is compiled, too, and acts at first states. What
-goes wrong is one line that begins with the user's file, as in `envs.contract` for worlds.
+objective of the user's. What goes wrong is one line that begins with the user's file, as in
+`envs.contract` for worlds.
 """
 
 from collections.abc import Iterable, Mapping
@@ -13,7 +13,6 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
 from hybrid_rl.core import lifting
 from hybrid_rl.core.batching import repeat
@@ -166,32 +165,6 @@ def _check_acting(
         raise PartError(f"{at}: returned the action {words(result[0])}; {must}")
     _check_state(part, "act", state, result[1])
     _check_metrics(part, "act", result[2], names)
-    if of_user(part):
-        _check_first_actions(part, agent)
-
-
-def _check_first_actions(part: Any, agent: Any) -> None:
-    """Raise PartError unless the actions at eight first states, before learning, are in [-1, 1]."""
-
-    def acted(params: Params, key: Any) -> Any:
-        resetting, acting = jax.random.split(key)
-        env = agent.episode.reset(resetting)
-        return part.act(params._replace(world=env), part.init(agent.spec), env.obs, acting)[0]
-
-    @jax.jit
-    def each(key: Any) -> Any:
-        learning, *keys = jax.random.split(key, 9)
-        learned: dict[str, Any] = {}
-        for learner in agent.learners.values():
-            learned |= learner.params(agent._first(learner, learning))
-        params = Params(**learned)._replace(decisions=jnp.int32(0))
-        return jax.vmap(acted, (None, 0))(params, jnp.stack(keys))
-
-    u = np.ravel(called(part, "act", each, jax.random.key(0)))
-    worst = u[np.argmax(np.where(np.isnan(u), np.inf, np.abs(u)))]
-    if not abs(worst) <= 1:
-        line = f"returned {worst:.3g} in the action at a first state; it must be in [-1, 1]"
-        raise PartError(f"{Own(part).at('act')}: {line}: clip it, or divide by the largest")
 
 
 def _check_objectives(owner: Any, agent: Any, params: Params, env: EnvState) -> None:
