@@ -10,6 +10,7 @@ from jax import Array
 
 from hybrid_rl.core.batching import repeat
 from hybrid_rl.protocols import Controller
+from hybrid_rl.training.given import check_finite
 from hybrid_rl.types import Params, Spec
 
 
@@ -55,8 +56,7 @@ class TrainedPolicy:
         if obs.ndim not in (1, 2) or obs.shape[-1] != o:
             raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
         rows = np.atleast_2d(obs)
-        if not np.isfinite(rows).all():
-            raise ValueError(f"obs: entry {np.argwhere(~np.isfinite(rows))[0, 1]} is not finite")
+        check_finite("obs", rows)
         if self._state is None:
             self._worlds = len(rows)
             self._state = repeat(self._begin(), len(rows))

@@ -21,9 +21,14 @@ def numbers(name: str, given: Any, *shape: int, most: float = np.inf) -> np.ndar
     if values.shape != shape:
         must = f"[{shape[0]}]" if shape else "one number"
         raise UsageError(f"{name} is {list(values.shape)}; it must be {must}")
-    if not np.isfinite(values).all():
-        where = f"{name}: entry {int(np.flatnonzero(~np.isfinite(values))[0])}" if shape else name
-        raise UsageError(f"{where} is not finite")
+    check_finite(name, values)
     if values.size and np.abs(values).max() > most + 1e-5:
         raise UsageError(f"{name}: has an entry of {np.abs(values).max():g}; give at most {most:g}")
     return values
+
+
+def check_finite(name: str, values: np.ndarray) -> None:
+    """Raise UsageError that names the entry, by its last axis, if a number is not finite."""
+    if not np.isfinite(values).all():
+        entry = f": entry {np.argwhere(~np.isfinite(values))[0, -1]}" if values.ndim else ""
+        raise UsageError(f"{name}{entry} is not finite")
