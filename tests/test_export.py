@@ -192,14 +192,12 @@ def test_every_format_acts_as_every_policy(learned, tmp_path, saved, name):
     assert np.ptp(want) > 0.1
 
 
-def test_the_function_of_c_refuses_what_is_not_finite(tmp_path):
-    with pytest.raises(subprocess.CalledProcessError, match="exit status 3"):
-        in_c(tmp_path, clones()[0].perceptron(clones()[1], SPEC), np.array([[0, np.nan, 0]]))
-
-
-def test_the_function_of_numpy_refuses_what_is_not_finite(tmp_path):
+def test_the_functions_of_numpy_and_c_refuse_what_is_not_finite(tmp_path):
+    net, obs = clones()[0].perceptron(clones()[1], SPEC), np.array([[0, np.nan, 0]])
     with pytest.raises(ValueError, match="obs: an entry is not finite"):
-        in_numpy(tmp_path, clones()[0].perceptron(clones()[1], SPEC), [0, np.nan, 0])
+        in_numpy(tmp_path, net, obs)
+    with pytest.raises(subprocess.CalledProcessError, match="exit status 3"):
+        in_c(tmp_path, net, obs)
 
 
 def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(monkeypatch):
@@ -296,8 +294,7 @@ def test_what_cannot_be_exported_is_one_line(trained, tmp_path, monkeypatch, cap
     assert [path.name for path in tmp_path.iterdir()] == ["mine.py"]
 
 
-def test_of_a_run_without_a_policy_its_planner_is_exported(trained, tmp_path, monkeypatch, capfd):
-    monkeypatch.chdir(tmp_path)
+def test_a_run_without_a_policy_has_a_planner_to_export(trained, monkeypatch, capfd):
     monkeypatch.delitem(trained.controllers, "policy")
     assert main("out=a.npz") == 2
     assert "the run has no policy, only a planner; give mode=full" in only_line(capfd)
