@@ -39,7 +39,7 @@ class PartError(UsageError):
 
 
 class WorldError(PartError):
-    """It is an environment."""
+    """An environment of the user's is wrong; otherwise as PartError."""
 
 
 class DivergenceError(ArithmeticError):

@@ -34,9 +34,8 @@ FLAGS = {  # of Hydra -> how many words follow
 }
 KEYS = (*configuration.READ, "settings", "experiment", "sweep")  # in the help
 MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
-OF_PART = re.compile(
-    r"^((?!hydra)\w+\.[\w.]+)=(\[[^][()]*\]|[^][,(]+)$"
-)  # KEY.KEY=VALUE, one value
+# KEY.KEY=VALUE, of one value
+OF_PART = re.compile(r"^((?!hydra)\w+\.[\w.]+)=(\[[^][()]*\]|[^][,(]+)$")
 NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
 USAGE = """
 
