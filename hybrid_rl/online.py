@@ -287,9 +287,7 @@ def _free(folder: Path | str) -> Path:
     return path
 
 
-def _config(
-    method: Sequence[str] | DictConfig, sizes: dict[str, Any], seed: int, own: str | Path | None
-) -> DictConfig:
+def _config(method: Any, sizes: dict[str, Any], seed: int, own: Any) -> DictConfig:
     """The configuration of a method in a world of these sizes; that of `load` stays as it is."""
     if isinstance(method, DictConfig):
         return method
