@@ -28,7 +28,8 @@ TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
 ROOMS = (  # folders of hybrid_rl that hold parts
     *("beliefs", "constraints", "controllers", "core", "critics", "data", "envs", "features"),
-    *("learners", "models", "objectives", "policies", "proposals", "rewards", "targets"),
+    *("learners", "models", "objectives", "policies", "proposals", "rewards", "schedules"),
+    "targets",
     "training",
 )
 NONE = "is no part of hybrid_rl"

@@ -4,9 +4,10 @@ from typing import Any
 
 import jax
 import optax
+from jax import Array
 
 
-def adamw(learning_rate: float, weight_decay: float) -> optax.GradientTransformation:
+def adamw(learning_rate: Any, weight_decay: float) -> optax.GradientTransformation:
     """AdamW (Loshchilov and Hutter 2019) with decay of "kernel" leaves alone; Adam if it is 0.
 
     Biases, deviations and running statistics do not decay.
@@ -16,7 +17,7 @@ def adamw(learning_rate: float, weight_decay: float) -> optax.GradientTransforma
     return optax.adamw(learning_rate, weight_decay=weight_decay, mask=_matrices)
 
 
-def adam_step(learning_rate: float, grads: Any, state: Any, params: Any) -> tuple[Any, Any]:
+def adam_step(learning_rate: Array | float, grads: Any, state: Any, params: Any) -> tuple[Any, Any]:
     """The parameters and the state of Adam after a step down `grads`."""
     change, state = optax.adam(learning_rate).update(grads, state, params)
     return optax.apply_updates(params, change), state

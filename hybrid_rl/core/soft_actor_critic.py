@@ -69,11 +69,17 @@ def target(part: Any, state: Any, alpha: Array, batch: Batch, noise: Array) -> A
 
 
 def critic_step(
-    part: Any, state: Any, x: Array, u: Array, y: Array, weight: Array | None = None
+    part: Any,
+    state: Any,
+    x: Array,
+    u: Array,
+    y: Array,
+    weight: Array | None = None,
+    factor: Array | float = 1.0,
 ) -> tuple[Any, tuple[Array, Array]]:
     """`state` after a step towards targets y [B] at x [B, n], u [B, m]; the loss and the mean Q.
 
-    weight: [B] of each target; None: 1.
+    weight: [B] of each target; None: 1. factor: of the learning rate.
     """
 
     def loss(critic: Any) -> tuple[Array, Array]:
@@ -83,33 +89,42 @@ def critic_step(
         return 0.5 * jnp.sum(jnp.mean(error, axis=-1)), q.mean()
 
     (value, q), grads = jax.value_and_grad(loss, has_aux=True)(state.critic)
-    rate, optimiser = part.critic_learning_rate, state.critic_optimiser
+    rate, optimiser = factor * part.critic_learning_rate, state.critic_optimiser
     critic, optimiser = adam_step(rate, grads, optimiser, state.critic)
     return state.replace(critic=critic, critic_optimiser=optimiser), (value, q)
 
 
 def policy_step(
-    part: Any, state: Any, loss: Callable[[Any], Any], limit: float | None = None
+    part: Any,
+    state: Any,
+    loss: Callable[[Any], Any],
+    limit: float | None = None,
+    factor: Array | float = 1.0,
 ) -> tuple[Any, tuple[Array, Any, Array]]:
     """`state` after a step down `loss(policy) -> (value [], more)`; value, more, gradient's norm.
 
-    limit: of the norm; None: none.
+    limit: of the norm; None: none. factor: of the learning rate.
     """
     (value, more), grads = jax.value_and_grad(loss, has_aux=True)(state.policy)
     norm = optax.tree.norm(grads)
     if limit is not None:
         shrunk = jnp.minimum(1.0, limit / jnp.maximum(norm, 1e-12))
         grads = jax.tree.map(lambda g: g * shrunk, grads)
-    rate, optimiser = part.policy_learning_rate, state.policy_optimiser
+    rate, optimiser = factor * part.policy_learning_rate, state.policy_optimiser
     policy, optimiser = adam_step(rate, grads, optimiser, state.policy)
     return state.replace(policy=policy, policy_optimiser=optimiser), (value, more, norm)
 
 
-def temperature_and_target(part: Any, state: SACState, entropy: Array, actions: int) -> SACState:
-    """`state` with a step of the temperature for `entropy` [], and the target critic following."""
+def temperature_and_target(
+    part: Any, state: SACState, entropy: Array, actions: int, factor: Array | float = 1.0
+) -> SACState:
+    """`state` with a step of the temperature for `entropy` [], and the target critic following.
+
+    factor: of the learning rate.
+    """
     aim = -actions if part.target_entropy is None else part.target_entropy
     log_alpha, optimiser = adam_step(
-        part.alpha_learning_rate, entropy - aim, state.alpha_optimiser, state.log_alpha
+        factor * part.alpha_learning_rate, entropy - aim, state.alpha_optimiser, state.log_alpha
     )
     target = statistics.soft_target_update(state.target, state.critic, part.tau)
     return state.replace(target=target, log_alpha=log_alpha, alpha_optimiser=optimiser)

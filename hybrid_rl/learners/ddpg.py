@@ -17,10 +17,10 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import decay, statistics
 from hybrid_rl.core import soft_actor_critic as steps
-from hybrid_rl.core import statistics
 from hybrid_rl.fields import Discount, Positive, Share, part
-from hybrid_rl.protocols import Critic, LearnedPolicy
+from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
 from hybrid_rl.types import Batch, Params, Spec
 
 
@@ -48,6 +48,7 @@ class DDPG:
     tau: Share = 0.01
     batch_size: int = 128
     updates: float = 1  # per decision
+    schedule: Schedule | None = None  # of the learning rates
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
@@ -75,6 +76,7 @@ class DDPG:
         self, state: DDPGState, params: Params, batch: Batch, key: Array
     ) -> tuple[DDPGState, dict[str, Array]]:
         """One step of critic, policy and targets."""
+        factor = decay.of_rates(self.schedule, params.decisions)
         state = steps.observed(
             state, self.policy, self.critic, batch.obs, batch.reward, self.discount
         )
@@ -84,13 +86,15 @@ class DDPG:
             self.policy.mean(state.target_policy, batch.next_obs),
         )
         y = batch.reward + self.discount * (1 - batch.terminated) * after
-        state, (of_critic, q) = steps.critic_step(self, state, batch.obs, batch.action, y)
+        state, (of_critic, q) = steps.critic_step(
+            self, state, batch.obs, batch.action, y, factor=factor
+        )
 
         def loss(policy: Any) -> tuple[Array, None]:
             u = self.policy.mean(policy, batch.obs)
             return -jnp.mean(self.critic.value(state.critic, batch.obs, u)), None
 
-        state, (of_policy, *_) = steps.policy_step(self, state, loss)
+        state, (of_policy, *_) = steps.policy_step(self, state, loss, factor=factor)
         metrics = {"ddpg/critic_loss": of_critic, "ddpg/policy_loss": of_policy, "ddpg/q": q}
         update = partial(statistics.soft_target_update, tau=self.tau)
         policy = update(state.target_policy, state.policy)

@@ -21,10 +21,11 @@ import jax.numpy as jnp
 import optax
 from jax import Array
 
+from hybrid_rl.core import decay
 from hybrid_rl.core.optimisers import adam_step
 from hybrid_rl.core.soft_actor_critic import SACState
 from hybrid_rl.fields import Count, Discount, Positive, Share, part
-from hybrid_rl.protocols import Critic, LearnedPolicy
+from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
 from hybrid_rl.types import Batch, Params, PyTree, Spec
 
 
@@ -77,6 +78,7 @@ class FlashSAC:
     batch_size: int = 512
     batches: Count = 2  # steps of the critic for each step of the policy
     updates: float = 0.5  # steps of the policy per decision
+    schedule: Schedule | None = None  # of the learning rate
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
@@ -106,18 +108,19 @@ class FlashSAC:
     ) -> tuple[SACState, dict[str, Array]]:
         """A step of policy and temperature, then `batches` of the critic. The key is consumed."""
         acting, *following = jax.random.split(key, 1 + self.batches)
+        rate = self.learning_rate * decay.of_rates(self.schedule, params.decisions)
         batch = batch._replace(reward=batch.reward / params.scale, next_action=None)
         size = len(batch.reward) // self.batches
         stacked = jax.tree.map(lambda v: v.reshape(self.batches, size, *v.shape[1:]), batch)
-        state, metrics = self._improved(state, jax.tree.map(lambda v: v[0], stacked), acting)
+        state, metrics = self._improved(state, jax.tree.map(lambda v: v[0], stacked), acting, rate)
         for i, key_i in enumerate(following):
             part = jax.tree.map(lambda v, i=i: v[i], stacked)
-            state, of_critic = self._evaluated(state, part, key_i)
+            state, of_critic = self._evaluated(state, part, key_i, rate)
             metrics |= of_critic
         return state, metrics
 
     def _improved(
-        self, state: SACState, batch: Batch, key: Array
+        self, state: SACState, batch: Batch, key: Array, rate: Array | float
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of policy and temperature. The key is consumed."""
         both, b = jnp.concatenate([batch.obs, batch.next_obs]), len(batch.obs)
@@ -133,13 +136,11 @@ class FlashSAC:
         (of_policy, (entropy, statistics)), grads = jax.value_and_grad(loss, has_aux=True)(
             state.policy["weights"]
         )
-        weights, optimiser = adam_step(
-            self.learning_rate, grads, state.policy_optimiser, state.policy["weights"]
-        )
+        weights, optimiser = adam_step(rate, grads, state.policy_optimiser, state.policy["weights"])
         policy = self.policy.constrained({"weights": weights, "statistics": statistics})
         aim = batch.action.shape[-1] * math.log(self.target_sigma * math.sqrt(2 * math.pi * math.e))
         log_alpha, alpha_optimiser = adam_step(
-            self.learning_rate, alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
+            rate, alpha * (entropy - aim), state.alpha_optimiser, state.log_alpha
         )
         metrics = {"sac/policy_loss": of_policy, "sac/alpha": alpha, "sac/entropy": entropy}
         return state.replace(
@@ -150,7 +151,7 @@ class FlashSAC:
         ), metrics
 
     def _evaluated(
-        self, state: SACState, batch: Batch, key: Array
+        self, state: SACState, batch: Batch, key: Array, rate: Array | float
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of the critic and its target. The key is consumed."""
         b, noise = len(batch.obs), jax.random.normal(key, batch.action.shape)
@@ -169,9 +170,7 @@ class FlashSAC:
         (of_critic, statistics), grads = jax.value_and_grad(loss, has_aux=True)(
             state.critic["weights"]
         )
-        weights, optimiser = adam_step(
-            self.learning_rate, grads, state.critic_optimiser, state.critic["weights"]
-        )
+        weights, optimiser = adam_step(rate, grads, state.critic_optimiser, state.critic["weights"])
         critic = self.critic.constrained({"weights": weights, "statistics": statistics})
         target = optax.incremental_update(critic, state.target, self.tau)
         state = state.replace(critic=critic, critic_optimiser=optimiser, target=target)

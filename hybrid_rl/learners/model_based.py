@@ -19,12 +19,12 @@ import jax.numpy as jnp
 from flax import struct
 from jax import Array
 
-from hybrid_rl.core import branches, soft_return
+from hybrid_rl.core import branches, decay, soft_return
 from hybrid_rl.core import soft_actor_critic as steps
 from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.soft_actor_critic import SACState
 from hybrid_rl.fields import Discount, FieldError, Natural, Positive, Share, part
-from hybrid_rl.protocols import Critic, LearnedPolicy, Reward, Trainable
+from hybrid_rl.protocols import Critic, LearnedPolicy, Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Imagined, Params, Spec
 
 
@@ -63,6 +63,7 @@ class ModelBased:
     updates: float = 2  # per decision
     during_random: bool = True  # whether it also learns while decisions are random
     max_grad_norm: Positive | None = 10.0  # of the policy's gradient; None: no limit
+    schedule: Schedule | None = None  # of the learning rates
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
@@ -104,6 +105,7 @@ class ModelBased:
         """One step of critic, policy, temperature and target. The key is consumed."""
         kept, batch, key = self._started(state.branches, params, batch, key)
         learner, alpha = state.learner, jnp.exp(state.learner.log_alpha)
+        factor = decay.of_rates(self.schedule, params.decisions)
         learner = steps.observed(
             learner, self.policy, self.critic, batch.obs, batch.reward, self.discount
         )
@@ -112,7 +114,9 @@ class ModelBased:
         of_critic = None
         if not self._value_steps:
             y = steps.target(self, learner, alpha, batch, noise[0])
-            learner, of_critic = steps.critic_step(self, learner, batch.obs, batch.action, y)
+            learner, of_critic = steps.critic_step(
+                self, learner, batch.obs, batch.action, y, factor=factor
+            )
 
         def loss(policy: Any) -> tuple[Array, tuple[Array, Any]]:
             if not self.steps:
@@ -125,12 +129,13 @@ class ModelBased:
             return -(y[0] - alpha * paths.log_prob[0]).mean(), (paths.log_prob[0], paths)
 
         learner, (policy_loss, (log_prob, paths), norm) = steps.policy_step(
-            self, learner, loss, self.max_grad_norm
+            self, learner, loss, self.max_grad_norm, factor
         )
         if of_critic is None:
-            learner, of_critic = self._expanded(learner, alpha, paths)
+            learner, of_critic = self._expanded(learner, alpha, paths, factor)
         entropy = -log_prob.mean()
-        learner = steps.temperature_and_target(self, learner, entropy, batch.action.shape[-1])
+        actions = batch.action.shape[-1]
+        learner = steps.temperature_and_target(self, learner, entropy, actions, factor)
         return ModelBasedState(learner, kept), {
             "sac/critic_loss": of_critic[0],
             "sac/q": of_critic[1],
@@ -184,7 +189,9 @@ class ModelBased:
             continues=jax.nn.sigmoid(-ends),
         )
 
-    def _expanded(self, state: SACState, alpha: Array, paths: Imagined) -> tuple:
+    def _expanded(
+        self, state: SACState, alpha: Array, paths: Imagined, factor: Array | float
+    ) -> tuple:
         """`state` after a step of the critic towards returns along `paths`; its loss and mean Q."""
         paths = jax.lax.stop_gradient(paths)
         last = self.critic.value(state.target, paths.x[-1], paths.u[-1])
@@ -192,4 +199,4 @@ class ModelBased:
         first = slice(self._value_steps)
         x, u = (each[first].reshape(-1, each.shape[-1]) for each in (paths.x, paths.u))
         y, reached = y[first].ravel(), soft_return.reached(paths)[first].ravel()
-        return steps.critic_step(self, state, x, u, y, reached)
+        return steps.critic_step(self, state, x, u, y, reached, factor)

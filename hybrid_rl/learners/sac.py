@@ -14,10 +14,11 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import decay
 from hybrid_rl.core import soft_actor_critic as steps
 from hybrid_rl.core.soft_actor_critic import SACState
 from hybrid_rl.fields import Discount, Positive, Share, part
-from hybrid_rl.protocols import Critic, LearnedPolicy
+from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
 from hybrid_rl.types import Batch, Params, Spec
 
 
@@ -38,6 +39,7 @@ class SAC:
     updates: float = 1  # per decision
     during_random: bool = False  # whether it also learns while decisions are random
     max_grad_norm: Positive | None = None  # of the policy's gradient; None: no limit
+    schedule: Schedule | None = None  # of the learning rates
 
     data: ClassVar[str] = "uniform"
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
@@ -55,13 +57,15 @@ class SAC:
         self, state: SACState, params: Params, batch: Batch, key: Array
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
-        alpha = jnp.exp(state.log_alpha)
+        alpha, factor = jnp.exp(state.log_alpha), decay.of_rates(self.schedule, params.decisions)
         state = steps.observed(
             state, self.policy, self.critic, batch.obs, batch.reward, self.discount
         )
         noise = jax.random.normal(jax.random.split(key)[0], (2, *batch.action.shape))
         y = steps.target(self, state, alpha, batch, noise[0])
-        state, (critic_loss, q) = steps.critic_step(self, state, batch.obs, batch.action, y)
+        state, (critic_loss, q) = steps.critic_step(
+            self, state, batch.obs, batch.action, y, factor=factor
+        )
 
         def loss(policy: Any) -> tuple[Array, Array]:
             v, log_prob = self.policy.sample(policy, batch.obs, noise[1])
@@ -69,10 +73,11 @@ class SAC:
             return -value.mean(), log_prob
 
         state, (policy_loss, log_prob, norm) = steps.policy_step(
-            self, state, loss, self.max_grad_norm
+            self, state, loss, self.max_grad_norm, factor
         )
         entropy = -log_prob.mean()
-        state = steps.temperature_and_target(self, state, entropy, batch.action.shape[-1])
+        actions = batch.action.shape[-1]
+        state = steps.temperature_and_target(self, state, entropy, actions, factor)
         return state, {
             "sac/critic_loss": critic_loss,
             "sac/q": q,

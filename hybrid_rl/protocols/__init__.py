@@ -41,6 +41,7 @@ from hybrid_rl.protocols.learning import (
     Demonstrations,
     LatestLearner,
     Learner,
+    Schedule,
     UniformLearner,
 )
 
@@ -72,6 +73,7 @@ __all__ = [
     "Reward",
     "Rewarded",
     "RewardedEnv",
+    "Schedule",
     "StabilizingPolicy",
     "Target",
     "Trainable",

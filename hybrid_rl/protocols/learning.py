@@ -14,6 +14,13 @@ class Demonstrations(Protocol):
         """All of them [N, ...], in order."""
 
 
+class Schedule(Protocol):
+    """How learning rates change along a run."""
+
+    def factor(self, decisions: Array) -> Array:
+        """The factor [] of the learning rates, so many decisions [] into the run."""
+
+
 class _Learner(Protocol):
     """What both kinds of learners have."""
 

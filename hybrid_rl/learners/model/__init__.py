@@ -21,11 +21,12 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core import decay
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.core.optimisers import adamw
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, has, part
 from hybrid_rl.learners.model import held_out
-from hybrid_rl.protocols import Reward, Trainable
+from hybrid_rl.protocols import Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Params, PyTree, Spec
 
 RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
@@ -91,6 +92,7 @@ class ModelLearner:
     max_grad_norm: float | None = None
     weight_decay: NotNegative = 0.0  # of the layers' matrices, per unit of learning rate
     holdout: float = 0.0  # share of the decisions
+    schedule: Schedule | None = None  # of the learning rates
 
     data: ClassVar[str] = "uniform"
     during_random: ClassVar[bool] = True  # random decisions inform the model
@@ -125,8 +127,8 @@ class ModelLearner:
         """Members of an ensemble that draw states, if not all do."""
         return getattr(self.model, "elites", None)
 
-    def _optimiser(self) -> optax.GradientTransformation:
-        adam = adamw(self.learning_rate, self.weight_decay)
+    def _optimiser(self, factor: Array | float = 1.0) -> optax.GradientTransformation:
+        adam = adamw(factor * self.learning_rate, self.weight_decay)
         if self.max_grad_norm is None:
             return adam
         return optax.chain(optax.clip_by_global_norm(self.max_grad_norm), adam)
@@ -169,7 +171,8 @@ class ModelLearner:
 
         weights = _weights(model, reward)
         grads, (of_model, of_reward) = jax.grad(loss, has_aux=True)(weights)
-        change, optimiser = self._optimiser().update(grads, state.optimiser, weights)
+        factor = decay.of_rates(self.schedule, params.decisions)
+        change, optimiser = self._optimiser(factor).update(grads, state.optimiser, weights)
         updated: Any = optax.apply_updates(weights, change)
         f, r = updated
         metrics = {"model/loss": of_model}

@@ -1,0 +1,49 @@
+"""Learning rates that fall along a run, in every learner that has a schedule."""
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from small import load
+
+from hybrid_rl.config import build
+from hybrid_rl.schedules.linear import LinearDecay
+
+pytestmark = pytest.mark.turns(1)
+
+METHODS = ("sac", "ddpg", "flash_sac", "hybrid_stochastic")  # the last one learns models, too
+
+
+def weights(agent: Any, state: Any) -> list[np.ndarray]:
+    """The matrices of all layers that learn."""
+    leaves = jax.tree_util.tree_leaves_with_path(agent.params(state))
+    return [np.asarray(leaf) for path, leaf in leaves if "kernel" in jax.tree_util.keystr(path)]
+
+
+def test_the_factor_is_one_then_falls_to_zero():
+    falling = jax.vmap(LinearDecay(decisions=100, share=0.4).factor)
+    np.testing.assert_allclose(
+        falling(jnp.array([0, 59, 60, 80, 99, 100, 120])), [1, 1, 1, 0.5, 0.025, 0, 0], atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("algo", METHODS)
+def test_rates_are_whole_at_first_and_zero_at_the_end(algo):
+    known = build(load(algo, "task=pendulum")).agent
+    agent = build(load(algo, "task=pendulum", "schedule=linear")).agent
+    state = jax.jit(agent.init)(jax.random.key(0))
+    step, learn = jax.jit(agent.step), jax.jit(lambda *of: agent.learn(*of)[0])
+    for k in range(10):
+        state = step(state, jnp.int32(k))[0]
+    before, early, late = (
+        weights(agent, each)
+        for each in (state, learn(state, jnp.int32(10)), learn(state, jnp.int32(200)))
+    )
+    unscheduled = weights(known, jax.jit(lambda *of: known.learn(*of)[0])(state, jnp.int32(10)))
+    assert len(before) > 2
+    for old, one, plain, last in zip(before, early, unscheduled, late, strict=True):
+        assert (one != old).any()
+        np.testing.assert_array_equal(one, plain)
+        np.testing.assert_allclose(last, old, rtol=1e-5)  # flash_sac normalises its weights
