@@ -41,11 +41,16 @@ def options(group: str) -> list[str]:
 
 
 def check_choices(texts: Iterable[str]) -> None:
-    """Refuse an override that gives a group something else than a name.
+    """Refuse an override that gives a group something else than a name, and two environments.
 
     Raises:
         UsageError: with the names that the group has.
     """
+    texts = list(texts)
+    typed = overrides.given(texts)
+    one, other = (typed.get(key, "") for key in ("env.id", "env.make"))
+    if overrides.value_of(one) and overrides.value_of(other):
+        raise UsageError(f"env.id={one}: env.make={other} is another environment; give one of them")
     for text in texts:
         key, _, value = text.lstrip("+").partition("=")
         each = [value] if value.startswith(("[", "{")) else value.split(",")

@@ -63,6 +63,10 @@ USAGE = [  # overrides of train, words of the line
     ("task=gymnasium algo=mppi", "Pendulum-v1: mppi plans on the true dynamics, and this task st"),
     ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
     ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
+    (
+        "task=gymnasium env.id=Hopper-v5 env.make=mine:Env",
+        "env.id=Hopper-v5: env.make=mine:Env is another environment; give one of them",
+    ),
     ("task=pendulm", "walker2d; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
@@ -176,10 +180,7 @@ USAGE = [  # overrides of train, words of the line
         "task=quadcopter_se3 algo=koopman_known num_demonstrations=1",
         "demonstrations: 20 decisions are too few for 22 regressors",
     ),
-    (
-        "algo=fisher model=exact",
-        "model_learner.model=Exact: has no weights to learn; choose",
-    ),
+    ("algo=fisher model=exact", "model_learner.model=Exact: has no weights to learn; choose"),
     (
         "task=halfcheetah algo=fisher",
         "task=halfcheetah: fisher needs an environment with a known reward; choose one of cart_",
@@ -205,10 +206,7 @@ USAGE = [  # overrides of train, words of the line
     ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
     ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
     ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
-    (
-        "eval_episodes=100000000000",
-        "eval_episodes=100000000000: their worlds would take ",
-    ),
+    ("eval_episodes=100000000000", "eval_episodes=100000000000: their worlds would take "),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
 
