@@ -63,6 +63,23 @@ def test_spaces_of_any_form_are_flattened():
 
 
 @pytest.mark.parametrize(
+    ("obs", "line"),
+    [
+        ({"a": np.ones((2, 2))}, "obs lacks the key 'b' of its space, Dict('a': Box("),
+        (np.ones(7), "obs does not fit its space, Dict('a': Box("),
+    ],
+)
+@pytest.mark.parametrize("method", ["reset", "step"])
+def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
+    returned = (obs, {}) if method == "reset" else (obs, 0.0, False, False, {})
+    kind = type("Wrong", (Odd,), {method: lambda self, *_, **options: returned})
+    with pytest.raises(UsageError) as error:
+        External(make=kind)
+    assert line in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
     ("given", "line"),
     [
         ({}, "give an id of Gymnasium, or env.make=MODULE:CLASS"),
