@@ -8,6 +8,7 @@ several methods.
 import difflib
 import re
 from collections.abc import Iterable, Sequence
+from itertools import compress
 from pathlib import Path
 from typing import Any
 
@@ -256,14 +257,14 @@ def refuse_unused(
         _refuse_words(plain(config))
     typed = parse(text for text in overrides if not is_swept(text))
     each = [unused(config, typed, roots) for config in composed]
-    for path in each[0]:
-        if all(path in lost for lost in each):
-            instead = next(filter(None, (lost[path] for lost in each)), "")
+    for path in dict.fromkeys(path for lost in each for path in lost):
+        having = [select(plain(config), path) is not LACKING for config in composed]
+        if all(path in lost for lost in compress(each, having)):
+            instead = next(filter(None, (lost.get(path) for lost in each)), "")
             methods = list(dict.fromkeys(config.algo for config in composed))
-            does = "does" if len(methods) == 1 else "do"
-            use = f"it uses {instead}" if does == "does" else f"what they use is {instead}"
+            does, use = ("does", "it uses") if len(methods) == 1 else ("do", "what they use is")
             line = f"{path}: {', '.join(methods)} {does} not use it"
-            raise UsageError(f"{line}; {use}" if instead else line)
+            raise UsageError(f"{line}; {use} {instead}" if instead else line)
 
 
 def _refuse_words(raw: dict[str, Any]) -> None:
