@@ -123,6 +123,8 @@ def explain(error: Exception) -> str:
         if key.startswith("env.") and (line := _of_other_tasks(error)):
             return line
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
+    if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
+        return f"{error.full_key}: refers to the part that it is in; give it another one"
     if word := re.search(r"node `([^`]+)` is not a container", text):
         return f"{word[1]}: must be a group of keys; {overrides.SHOW}"
     return _sentences(f"{text}\n{cause or ''}")

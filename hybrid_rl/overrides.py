@@ -1,8 +1,7 @@
 """Overrides of the user: keys that do not exist, keys that nothing reads, values as typed.
 
 A run reads the keys `config.READ` and the keys to which they refer by interpolation. An override of
-any other key would have no effect and is refused; a YAML file may set such keys, as it serves
-several methods.
+any other key has no effect and is refused; a YAML file may set it, as it serves several methods.
 """
 
 import difflib
@@ -121,15 +120,16 @@ def unused(config: DictConfig, typed: Iterable[Override], roots: Iterable[str]) 
 
     config: composed, with its interpolations.
     """
-    raw = plain(config)
+    raw, lost = plain(config), {}
     read = reached(raw, roots)
-    lost = {}
-    for path in (key(each) for each in typed if not each.is_delete()):
-        at = source(raw, path)
-        if select(raw, at) is LACKING:  # a group that spreads over the whole configuration
+    for each in typed:
+        node = select(raw, at := source(raw, key(each)))
+        if node is LACKING or each.is_delete():  # a group that spreads over the configuration
             continue
-        if at not in read and not any(name.startswith(f"{at}.") for name in read):
-            lost[path] = ", ".join(_instead(raw, read, at))
+        part = _target(node) is not None  # of which one value that another part reads is no use
+        if at not in read and (part or not any(name.startswith(f"{at}.") for name in read)):
+            group = f"{each.key_or_group}@" if part else ""
+            lost[key(each)] = ", ".join(f"{group}{name}" for name in _instead(raw, read, at))
     return lost
 
 

@@ -108,7 +108,9 @@ USAGE = [  # overrides of train, words of the line
     ("algo=sac -m seed=-1,0", "seed=-1: must be a whole number, 0 or more (job 0: seed=-1)"),
     ("eval_modes=[full, policy]", "policy]: has no key; put a list in quotes"),
     ("algo=sac planner.horizon=7", "planner.horizon: sac does not use it"),
-    ("algo=nn_mppi proposal=mixture", "proposal: nn_mppi does not use it; it uses model_proposal"),
+    ("algo=nn_mppi proposal=mixture", "proposal: nn_mppi does not use it; it uses proposal@model_"),
+    ("algo=nn_mppi objective=fisher", "nn_mppi does not use it; it uses objective@model_objective"),
+    ("objective=weighted_sum", "objective.terms.task: refers to the part that it is in; give it"),
     ("algo=nn_mppi planner.execute=mean", "it uses model_planner.execute"),
     ("algo=deterministic_mpc planner.horizon=7", "it uses adjoint_planner.horizon"),
     ("algo=sac target=mixture", "target: the method has no such part"),
@@ -168,10 +170,7 @@ USAGE = [  # overrides of train, words of the line
         "features.terms=[0, 9]: has an index above 2, the last coordinate",
     ),
     ("algo=koopman_active policy_learner.horizon=0", f"policy_learner.horizon=0: {COUNT}"),
-    (
-        "algo=koopman_active model_learner.forgetting=0",
-        "model_learner.forgetting=0: must lie in (0, 1]",
-    ),
+    ("algo=koopman_active model_learner.forgetting=0", "learner.forgetting=0: must lie in (0, 1]"),
     (
         "algo=koopman_known demonstrations=demonstrations/quadcopter_se3.npz",
         "is of task quadcopter_se3, not of pendulum",
