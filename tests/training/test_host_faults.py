@@ -90,6 +90,7 @@ def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
         ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
         ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
+        ({"id": "Pendulum-v1", "kwargs": 3}, "env.kwargs=3: must be {KEY: VALUE}"),
         ({"id": "Pendulum-v1", "timeout_s": 1.0}, "with env.processes=true"),
     ],
 )
