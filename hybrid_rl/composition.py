@@ -111,6 +111,7 @@ def explain(error: Exception) -> str:
         first, problem = text.splitlines()[0], text.splitlines()[-2]
         if set(problem) == {" ", "^"}:  # it points at a character
             problem = f"{first[len(problem) - 1]} stands outside quotes"
+        problem = problem.partition(" expecting {")[0]  # of kinds of signs
         return f"{error.override}: {problem}; write key=value, text in quotes"
     if inner := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):
         what = f"is not for this method, which has no {inner[3]} to change"

@@ -141,6 +141,8 @@ USAGE = [  # overrides of train, words of the line
     ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
     ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),
+    ("policy.hidden=(9,9)", "policy.hidden=(9,9): extraneous input '('; write key=value, text in"),
+    ("episode.action_noise=a", "episode.action_noise=a: must be 0 or more"),
     ("policy.hidden=[0]", "policy.hidden=[0]: must be a whole number, 1 or more"),
     ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),
     ("eval_modes=[full,both]", "eval_modes=[full,both]: must be a list of full, policy"),
