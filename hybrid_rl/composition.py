@@ -41,11 +41,16 @@ def options(group: str) -> list[str]:
 
 
 def check_choices(texts: Iterable[str]) -> None:
-    """Refuse an override that gives a group something else than a name.
+    """Refuse an override that gives a group something else than a name, and two environments.
 
     Raises:
         UsageError: with the names that the group has.
     """
+    texts = list(texts)
+    typed = overrides.given(texts)
+    one, other = (typed.get(key, "") for key in ("env.id", "env.make"))
+    if overrides.value_of(one) and overrides.value_of(other):
+        raise UsageError(f"env.id={one}: env.make={other} is another environment; give one of them")
     for text in texts:
         key, _, value = text.lstrip("+").partition("=")
         each = [value] if value.startswith(("[", "{")) else value.split(",")
@@ -97,29 +102,48 @@ def explain(error: Exception) -> str:
             close = f"; your own {group}/{value}.yaml needs --config-dir FOLDER"
         return f"{group}={value}: unknown; {_choice(value, known)}{close}"
     cause, text = error.__cause__, str(error)
-    if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
-        return overrides.unknown(cause.parent_node, str(cause.full_key))
+    absent = _absent(error)
+    if absent and isinstance(cause, OmegaConfBaseException):
+        return overrides.unknown(cause.parent_node, absent)
+    if absent:
+        return f"{absent}: the method has no such part; `python -m hybrid_rl.list` shows methods"
     if isinstance(error, OverrideParseException):
         first, problem = text.splitlines()[0], text.splitlines()[-2]
         if set(problem) == {" ", "^"}:  # it points at a character
             problem = f"{first[len(problem) - 1]} stands outside quotes"
+        problem = problem.partition(" expecting {")[0]  # of kinds of signs
         return f"{error.override}: {problem}; write key=value, text in quotes"
-    if absent := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):
-        what = f"is not for this method, which has no {absent[3]} to change"
-        return f"{absent[1]}={absent[2]}: {what}"
-    if absent := re.match(r"Could not override '([^']+)'", text):
-        return f"{absent[1]}: the method has no such part; `python -m hybrid_rl.list` shows methods"
+    if inner := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):
+        what = f"is not for this method, which has no {inner[3]} to change"
+        return f"{inner[1]}={inner[2]}: {what}"
     if several := re.match(r"Ambiguous value for argument '([^']+)'", text):
         return f"{several[1]}: several values are a sweep, which needs -m; a list is key=[a,b]"
     if isinstance(error, InterpolationKeyError):
-        absent = re.search(r"'([^']+)'", text)
-        key = absent[1] if absent else "a key"
+        named = re.search(r"'([^']+)'", text)
+        key = named[1] if named else "a key"
         if key.startswith("env.") and (line := _of_other_tasks(error)):
             return line
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
+    if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
+        return f"{error.full_key}: refers to the part that it is in; give it another one"
     if word := re.search(r"node `([^`]+)` is not a container", text):
         return f"{word[1]}: must be a group of keys; {overrides.SHOW}"
     return _sentences(f"{text}\n{cause or ''}")
+
+
+def _absent(error: BaseException | None) -> str:
+    """The key or the group of an override that is not there, by an error of Hydra's; or ""."""
+    cause = error and error.__cause__
+    if isinstance(cause, OmegaConfBaseException) and "is not in struct" in str(cause):
+        return str(cause.full_key)
+    found = re.match(r"Could not override '([^']+)'", str(error))
+    return found[1] if found else ""
+
+
+def concerns(error: BaseException | None, override: str) -> bool:
+    """Whether an error of Hydra's says that what an override changes is not there."""
+    absent, key = _absent(error), override.partition("=")[0]
+    return bool(absent) and f"{key}.".startswith(f"{absent}.")
 
 
 def _of_other_tasks(error: InterpolationKeyError) -> str:

@@ -25,6 +25,7 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import yaml
 from hydra import compose, initialize_config_dir
 from hydra.errors import HydraException
 from jax import Array
@@ -98,9 +99,12 @@ def aimed(
     """What `retargeted` gives, with its errors, before a policy learns, and how it will learn."""
     if not overrides:
         return trained, None
-    if not any(text.startswith("reward=") for text in overrides):
-        for text in (each for each in overrides if each.startswith("reward.")):
-            raise UsageError(f"{text}: is a key of a reward; give reward=NAME with it")
+    named = {text.partition("=")[0] for text in overrides}
+    for text in overrides:
+        group, dot, _ = text.partition("=")[0].partition(".")
+        goal = (*configuration.PAID, "imagine") if group == "planner" else ()  # they bring one
+        if dot and not named & {group, *goal}:
+            raise UsageError(f"{text}: is a key of {group}=NAME; give that with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
     goal = _fitting(config, _composed(overrides, config_dir))
     for lost in overrides:
@@ -160,6 +164,8 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     if {"model", "reward_model"} - set(config):
         return OmegaConf.masked_copy(goal, [*configuration.PAID])
     if "policy" not in config:
+        if goal.get("imagine") is not None:
+            raise UsageError("imagine=policy: there is no policy that could learn")
         goal.planner = goal.planner_alone
         goal.controllers = dict.fromkeys(("full", "planner"), "${planner}")
     return goal
@@ -217,6 +223,12 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
         if name not in known:
             whose = f"the {section} of task {config.task}"
             raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
+        try:
+            read = OmegaConf.from_dotlist([f"value={value}"]).value
+        except yaml.YAMLError as error:
+            raise UsageError(
+                f"{key}={value}: is no YAML: {getattr(error, 'problem', '')}"
+            ) from error
         with open_dict(changed):
-            changed[section][name] = OmegaConf.from_dotlist([f"value={value}"]).value
+            changed[section][name] = read
     return configuration.episodes(changed)

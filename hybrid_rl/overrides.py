@@ -1,13 +1,13 @@
 """Overrides of the user: keys that do not exist, keys that nothing reads, values as typed.
 
 A run reads the keys `config.READ` and the keys to which they refer by interpolation. An override of
-any other key would have no effect and is refused; a YAML file may set such keys, as it serves
-several methods.
+any other key has no effect and is refused; a YAML file may set it, as it serves several methods.
 """
 
 import difflib
 import re
 from collections.abc import Iterable, Sequence
+from itertools import compress
 from pathlib import Path
 from typing import Any
 
@@ -120,15 +120,16 @@ def unused(config: DictConfig, typed: Iterable[Override], roots: Iterable[str]) 
 
     config: composed, with its interpolations.
     """
-    raw = plain(config)
+    raw, lost = plain(config), {}
     read = reached(raw, roots)
-    lost = {}
-    for path in (key(each) for each in typed if not each.is_delete()):
-        at = source(raw, path)
-        if select(raw, at) is LACKING:  # a group that spreads over the whole configuration
+    for each in typed:
+        node = select(raw, at := source(raw, key(each)))
+        if node is LACKING or each.is_delete():  # a group that spreads over the configuration
             continue
-        if at not in read and not any(name.startswith(f"{at}.") for name in read):
-            lost[path] = ", ".join(_instead(raw, read, at))
+        part = _target(node) is not None  # of which one value that another part reads is no use
+        if at not in read and (part or not any(name.startswith(f"{at}.") for name in read)):
+            group = f"{each.key_or_group}@" if part else ""
+            lost[key(each)] = ", ".join(f"{group}{name}" for name in _instead(raw, read, at))
     return lost
 
 
@@ -256,14 +257,14 @@ def refuse_unused(
         _refuse_words(plain(config))
     typed = parse(text for text in overrides if not is_swept(text))
     each = [unused(config, typed, roots) for config in composed]
-    for path in each[0]:
-        if all(path in lost for lost in each):
-            instead = next(filter(None, (lost[path] for lost in each)), "")
+    for path in dict.fromkeys(path for lost in each for path in lost):
+        having = [select(plain(config), path) is not LACKING for config in composed]
+        if all(path in lost for lost in compress(each, having)):
+            instead = next(filter(None, (lost.get(path) for lost in each)), "")
             methods = list(dict.fromkeys(config.algo for config in composed))
-            does = "does" if len(methods) == 1 else "do"
-            use = f"it uses {instead}" if does == "does" else f"what they use is {instead}"
+            does, use = ("does", "it uses") if len(methods) == 1 else ("do", "what they use is")
             line = f"{path}: {', '.join(methods)} {does} not use it"
-            raise UsageError(f"{line}; {use}" if instead else line)
+            raise UsageError(f"{line}; {use} {instead}" if instead else line)
 
 
 def _refuse_words(raw: dict[str, Any]) -> None:

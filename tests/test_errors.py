@@ -63,6 +63,10 @@ USAGE = [  # overrides of train, words of the line
     ("task=gymnasium algo=mppi", "Pendulum-v1: mppi plans on the true dynamics, and this task st"),
     ("task=Hopper-v5", "walker2d; did you mean task=gymnasium env.id=Hopper-v5?"),
     ("task=mine:Env", "walker2d; did you mean task=gymnasium env.make=mine:Env?"),
+    (
+        "task=gymnasium env.id=Hopper-v5 env.make=mine:Env",
+        "env.id=Hopper-v5: env.make=mine:Env is another environment; give one of them",
+    ),
     ("task=pendulm", "walker2d; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
@@ -104,7 +108,9 @@ USAGE = [  # overrides of train, words of the line
     ("algo=sac -m seed=-1,0", "seed=-1: must be a whole number, 0 or more (job 0: seed=-1)"),
     ("eval_modes=[full, policy]", "policy]: has no key; put a list in quotes"),
     ("algo=sac planner.horizon=7", "planner.horizon: sac does not use it"),
-    ("algo=nn_mppi proposal=mixture", "proposal: nn_mppi does not use it; it uses model_proposal"),
+    ("algo=nn_mppi proposal=mixture", "proposal: nn_mppi does not use it; it uses proposal@model_"),
+    ("algo=nn_mppi objective=fisher", "nn_mppi does not use it; it uses objective@model_objective"),
+    ("objective=weighted_sum", "objective.terms.task: refers to the part that it is in; give it"),
     ("algo=nn_mppi planner.execute=mean", "it uses model_planner.execute"),
     ("algo=deterministic_mpc planner.horizon=7", "it uses adjoint_planner.horizon"),
     ("algo=sac target=mixture", "target: the method has no such part"),
@@ -135,6 +141,8 @@ USAGE = [  # overrides of train, words of the line
     ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
     ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),
+    ("policy.hidden=(9,9)", "policy.hidden=(9,9): extraneous input '('; write key=value, text in"),
+    ("episode.action_noise=a", "episode.action_noise=a: must be 0 or more"),
     ("policy.hidden=[0]", "policy.hidden=[0]: must be a whole number, 1 or more"),
     ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),
     ("eval_modes=[full,both]", "eval_modes=[full,both]: must be a list of full, policy"),
@@ -164,10 +172,7 @@ USAGE = [  # overrides of train, words of the line
         "features.terms=[0, 9]: has an index above 2, the last coordinate",
     ),
     ("algo=koopman_active policy_learner.horizon=0", f"policy_learner.horizon=0: {COUNT}"),
-    (
-        "algo=koopman_active model_learner.forgetting=0",
-        "model_learner.forgetting=0: must lie in (0, 1]",
-    ),
+    ("algo=koopman_active model_learner.forgetting=0", "learner.forgetting=0: must lie in (0, 1]"),
     (
         "algo=koopman_known demonstrations=demonstrations/quadcopter_se3.npz",
         "is of task quadcopter_se3, not of pendulum",
@@ -176,10 +181,7 @@ USAGE = [  # overrides of train, words of the line
         "task=quadcopter_se3 algo=koopman_known num_demonstrations=1",
         "demonstrations: 20 decisions are too few for 22 regressors",
     ),
-    (
-        "algo=fisher model=exact",
-        "model_learner.model=Exact: has no weights to learn; choose",
-    ),
+    ("algo=fisher model=exact", "model_learner.model=Exact: has no weights to learn; choose"),
     (
         "task=halfcheetah algo=fisher",
         "task=halfcheetah: fisher needs an environment with a known reward; choose one of cart_",
@@ -205,10 +207,7 @@ USAGE = [  # overrides of train, words of the line
     ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
     ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
     ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
-    (
-        "eval_episodes=100000000000",
-        "eval_episodes=100000000000: their worlds would take ",
-    ),
+    ("eval_episodes=100000000000", "eval_episodes=100000000000: their worlds would take "),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
 

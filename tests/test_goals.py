@@ -161,7 +161,11 @@ def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
     ("words", "line"),
     [
         ("reward=fame", "reward=fame: unknown; choose one of aim, height, level"),
-        ("reward.target=2", "reward.target=2: is a key of a reward; give reward=NAME with it"),
+        ("reward.target=2", "reward.target=2: is a key of reward=NAME; give that with it"),
+        ("planner.samples=2", "planner.samples=2: is a key of planner=NAME; give that with it"),
+        ("constraint.most=2", "constraint.most=2: is a key of constraint=NAME; give that with it"),
+        ("episode.sensor_noise=a", "episode.sensor_noise=a: must be 1 or 5 numbers, each 0 or"),
+        ("episode.sensor_noise=[1", "episode.sensor_noise=[1: is no YAML: expected ',' or ']'"),
         ("reward=speed reward.tarket=2", "reward.tarket: unknown key; did you mean reward.target"),
         ("reward=speed reward.target=fast", "reward.target=fast: must be"),
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
@@ -192,6 +196,15 @@ def test_a_policy_without_models_refuses_a_planner(word: str, capfd) -> None:
     assert call(lambda: command.run(evaluate.main), *given) == 2
     does = "imagine" if word.startswith("imagine") else "plan"
     assert f"{word}: there is no learned model to {does} with" in only_line(capfd)
+
+
+def test_without_a_policy_none_imagines(tmp_path, capfd) -> None:
+    """Of a method that plans alone."""
+    run(tmp_path, "task=cartpole", "algo=nn_mppi", "total_steps=100")
+    given = (f"run={tmp_path}", "imagine=policy")
+    capfd.readouterr()
+    assert call(lambda: command.run(evaluate.main), *given) == 2
+    assert "imagine=policy: there is no policy that could learn" in only_line(capfd)
 
 
 def test_what_was_imagined_acts_where_it_gained(known: Trained) -> None:

@@ -112,13 +112,25 @@ class External(Made):
                 )
         if isinstance(env.observation_space, Box) and len(env.observation_space.shape) == 1:
             return env
-        return FlattenObservation(env)
+        return Flat(env)
 
     def copies(
         self, seeds: Sequence[int], steps: int, repeat: int = 1, render_mode: str | None = None
     ) -> Copies:
         """One copy for each seed; steps: decisions until the time limit of each."""
         return Copies(self, seeds, steps, repeat, render_mode)
+
+
+class Flat(FlattenObservation):
+    """Flat observations; one that does not fit its space says so."""
+
+    def observation(self, observation: Any) -> Any:
+        """Observation [o]."""
+        try:
+            return super().observation(observation)
+        except (LookupError, TypeError, ValueError) as error:
+            what = f"lacks the key {error} of" if isinstance(error, KeyError) else "does not fit"
+            raise ValueError(f"obs {what} its space, {self.env.observation_space}") from error
 
 
 class Known(NamedTuple):

@@ -34,8 +34,8 @@ FLAGS = {  # of Hydra -> how many words follow
 }
 KEYS = (*configuration.READ, "settings", "experiment", "sweep")  # in the help
 MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
-# KEY.KEY=VALUE, of one value
-OF_PART = re.compile(r"^((?!hydra)\w+\.[\w.]+)=(\[[^][()]*\]|[^][,(]+)$")
+# KEY.KEY=VALUE or GROUP=NAME, of one value
+OF_PART = re.compile(r"^((?!hydra|task|algo|settings|experiment)[\w.@]+)=(\[[^][()]*\]|[^][,(]+)$")
 NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
 USAGE = """
 
@@ -163,13 +163,18 @@ def _ordered(line: Sequence[str]) -> list[str]:
 
 
 def _of_each(texts: Sequence[str]) -> list[str]:
-    """The overrides of a sweep over methods, those of keys of parts as a choice of one value.
+    """The overrides of a sweep over methods, those of parts and their keys as choices of one value.
 
     Hydra applies what is no choice to the default method first, which may not have the part.
     """
     if not any(re.match("(algo|experiment)=.*,", text) for text in texts):
         return [*texts]
-    return [OF_PART.sub(r"\1=choice(\2)", text) for text in texts]
+
+    def one(found: re.Match[str]) -> str:
+        of_part = "." in found[1] or options(found[1].partition("@")[0])
+        return f"{found[1]}=choice({found[2]})" if of_part else found[0]
+
+    return [OF_PART.sub(one, text) for text in texts]
 
 
 def report(error: BaseException) -> NoReturn:

@@ -19,12 +19,13 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, require_slurm, watched
-from hybrid_rl.composition import check_task, explain
+from hybrid_rl.composition import check_task, concerns, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
 from hybrid_rl.run import together
@@ -102,7 +103,10 @@ class Sweeper(BasicSweeper):
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
         (jobs,) = self.split_arguments(self._parsed(arguments), None)
         self.task.labels = labels(jobs)
+        jobs, notes = self._fitting(jobs)
+        self.task.labels = labels(jobs)
         jobs = _folders(jobs, self._checked(jobs, arguments))
+        print(*notes, sep="", end="", flush=True)
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
         OmegaConf.save(self.config, folder / "multirun.yaml")
@@ -124,21 +128,57 @@ class Sweeper(BasicSweeper):
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
         return parser.parse_overrides([*self._parse_config(), *arguments])
 
+    def _fitting(self, jobs: Sequence[Sequence[str]]) -> tuple[list[Sequence[str]], list[str]]:
+        """The jobs without overrides of what only other jobs have, and lines about these.
+
+        Jobs that are the same then are one.
+
+        Raises:
+            UsageError: for an override of what no job has.
+        """
+        lost: dict[str, list[UsageError]] = {}
+
+        def fitting(number: int, job: Sequence[str]) -> tuple[str, ...]:
+            try:
+                self._composed(number, job)
+            except UsageError as error:
+                absent = [text for text in job if concerns(error.__cause__, text)]
+                if not absent:
+                    raise
+                for text in absent:
+                    lost.setdefault(text, []).append(error)
+                return fitting(number, [text for text in job if text not in absent])
+            return tuple(job)
+
+        fit = list(dict.fromkeys(fitting(number, job) for number, job in enumerate(jobs)))
+        notes = []
+        for text, errors in lost.items():
+            those = [str(number) for number, job in enumerate(fit) if text in job]
+            if not those:  # that of the job that has most of it
+                raise max(errors, key=lambda error: str(error).find(":"))
+            notes.append(f"{text}: for job {', '.join(those)} alone; the others have no such key\n")
+        return [*fit], notes
+
+    def _composed(self, number: int, overrides: Sequence[str]) -> DictConfig:
+        """The configuration of a job, with Hydra's own; UsageError if there is none."""
+        assert self.config is not None
+        assert self.hydra_context is not None
+        loader = self.hydra_context.config_loader
+        try:
+            return loader.load_sweep_config(self.config, list(overrides))
+        except HydraException as error:
+            raise UsageError(f"{explain(error)} ({self._called(number)})") from error
+
     def _checked(self, jobs: Sequence[Sequence[str]], typed: Sequence[str]) -> list[DictConfig]:
         """The configuration of each job, after all checks that need no compilation.
 
         Jobs that run elsewhere are built with the physics that needs no GPU here.
         """
         assert self.config is not None
-        assert self.hydra_context is not None
         refuse_new_keys(jobs[0], self.config.hydra.overrides.hydra)
         configs = []
-        loader = self.hydra_context.config_loader
         for number, overrides in enumerate(jobs):
-            try:
-                config = loader.load_sweep_config(self.config, list(overrides))
-            except HydraException as error:
-                raise UsageError(f"{explain(error)} ({self._called(number)})") from error
+            config = self._composed(number, overrides)
             hydra = config.hydra
             with open_dict(config):
                 del config["hydra"]
@@ -153,8 +193,9 @@ class Sweeper(BasicSweeper):
             try:
                 with command.as_typed(overrides):
                     _check(together.expanded(config, overrides))
-            except UsageError as error:
-                raise UsageError(f"{error} ({self._called(number)})") from error
+            except (UsageError, OmegaConfBaseException) as error:
+                line = error if isinstance(error, UsageError) else explain(error)
+                raise UsageError(f"{line} ({self._called(number)})") from error
         return configs
 
     def _called(self, number: int) -> str:

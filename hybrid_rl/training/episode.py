@@ -7,9 +7,11 @@ clip(u + action_noise N(0, I)). An expert who is disturbed in this way demonstra
 
 from dataclasses import dataclass
 from functools import partial
+from numbers import Real
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from hybrid_rl.core.batching import when_any, where
@@ -60,19 +62,19 @@ class Episode:
                 raise ValueError(f"episode.{name}={value}: {line}")
         for name in user_functions.METHODS:
             user_functions.check(name, getattr(self, name), self.env.spec)
-        if self.action_noise < 0:
+        if not (isinstance(self.action_noise, Real) and self.action_noise >= 0):
             raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
         if not any(self._std):
             return
         sizes = (1, self.env.spec.obs)
-        if len(self._std) not in sizes or min(self._std) < 0:
+        right = all(isinstance(each, Real) and each >= 0 for each in self._std)
+        if len(self._std) not in sizes or not right:
             line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
-            raise ValueError(f"episode.sensor_noise={list(self._std)}: {line}")
+            raise ValueError(f"episode.sensor_noise={self.sensor_noise}: {line}")
 
     @property
     def _std(self) -> tuple[float, ...]:
-        given = self.sensor_noise
-        return (given,) if isinstance(given, (int, float)) else tuple(given)
+        return tuple(np.atleast_1d(self.sensor_noise).tolist())
 
     @property
     def spec(self) -> Spec:

@@ -11,6 +11,8 @@ RAW = {
     "chosen": {"size": "${other.size}", "inner": {"gain": 1}},
     "other": {"size": 2, "gain": 5},
     "idle": {"size": 7, "inner": {"gain": 2}, "part": "${chosen}"},
+    "reader": {"wide": "${taken.wide}"},
+    "taken": {"_target_": "a.B", "wide": 1},  # a part of which one value is read
     "name": "a",
     "listed": 4,
 }
@@ -38,6 +40,8 @@ def test_a_key_is_found_where_its_value_is():
         ("other.size=1", {}),
         ("other.gain=1", {"other.gain": "chosen.inner.gain"}),
         ("idle.inner=null", {"idle.inner": "chosen.inner"}),
+        ("taken=1", {"taken": ""}),
+        ("taken.wide=1", {}),
         ("idle.size=1", {"idle.size": "other.size"}),
         ("+everywhere=1", {}),  # a group that spreads over the whole configuration
         ("~idle.size", {}),
@@ -46,7 +50,7 @@ def test_a_key_is_found_where_its_value_is():
 )
 def test_a_key_that_nothing_reads_is_named_with_one_that_is_read(typed, lost):
     config = OmegaConf.create(RAW)
-    assert overrides.unused(config, overrides.parse([typed]), ["loop"]) == lost
+    assert overrides.unused(config, overrides.parse([typed]), ["loop", "reader"]) == lost
 
 
 @pytest.mark.parametrize(

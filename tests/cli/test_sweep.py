@@ -12,7 +12,7 @@ import pytest
 from hydra.errors import MissingConfigException
 from tiny import TINY, call_train
 
-from hybrid_rl import composition
+from hybrid_rl import composition, train
 
 pytestmark = pytest.mark.turns(3)
 
@@ -56,9 +56,13 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
         ("policy_learner.tau=0.005,3", "tau=3: must lie in (0, 1] (job 1: policy_learner.tau=3)"),
         ("algo=sac,scal", "algo=scal: unknown; choose one of the "),
         (
-            "algo=sac,kle3 explorer.horizon=3",
+            "algo=sac,nn_mppi explorer.horizon=3",
             "explorer: unknown key; did you mean expert? (job 0: algo=sac)",
         ),
+        ("algo=sac,kle3 target=mixture explorer.horizn=3", "explorer.horizn: unknown key; did you"),
+        ("algo=kle3,sac adjoint_planner.horizon=3", "kle3, sac do not use it"),
+        ("algo=sac,nn_mppi target=mixture", "target: the method has no such part; "),
+        ("algo=nn_mppi,sac objective=kl_ergodic", "sets (job 0: algo=nn_mppi)"),
         (  # both have an explorer, which the default method has not
             "algo=kle3,fourier_ergodic explorer.horizon=3 domain.low=[0,0] seed=-1",
             "must be a whole number, 0 or more (job 0: algo=kle3)",
@@ -80,6 +84,20 @@ def test_a_job_that_cannot_run_is_found_before_the_first(tmp_path, capfd, given,
     assert words in err
     assert err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_key_or_a_part_is_for_the_methods_that_have_it(tmp_path, capfd, monkeypatch):
+    """Of sac, which has neither, is one job, whatever their values are."""
+    given = []
+    monkeypatch.setattr(train, "_job", lambda config: given.append(config))
+    line = ["algo=sac,kle3", "explorer.horizon=3,4", "target=mixture"]
+    assert call_train("-m", *TINY, *line) == 0
+    assert [each.algo for each in given] == ["sac", "kle3", "kle3"]
+    assert [each.explorer.horizon for each in given[1:]] == [3, 4]
+    assert table(tmp_path)[0]["overrides"] == "algo=sac"
+    out = capfd.readouterr().out
+    assert "explorer.horizon=4: for job 2 alone; the others have no such key" in out
+    assert "target=mixture: for job 1, 2 alone; the others have no such key" in out
 
 
 def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):

@@ -108,6 +108,15 @@ def test_a_heavier_cart_accelerates_less_by_the_factor():
     assert speed[1.0][0] > 0.1
 
 
+@pytest.mark.parametrize("task", ROBOTS)
+def test_a_payload_is_on_the_body_that_the_task_names(task):
+    text = (config.CONF / "task" / f"{task}.yaml").read_text(encoding="utf-8")
+    (line,) = [line for line in text.splitlines() if line.strip().startswith("payload:")]
+    plain, loaded = (changed(task, payload=value)._body.model for value in (0.0, 0.5))
+    (root,) = np.flatnonzero(loaded.body_mass != plain.body_mass)
+    assert line.endswith(f"at the centre of mass of the {plain.body(root).name}")
+
+
 def test_a_payload_of_the_cart_is_mass_of_the_cart():
     model = changed("cartpole", mass=2.0, payload=3.0)._body.model
     np.testing.assert_allclose(model.body_mass, [0, 2 * 10.472 + 3, 2 * 5.019])

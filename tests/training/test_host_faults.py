@@ -63,6 +63,23 @@ def test_spaces_of_any_form_are_flattened():
 
 
 @pytest.mark.parametrize(
+    ("obs", "line"),
+    [
+        ({"a": np.ones((2, 2))}, "obs lacks the key 'b' of its space, Dict('a': Box("),
+        (np.ones(7), "obs does not fit its space, Dict('a': Box("),
+    ],
+)
+@pytest.mark.parametrize("method", ["reset", "step"])
+def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
+    returned = (obs, {}) if method == "reset" else (obs, 0.0, False, False, {})
+    kind = type("Wrong", (Odd,), {method: lambda self, *_, **options: returned})
+    with pytest.raises(UsageError) as error:
+        External(make=kind)
+    assert line in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
     ("given", "line"),
     [
         ({}, "give an id of Gymnasium, or env.make=MODULE:CLASS"),
@@ -73,6 +90,7 @@ def test_spaces_of_any_form_are_flattened():
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
         ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
         ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
+        ({"id": "Pendulum-v1", "kwargs": 3}, "env.kwargs=3: must be {KEY: VALUE}"),
         ({"id": "Pendulum-v1", "timeout_s": 1.0}, "with env.processes=true"),
     ],
 )
