@@ -99,7 +99,7 @@ def explain(error: Exception) -> str:
         if group == "hydra/launcher" and SLURM not in known:
             close = f"; submitit_local and {SLURM} need {install('slurm')}"
         if not close and deep == 1:
-            close = f"; your own {group}/{value}.yaml needs --config-dir FOLDER"
+            close = f"; your own {group}/{value}.yaml needs config_dir=FOLDER"
         return f"{group}={value}: unknown; {_choice(value, known)}{close}"
     cause, text = error.__cause__, str(error)
     absent = _absent(error)

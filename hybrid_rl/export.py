@@ -15,7 +15,8 @@ state: [w] uint32, zeros at the start of an episode; key: [2] uint32, others at 
 other formats hold the layers of a multilayer perceptron, or of a linear policy: a .npz, with a
 Python file next to it that has act(obs) in NumPy; an .onnx, obs [N, o] -> action [N, m]
 (`pip install "hybrid_rl[onnx]"`); a .h, a function of C99. All include the parameters and the
-normalisation of the observations [o]. Actions are [m] in [-1, 1], without exploration.
+normalisation of the observations [o]. Actions are [m] in [-1, 1], of a Gymnasium environment or a
+robot within its bounds, without exploration.
 """
 
 if __name__ == "__main__":
@@ -59,14 +60,25 @@ ARGUMENTS = (
 
 
 def program(
-    spec: Spec, controller: Controller, params: Params, platforms: Sequence[str] = ("cpu",)
+    spec: Spec,
+    controller: Controller,
+    params: Params,
+    platforms: Sequence[str] = ("cpu",),
+    span: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> jax.export.Exported:
-    """The controller with `params` as a program of the form that this module's docstring gives."""
+    """The controller with `params` as a program of the form that this module's docstring gives.
+
+    span: middle [m] and half the width [m] of the actions' bounds; None: they are -1 and 1.
+    """
+
+    def scaled(u: Array) -> Array:
+        return u if span is None else span[0] + span[1] * jnp.clip(u, -1.0, 1.0)
+
     obs = jax.ShapeDtypeStruct((spec.obs,), jnp.float32)
     if isinstance(controller, PolicyController):
 
         def act(obs: Array) -> Array:
-            return controller.act(params, (), obs, jax.random.key(0))[0]
+            return scaled(controller.act(params, (), obs, jax.random.key(0))[0])
 
         return _exported(act, platforms, obs)
     first = controller.init(spec)
@@ -76,7 +88,7 @@ def program(
         count, now = _tree(state, (jnp.zeros((), jnp.uint32), first))
         now = jax.tree.map(lambda begin, later: jnp.where(count == 0, begin, later), first, now)
         u, now, _ = controller.act(params, now, obs, jax.random.wrap_key_data(key))
-        return u, _words((count + 1, now))
+        return scaled(u), _words((count + 1, now))
 
     two = jax.ShapeDtypeStruct((2,), jnp.uint32)
     state = jax.ShapeDtypeStruct(words.shape, jnp.uint32)
@@ -175,9 +187,10 @@ def main() -> None:
     if out.suffix == ".npz":
         _check_script(out)
     if out.suffix != ".stablehlo":
-        print(_saved(out, trained.task, spec, layers(spec, controller, params)))
+        net = layers(spec, controller, params)._replace(span=trained.span)
+        print(_saved(out, trained.task, spec, net))
         return
-    made = program(spec, controller, params, given["platforms"])
+    made = program(spec, controller, params, given["platforms"], trained.span)
     out.write_bytes(made.serialize())
     print(f"{out}: {trained.task}, {given['mode']}, {', '.join(given['platforms'])}")
     print(f'  f = jax.jit(jax.export.deserialize(open("{out.name}", "rb").read()).call)')

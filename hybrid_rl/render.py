@@ -158,13 +158,14 @@ def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
     import jax
 
     from hybrid_rl.analysis.drawing import write
+    from hybrid_rl.training.acting import TrainedPolicy
     from hybrid_rl.training.host_loop import seed_of
     from hybrid_rl.training.rollout import evaluation_keys
 
     if given["at"] or (given["width"], given["height"]) != (640, 480):
         raise UsageError("at, width, height: a Gymnasium environment draws itself in its own size")
     seed, world = given["seed"], trained.episode
-    policy = trained.policy(seed, given["mode"])
+    policy = TrainedPolicy(world.spec, *trained.learner(seed, given["mode"]))
     key = evaluation_keys(trained.seeds[0] if seed is None else seed, given["episode"] + 1)[-1]
     seeds = [seed_of(*map(int, jax.random.key_data(key)))]
     copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")

@@ -2,7 +2,7 @@
 
     policy = load("runs/hopper/sac/TIME").policy(seed=0)
     policy.reset()  # at the start of every episode
-    action = policy(obs)  # [m] in [-1, 1]
+    action = policy(obs)  # [m] in [-1, 1]; within the bounds of a Gymnasium environment or a robot
 
 `load` reads the folder of a run, `read` a file of hybrid_rl.data.trained: one of policies/, which
 come with the package, or the user's. The `about` of a file is JSON with the world, the episode and
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import jax
+import numpy as np
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
@@ -65,7 +66,18 @@ class Trained:
         Raises:
             UsageError: for a seed or a mode that the run does not have.
         """
-        return TrainedPolicy(self.episode.spec, *self.learner(seed, mode), key)
+        return TrainedPolicy(self.episode.spec, *self.learner(seed, mode), key, self.span)
+
+    @property
+    def span(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Middle [m] and half the width [m] of the actions' bounds; None: they are -1 and 1.
+
+        A Gymnasium environment and a robot have bounds of their own.
+        """
+        low, high = getattr(self.episode.env, "bounds", (np.float32(-1), np.float32(1)))
+        if (low == -1).all() and (high == 1).all():
+            return None
+        return np.float32(low / 2 + high / 2), np.float32(high / 2 - low / 2)
 
     def learner(
         self, seed: int | None = None, mode: str = "full", world: bool = False

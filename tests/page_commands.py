@@ -67,7 +67,7 @@ def listed(one: Override) -> list[str]:
 def training(page: str) -> list[tuple[str, ...]]:
     """Overrides of the jobs of the page's training commands, without those in a reader's folder."""
     lines = [words for name, words in commands(page) if name == "train"]
-    lines = [words for words in lines if "--config-dir" not in words]
+    lines = [words for words in lines if "config_dir=my_conf" not in words]
     return sorted({first_run(job) for words in lines for job in jobs(words)})
 
 

@@ -81,6 +81,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ),
     ("demonstrate task=panda_stack out=/dev/null/a.npz", 2, "a.npz: there is no folder /dev/null"),
     ("evaluate run = {trained}", 2, "run: write run="),
+    ("evaluate run={trained} --config-dir mine", 2, "--config-dir: write config_dir=mine"),
     ("list tasks", 2, "tasks: unknown argument; give key=value with config_dir"),
     ("list config_dir=nowhere", 2, "config_dir=nowhere: no such folder"),
 ]

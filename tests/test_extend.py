@@ -46,7 +46,7 @@ def conf(tmp_path, monkeypatch):
     for group in ("algo", "target", "task"):
         (tmp_path / "my_conf" / group).mkdir(parents=True)
     yield tmp_path / "my_conf"
-    for name in ("ring", "reward_average", "kettle", "crane", "swing", "reach", "upright"):
+    for name in ("ring", "reward_average", "kettle", "crane", "swing", "reach", "upright", "refit"):
         if name not in modules:
             sys.modules.pop(name, None)
 
@@ -94,7 +94,7 @@ def test_a_configuration_folder_that_does_not_exist_is_one_line():
 
 def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
     """Trained with the command of the page."""
-    arguments = re.search(r"--config-dir my_conf (task=point_mass .*?)`", section("A part"))[1]
+    arguments = re.search(r"config_dir=my_conf (task=point_mass .*?)`", section("A part"))[1]
     written = train(ring, tmp_path / "run", *arguments.split(), "explorer.horizon=3")
     assert capfd.readouterr().err == ""
     objective = written.controllers.full.controller.objective
@@ -157,7 +157,7 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
     (tmp_path / "crane.py").write_text(code)
     (tmp_path / "crane.xml").write_text(xml)
     (conf / "task" / "crane.yaml").write_text(yaml)
-    train(conf, tmp_path / "run", "task=crane", "algo=sac", "episode.steps=10")
+    train(conf, tmp_path / "run", "task=crane", "algo=sac", "episode.steps=10", "env.mass=1.5")
     assert capfd.readouterr().err == ""
     trained = evaluate.load(tmp_path / "run")
     assert (evaluate.evaluate(trained, episodes=1)["return"] < 0).all()
@@ -167,6 +167,17 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
         picture = tmp_path / "crane.gif"
         render.draw_film(trained.episode, film, picture, 64, 48)
         assert picture.stat().st_size > 0
+
+
+def test_a_planner_is_one_file(conf, tmp_path):
+    """It trains by the files of the page, and its run logs its metric."""
+    code, fields, method = blocks("A planner of your own", HOWTO)
+    (tmp_path / "refit.py").write_text(code)
+    (conf / "controller").mkdir()
+    (conf / "controller" / "mine.yaml").write_text(fields)
+    (conf / "algo" / "mine.yaml").write_text(method)
+    train(conf, tmp_path / "run", "task=pendulum", "algo=mine", "mine.horizon=3")
+    assert '"planner/std"' in (tmp_path / "run" / "metrics.jsonl").read_text()
 
 
 def test_a_reward_is_one_file_that_the_environment_pays(conf, tmp_path, capsys):

@@ -59,8 +59,8 @@ class Copies:
     def _bounds(self) -> tuple[np.ndarray, np.ndarray, tuple[int, ...], Any]:
         """Bounds of actions: the lowest [m], their width [m]; shape and dtype of the space."""
         space = self.env.known.space
-        low = space.low.ravel()
-        return low, space.high.ravel() - low, space.shape, space.dtype
+        low, high = self.env.bounds
+        return low, high - low, space.shape, space.dtype
 
     def reset(self) -> np.ndarray:
         """The first observations [N, o]; the first call seeds the environments."""

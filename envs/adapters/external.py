@@ -34,6 +34,7 @@ KINDS = "its spaces must be numbers: actions a Box with finite bounds; observati
 KINDS += "that Gymnasium flattens (Box, Discrete, Dict, Tuple)"
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
 RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
+UNKNOWN = (gymnasium.error.NamespaceNotFound, gymnasium.error.NameNotFound)
 HUGE = 100_000  # entries; an image has as many
 WIDE = 1_000  # of a small image
 
@@ -79,6 +80,12 @@ class External(Made):
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
         return self.known.spec
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """The least and the greatest action [m], in the environment's units."""
+        space = self.known.space
+        return space.low.ravel(), space.high.ravel()
 
     def step(self, state: EnvState, action: Array) -> NoReturn:
         """No JAX function.
@@ -152,6 +159,8 @@ def _known(env: External) -> Known:
     except FAULTS as error:
         key = "make" if env.make else "id"
         line = blame(error)
+        if isinstance(error, UNKNOWN) and ":" not in env.id and "Did you mean" not in line:
+            line += f" One that a module of yours registers is env.id=MODULE:{env.id}"
         raise UsageError(f"env.{key}={env.name}: {line}") from error
     space, obs = one.action_space, one.observation_space
     bounded = isinstance(space, Box) and bool(np.isfinite([space.low, space.high]).all())

@@ -109,7 +109,7 @@ def curves(
         key for key, members in groups.items() if any(np.isfinite(each.y).any() for each in members)
     )
     lines = _lines(notes, drawn)
-    return [_curve(key, metric, groups[key], smooth, lines[key]) for key in drawn]
+    return [curve_of(key, metric, groups[key], smooth, lines[key]) for key in drawn]
 
 
 def iqm(values: np.ndarray) -> np.ndarray:
@@ -240,7 +240,9 @@ def _duplicates(learners: list[tuple[int, float]]) -> list[str]:
     return [f"seeds {seeds} are in several run folders and count in each"] if seeds else []
 
 
-def _curve(key: Key, metric: str, members: list[Learner], smooth: float, notes: list[str]) -> Curve:
+def curve_of(
+    key: Key, metric: str, members: list[Learner], smooth: float, notes: Sequence[str] = ()
+) -> Curve:
     """The curve of the learners `members`."""
     (task, label), lines = key, list(notes)
     seeds = tuple(each.seed for each in members)

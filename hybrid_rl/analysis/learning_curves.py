@@ -7,7 +7,8 @@ settings (hybrid_rl.analysis.curves). Several metrics, such as
 metric=train/return,planner/mode_insertion_gradient, are one row of panels each. x=wall_s plots over
 time, x=KEY over a number that was swept, such as num_demonstrations. runs=FILE.json redraws a
 figure from its JSON. out=FILE.csv writes a table instead, a value of a seed in each row, with the
-columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.long_table).
+columns exp_name, env_name, seed, metric, env_step, value (hybrid_rl.analysis.long_table);
+others=FILE.csv draws the curves of such a table, of another library's runs, beside these.
 
 The summary has the last value, the mean over the run (the area under the curve), the decisions to
 reach threshold=, and in which share of pairs of seeds one method is ahead of another. Notes on
@@ -20,6 +21,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
+from hybrid_rl.analysis import long_table
 from hybrid_rl.analysis.curves import (
     Curve,
     area,
@@ -31,7 +33,6 @@ from hybrid_rl.analysis.curves import (
     steps_to,
 )
 from hybrid_rl.analysis.curves_picture import plot
-from hybrid_rl.analysis.long_table import long_table
 from hybrid_rl.cli.arguments import number
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.reading import json_file
@@ -51,13 +52,18 @@ def figure(
     group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
     smooth: Annotated[float, "width of a moving mean, in units of x", WIDTH] = 0.0,
     threshold: Annotated[float | None, "value of the metric to reach", VALUE] = None,
+    others: Annotated[str, "a table as out=FILE.csv writes, to draw beside the runs"] = "",
 ) -> tuple["Figure", dict[str, Any]]:
     """The learning curves of `runs`, and their numbers."""
+    if others and (x != "step" or str(runs).endswith(".json")):
+        raise UsageError("others: is drawn beside folders of runs, over decisions (x=step)")
     if str(runs).endswith(".json"):
         numbers = _read(runs)
     else:
         metrics = [name.strip() for name in metric.split(",")]
         each = [curves(runs, name, x, group, smooth) for name in metrics]
+        for name, ours in zip(metrics if others else (), each, strict=False):
+            ours += long_table.read(others, name, [curve.task for curve in ours], smooth)
         numbers = {
             "metric": metric,
             "x": x,
@@ -106,7 +112,7 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 
 def table(numbers: dict[str, Any]) -> str:
     """The curves as text of a long table."""
-    return long_table(from_numbers(numbers), numbers["x"])
+    return long_table.text(from_numbers(numbers), numbers["x"])
 
 
 def to_numbers(curve: Curve) -> dict[str, Any]:

@@ -9,18 +9,21 @@ exp_name is the label of the curve, env_name the task, env_step the number of de
 
 import csv
 import io
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import Curve
+from hybrid_rl.analysis.curves import Curve, curve_of
+from hybrid_rl.analysis.logged import Learner
 from hybrid_rl.errors import UsageError
 
 COLUMNS = ("exp_name", "env_name", "seed", "metric", "env_step", "value")
 NAMES = {"eval/return": "avg_return"}
 
 
-def long_table(drawn: Sequence[Curve], x: str) -> str:
+def text(drawn: Sequence[Curve], x: str) -> str:
     """The text of the table; a missing value has no row.
 
     Raises:
@@ -28,8 +31,8 @@ def long_table(drawn: Sequence[Curve], x: str) -> str:
     """
     if x != "step":
         raise UsageError(f"x={x}: a table is over decisions; give x=step, or a picture as out")
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
+    out = io.StringIO()
+    rows = csv.writer(out, lineterminator="\n")
     rows.writerow(COLUMNS)
     for curve in drawn:
         metric = NAMES.get(curve.metric, curve.metric)
@@ -37,4 +40,37 @@ def long_table(drawn: Sequence[Curve], x: str) -> str:
             for step, value in zip(curve.x, values.astype("float32"), strict=True):
                 if np.isfinite(value):
                     rows.writerow((curve.label, curve.task, seed, metric, f"{step:.10g}", value))
-    return text.getvalue()
+    return out.getvalue()
+
+
+def read(file: str | Path, metric: str, tasks: Iterable[str], smooth: float = 0.0) -> list[Curve]:
+    """The curves of `metric` in a table with these columns, labelled by exp_name and its file.
+
+    tasks: of the runs that they are drawn beside.
+
+    Raises:
+        UsageError: if the file is no such table, or has nothing of the metric or another task.
+    """
+    found: dict = defaultdict(lambda: defaultdict(list))
+    try:
+        with open(file, newline="", encoding="utf-8-sig") as lines:
+            for row in csv.DictReader(lines):
+                point = float(row["env_step"]), float(row["value"])
+                if row["metric"] in (metric, NAMES.get(metric)):
+                    found[row["env_name"], row["exp_name"]][int(row["seed"])].append(point)
+    except OSError as error:
+        raise UsageError(f"others={file}: {error.strerror}") from error
+    except (KeyError, ValueError, TypeError) as error:
+        raise UsageError(f"others={file}: must have the columns {', '.join(COLUMNS)}") from error
+    if not found:
+        raise UsageError(f"others={file}: no row's metric is {NAMES.get(metric, metric)}")
+    if strange := sorted({task for task, _ in found} - set(tasks)):
+        has = ", ".join(sorted(set(tasks)))
+        raise UsageError(f"others={file}: env_name {strange[0]} is no task of the runs, {has}")
+    members = {
+        (task, f"{name} ({Path(file).name})"): [
+            Learner(Path(file), seed, *np.array(sorted(points)).T) for seed, points in each.items()
+        ]
+        for (task, name), each in found.items()
+    }
+    return [curve_of(key, metric, learners, smooth) for key, learners in members.items()]

@@ -194,7 +194,7 @@ def _refusal(
     given = line[at]
     renamed.check([given])
     name = given.partition("=")[0].lstrip("-")
-    if name in named:
+    if name.replace("-", "_") in named:
         return f"{given}: write {as_pair(line, at)}"
     if "runs" in named and Path(given).exists():
         return f'{given}: unknown argument; quote the pattern: runs="GLOB"'

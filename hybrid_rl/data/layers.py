@@ -1,6 +1,7 @@
 """A multilayer perceptron as a file that runs elsewhere: NumPy, ONNX, or a C header.
 
-Each holds u = squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) with its numbers.
+Each holds u = squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) with its numbers, or
+middle + half u where the world's actions have other bounds than -1 and 1.
 """
 
 import re
@@ -36,7 +37,7 @@ C = {  # the same of a double z
     "elu": "z > 0 ? z : expm1(z)",
     "clip": "z < -1 ? -1 : z > 1 ? 1 : z",
 }
-SCRIPT = '''"""The policy of {task}: obs [{o}] -> action [{m}] in [-1, 1], every {dt:g} s."""
+SCRIPT = '''"""The policy of {task}: obs [{o}] -> action [{m}] {within}, every {dt:g} s."""
 
 from pathlib import Path
 
@@ -54,7 +55,7 @@ P = dict(np.load(Path(__file__).with_suffix(".npz")))
         x = {activation}
     return {squash}
 '''
-HEADER = """/* The policy of {task}: observation [{o}] -> action [{m}] in [-1, 1], every {dt:g} s.
+HEADER = """/* The policy of {task}: observation [{o}] -> action [{m}] {within}, every {dt:g} s.
 
    C99; link with -lm. No memory is allocated. */
 #ifndef {guard}
@@ -78,7 +79,7 @@ static int {name}_act(const float x[{o}], float u[{m}])
     }}
 {layers}
     for (i = 0; i < {m}; i++)
-        u[i] = (float)a[i];
+        u[i] = (float)({action});
     return 0;
 }}
 #endif
@@ -100,6 +101,7 @@ def save_numpy(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
     """
     archive.write(out, task, spec, dict(_arrays(net)))
     last, layer = len(net.weights), 'x @ P[f"W{i}"] + P[f"b{i}"]'
+    squash = NUMPY[net.squash].format(f'x @ P["W{last}"] + P["b{last}"]')
     code = SCRIPT.format(
         task=repr(task),
         o=int(spec.obs),
@@ -108,7 +110,8 @@ def save_numpy(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
         last=last,
         defined=DEFINED.get(net.activation, ""),
         activation=NUMPY[net.activation].format(layer),
-        squash=NUMPY[net.squash].format(f'x @ P["W{last}"] + P["b{last}"]'),
+        squash=squash if net.span is None else f'P["middle"] + P["half"] * {squash}',
+        within=_within(net),
     )
     script = out.with_suffix(".py")
     script.write_text(code, encoding="utf-8")
@@ -139,6 +142,8 @@ def save_c(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
         dt=float(spec.dt),
         guard=name.upper(),
         name=name,
+        within=_within(net),
+        action="a[i]" if net.span is None else f"{name}_middle[i] + {name}_half[i] * a[i]",
         widest=max(max(W.shape) for W in net.weights),
         arrays="\n".join(lines),
         layers="\n".join(layers),
@@ -165,7 +170,10 @@ def save_onnx(out: Path, task: str, spec: Spec, net: Perceptron) -> None:
     for i in range(1, len(net.weights) + 1):
         x = node("Gemm", [x, f"W{i}", f"b{i}"], f"z{i}")
         function = net.squash if i == len(net.weights) else net.activation
-        x = _function(node, function, x, "action" if i == len(net.weights) else f"a{i}")
+        last = i == len(net.weights)
+        x = _function(node, function, x, "action" if last and net.span is None else f"a{i}")
+    if net.span is not None:
+        node("Add", [node("Mul", [x, "half"], "swing"), "middle"], "action")
     arrays = {**dict(_arrays(net)), "low": np.float32(-1), "high": np.float32(1)}
     used = {name for each in nodes for name in each.input}
     kept = [
@@ -201,6 +209,17 @@ def _arrays(net: Perceptron) -> Iterator[tuple[str, np.ndarray]]:
     for i, (weights, bias) in enumerate(zip(net.weights, net.biases, strict=True), 1):
         yield f"W{i}", weights
         yield f"b{i}", bias
+    if net.span is not None:
+        yield from zip(("middle", "half"), net.span, strict=True)
+
+
+def _within(net: Perceptron) -> str:
+    """Where an action lies, in words."""
+    if net.span is None:
+        return "in [-1, 1]"
+    middle, half = net.span
+    low, high = (", ".join(f"{x:g}" for x in ends) for ends in (middle - half, middle + half))
+    return f"from [{low}] to [{high}]"
 
 
 def _floats(values: np.ndarray) -> str:

@@ -55,7 +55,7 @@ class MLP(nn.Module):
 
 
 class Perceptron(NamedTuple):
-    """u = squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) as plain arrays."""
+    """u = middle + half squash(W_L a(... a(W_1 (x - mean) / scale + b_1) ...) + b_L) as arrays."""
 
     mean: np.ndarray  # [n]
     scale: np.ndarray  # [n]
@@ -63,6 +63,7 @@ class Perceptron(NamedTuple):
     biases: tuple[np.ndarray, ...]  # [outputs] of each layer
     activation: str
     squash: str  # tanh or clip (to [-1, 1])
+    span: tuple[np.ndarray, np.ndarray] | None = None  # middle [m], half [m]; None: 0 and 1
 
 
 def perceptron(

@@ -17,12 +17,20 @@ from hybrid_rl.types import Params, Spec
 class TrainedPolicy:
     """action = policy(obs): a trained controller without exploration, for one world or N.
 
-    obs is [o], or [N, o] of N worlds side by side; the action is [m] or [N, m], in [-1, 1]. A
-    planner keeps its plan from one call to the next, so call `reset` when an episode begins.
+    obs is [o], or [N, o] of N worlds side by side; the action is [m] or [N, m], in [-1, 1] or, with
+    `span` = (middle [m], half the width [m]), within these bounds. A planner keeps its plan from
+    one call to the next, so call `reset` when an episode begins.
     """
 
-    def __init__(self, spec: Spec, controller: Controller, params: Params, key: int = 0) -> None:
-        self.spec, self._key = spec, jax.random.key(key)
+    def __init__(
+        self,
+        spec: Spec,
+        controller: Controller,
+        params: Params,
+        key: int = 0,
+        span: tuple[np.ndarray, np.ndarray] | None = None,
+    ) -> None:
+        self.spec, self._key, self._span = spec, jax.random.key(key), span
         self._begin = partial(controller.init, spec)
         self._state: Any = None  # [N, ...]; None: an episode begins
         self._worlds = 0  # N
@@ -63,4 +71,5 @@ class TrainedPolicy:
         if len(rows) != self._worlds:
             raise ValueError(f"obs of {len(rows)} worlds after {self._worlds}; reset() first")
         u, self._state, self._key = self._act(self._state, rows, self._key)
-        return np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
+        u = np.asarray(u).reshape(*obs.shape[:-1], self.spec.act)
+        return u if self._span is None else self._span[0] + self._span[1] * np.clip(u, -1, 1)

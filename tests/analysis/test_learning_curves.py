@@ -3,6 +3,7 @@
 import csv
 import itertools
 import json
+import re
 from dataclasses import replace
 
 import imageio.v3 as iio
@@ -12,10 +13,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from tiny import call
 
 from hybrid_rl import figures
+from hybrid_rl.analysis import long_table
 from hybrid_rl.analysis.curves import Curve, iqm
 from hybrid_rl.analysis.learning_curves import figure, from_numbers, plot, summary, to_numbers
 from hybrid_rl.analysis.style import BLUE, COLOURS, GREEN
 from hybrid_rl.cli import command
+from hybrid_rl.errors import UsageError
 from hybrid_rl.figures import save
 
 
@@ -255,6 +258,30 @@ def test_a_table_has_a_row_for_each_value_of_each_seed(tmp_path, capsys):
     assert float(read["sac", "hopper", "avg_return", 2, 200_000]["value"]) == 3000
     assert float(read["hybrid, long", "ant", "train/return", 0, 100_500]["value"]) == 500
     assert ("sac", "hopper", "avg_return", 2, 100_500) not in read
+
+
+def test_a_table_of_others_is_drawn_beside_the_runs(tmp_path, monkeypatch):
+    """What was written is read back, also where a seed lacks a value."""
+    ours, theirs = curve(points=3, metric="eval/return"), curve(points=4, metric="eval/return")
+    theirs.each[2, 1] = np.nan
+    (tmp_path / "sb3.csv").write_text(long_table.text([theirs], "step"))
+    monkeypatch.setattr("hybrid_rl.analysis.learning_curves.curves", lambda *given: [ours])
+    given = {"runs": "a", "metric": "eval/return", "others": str(tmp_path / "sb3.csv")}
+    first, got = from_numbers(figure(**given)[1])
+    assert (first.label, got.label, got.seeds) == ("sac", "sac (sb3.csv)", (0, 1, 2))
+    np.testing.assert_array_equal(got.x, np.float32(theirs.x))
+    np.testing.assert_array_equal(got.each[:2], np.float32(theirs.each[:2]))
+    for change, line in (
+        ({"others": "none.csv"}, "others=none.csv: No such file"),
+        ({"others": __file__}, "must have the columns exp_name, env_name, seed, metric, env_step"),
+        ({"metric": "train/return"}, "no row's metric is train/return"),
+        ({"x": "wall_s"}, "others: is drawn beside folders of runs, over decisions"),
+    ):
+        with pytest.raises(UsageError, match=re.escape(line)):
+            figure(**given | change)
+    ours = curve("ant", metric="eval/return")
+    with pytest.raises(UsageError, match="env_name hopper is no task of the runs, ant"):
+        figure(**given)
 
 
 def test_a_table_over_time_is_refused(tmp_path, capsys):

@@ -14,14 +14,17 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from hosted import counting
 
 from hybrid_rl import config
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
+from hybrid_rl.export import program
+from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, seed_of
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of
-from hybrid_rl.types import EnvState, Spec
+from hybrid_rl.types import EnvState, Params, Spec
 
 pytestmark = pytest.mark.turns(4)
 
@@ -134,6 +137,19 @@ def test_copies_step_as_in_gymnasiums_vector():
         if got.truncated.any():
             obs, _ = vector.reset(options={"reset_mask": got.truncated.copy()})
         np.testing.assert_array_equal(got.following, obs)
+
+
+def test_a_trained_policy_acts_in_the_units_of_its_environment():
+    """What `step` of the user's loop gets from it, or from its program, is what a run gave it."""
+    episode, modes = Episode(counting(), STEPS), {"full": ConstantController(0.5)}
+    trained = Trained("count", episode, modes, Params(), (0,), 0, ())
+    action = trained.policy()(np.ones(2))
+    copies = episode.env.copies([0], STEPS)
+    copies.reset()
+    assert action == copies.step(np.float32([[0.5]])).reward == 2.5  # it pays the action
+    made = program(episode.spec, modes["full"], Params(), span=trained.span)
+    state, key = np.zeros(made.in_avals[1].shape, np.uint32), np.zeros(2, np.uint32)
+    assert made.call(np.ones(2, np.float32), state, key)[0] == 2.5
 
 
 def test_evaluations_have_environments_and_seeds_of_their_own():
