@@ -130,7 +130,7 @@ def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
     (babble / "config.yaml").write_text(settings.replace("koopman_direct", "koopman_babble"))
     out = tmp_path / "f.png"
     runs = f"runs={tmp_path}/runs/*"
-    both = falls.falls(f"{tmp_path}/runs/*", "falls")
+    both = falls.falls(f"{tmp_path}/runs/*")
     monkeypatch.setattr(falls_picture, "falls", lambda pattern, view: both)
     assert draw("view=falls", runs, f"out={out}") == 0
     numbers = json.loads(out.with_suffix(".json").read_text())["methods"]
@@ -145,7 +145,7 @@ def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
     assert draw("view=initial", runs, f"out={out}") == 0
     monkeypatch.undo()
     assert draw("view=falls", f"out={out}") == 2
-    assert "runs: not given; view=falls needs" in capsys.readouterr().err
+    assert "runs: not given; give runs=" in capsys.readouterr().err
 
 
 def test_labels_name_the_settings_that_differ(tmp_path) -> None:
