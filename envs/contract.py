@@ -24,7 +24,7 @@ from jax.extend.core import ClosedJaxpr, Jaxpr
 from hybrid_rl.envs.indices import check as check_indices
 from hybrid_rl.envs.mujoco import mjcf, native, physics, plausible
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS, PhysicsState
-from hybrid_rl.errors import GYMNASIUM, Own, WorldError
+from hybrid_rl.errors import GYMNASIUM, SourceOf, WorldError
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
@@ -46,12 +46,12 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     simulated = is_dataclass(env) and getattr(env, "physics", None) in IMPLEMENTATIONS
     given: Any = env  # `replace` is typed for dataclasses alone
     if simulated:
-        Own(env, WorldError).blamed("reset", physics.check, given.physics)
-    world = Own(replace(given, physics="native") if simulated else env, WorldError)
+        SourceOf(env, WorldError).blamed("reset", physics.check, given.physics)
+    world = SourceOf(replace(given, physics="native") if simulated else env, WorldError)
     _check_members(world)
     key = jax.random.key(0)
     reset = _traced(world, "reset", key)
-    action = jax.ShapeDtypeStruct((world.it.spec.act,), jnp.float32)
+    action = jax.ShapeDtypeStruct((world.object.spec.act,), jnp.float32)
     step = _traced(world, "step", reset.out_info, action)
     _check_trees(world, reset.out_info, step.out_info)
     text, clock = _text(step), _clock(world, step)
@@ -68,26 +68,26 @@ def check(env: Any, decisions: int = 10) -> tuple[str, ...]:
     return (*clock, *(_decide(world, *again, decisions) if decisions else ()))
 
 
-def _traced(world: Own, method: str, *arguments: Any) -> Any:
+def _traced(world: SourceOf, method: str, *arguments: Any) -> Any:
     """`method` traced by JAX, whose result is a valid EnvState."""
 
     def call(*given: Any) -> EnvState:
-        result = getattr(world.it, method)(*given)
+        result = getattr(world.object, method)(*given)
         _check_state(world, method, result)
         return result
 
     return world.blamed(method, jax.jit(call).trace, *arguments)
 
 
-def _check_members(world: Own) -> None:
+def _check_members(world: SourceOf) -> None:
     """Raise WorldError if `spec`, `reset` or `step` is missing or has another form."""
-    env, at = world.it, world.at()
+    env, at = world.object, world.at()
     if isinstance(env, type):
         raise WorldError(f"{env.__module__}: {env.__name__} is a class; give {env.__name__}()")
     if any(kind.__module__.split(".")[0] in ("gym", "gymnasium") for kind in type(env).__mro__):
-        inner = Own(env.unwrapped, WorldError)
-        theirs = type(inner.it).__module__.startswith("gymnasium.")
-        at = f"env: {type(inner.it).__name__}" if theirs else inner.at()
+        inner = SourceOf(env.unwrapped, WorldError)
+        theirs = type(inner.object).__module__.startswith("gymnasium.")
+        at = f"env: {type(inner.object).__name__}" if theirs else inner.at()
         raise WorldError(f"{at} is {GYMNASIUM}")
     spec = world.blamed("spec", getattr, env, "spec", None)
     if not isinstance(spec, Spec):
@@ -103,9 +103,9 @@ def _check_members(world: Own) -> None:
         world.takes(method, *takes)
 
 
-def _check_state(world: Own, method: str, state: Any) -> None:
+def _check_state(world: SourceOf, method: str, state: Any) -> None:
     """Raise WorldError unless `state`, which `method` returned, is an EnvState of the spec."""
-    at, o = world.at(method), world.it.spec.obs
+    at, o = world.at(method), world.object.spec.obs
     if not isinstance(state, EnvState):
         got = "None" if state is None else type(state).__name__
         got = f"a tuple of {len(state)}, as Gymnasium's do" if isinstance(state, tuple) else got
@@ -133,7 +133,7 @@ def _check_state(world: Own, method: str, state: Any) -> None:
             raise WorldError(f"{at}: returned {name} {_described(value)}; it must be a dict")
 
 
-def _check_trees(world: Own, first: EnvState, after: EnvState) -> None:
+def _check_trees(world: SourceOf, first: EnvState, after: EnvState) -> None:
     """Raise WorldError if `step` and `reset` give states of different form.
 
     `info` may lack entries in `step`, as episodes keep them.
@@ -142,7 +142,7 @@ def _check_trees(world: Own, first: EnvState, after: EnvState) -> None:
     one, two, structure = _leaves(first), _leaves(after), jax.tree.structure
     if one == two and structure(first) == structure(after):
         return
-    at, kind = world.at("step"), type(world.it).__name__
+    at, kind = world.at("step"), type(world.object).__name__
     if one == two:  # a list for a tuple, or None for nothing
         raise WorldError(f"{at}: returned a state of another structure than {kind}.reset")
     if isinstance(first.data, PhysicsState) and one.get("data.ctrl") != two.get("data.ctrl"):
@@ -151,19 +151,19 @@ def _check_trees(world: Own, first: EnvState, after: EnvState) -> None:
         )
         raise WorldError(
             f"{at}: gives the physics {given} controls, and its model has {have} actuators; "
-            f"spec.act is {world.it.spec.act}"
+            f"spec.act is {world.object.spec.act}"
         )
     name = next(name for name in (*one, *two) if one.get(name) != two.get(name))
     gives = [f"{name} {each[name]}" if name in each else f"no {name}" for each in (two, one)]
     raise WorldError(f"{at}: returned {gives[0]}, and {kind}.reset {gives[1]}; both must be equal")
 
 
-def _clock(world: Own, step: Any) -> tuple[str, ...]:
+def _clock(world: SourceOf, step: Any) -> tuple[str, ...]:
     """A note if MuJoCo C simulates another time in a decision than spec.dt; `step`: traced.
 
     None where that is not certain, as physics steps stand in a loop or a branch.
     """
-    dt, calls = world.it.spec.dt, list(_physics(step.jaxpr.jaxpr))
+    dt, calls = world.object.spec.dt, list(_physics(step.jaxpr.jaxpr))
     for asset in {asset for asset, _, _ in calls}:
         each = [n for name, n, _ in calls if name == asset]
         h, n = mjcf.load(asset).opt.timestep, sum(each)
@@ -188,7 +188,7 @@ def _physics(program: Jaxpr, once: bool = True) -> Iterator[tuple[str, int, bool
                 yield from _physics(inside, once and bool(straight))
 
 
-def _decide(world: Own, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
+def _decide(world: SourceOf, reset: Any, step: Any, decisions: int) -> tuple[str, ...]:
     """Make random decisions; notes about their episodes.
 
     reset, step: traced. Raises WorldError if a number is not finite, or an index out of range.
@@ -201,7 +201,7 @@ def _decide(world: Own, reset: Any, step: Any, decisions: int) -> tuple[str, ...
     notes = _lines(world, "reset", plausible.of_start, state)
     moved = []
     for i in range(1, decisions + 1):
-        action = rng.uniform(-1, 1, world.it.spec.act).astype(np.float32)
+        action = rng.uniform(-1, 1, world.object.spec.act).astype(np.float32)
         after = world.blamed("step", stepping, state, action)
         tried.append((state, action))
         for name in ("reward", "obs"):
@@ -215,7 +215,7 @@ def _decide(world: Own, reset: Any, step: Any, decisions: int) -> tuple[str, ...
         kept = after.replace(info={**state.info, **after.info})
         state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
     for method, examples in (("reset", [(key,) for key in keys[:2]]), ("step", tried[::9])):
-        world.blamed(method, check_indices, getattr(world.it, method), *examples)
+        world.blamed(method, check_indices, getattr(world.object, method), *examples)
     notes += _lines(world, "step", plausible.of_controls, *moved)
     if ended == decisions:
         line = f"every episode ended after one decision, of {decisions} tried"
@@ -223,7 +223,7 @@ def _decide(world: Own, reset: Any, step: Any, decisions: int) -> tuple[str, ...
     return tuple(notes)
 
 
-def _lines(world: Own, method: str, about: Any, *states: EnvState) -> list[str]:
+def _lines(world: SourceOf, method: str, about: Any, *states: EnvState) -> list[str]:
     """Notes that `about` gives of states of MuJoCo; of others none."""
     data = [state.data for state in states if isinstance(state.data, PhysicsState)]
     return [f"{world.at(method)}: {line}" for line in about(data)]

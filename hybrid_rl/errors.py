@@ -55,15 +55,15 @@ class MisfitError(CheckpointError):
 
 
 @dataclass(frozen=True)
-class Own:
-    """An object, which may be of the user's own, and where the source of its class is."""
+class SourceOf:
+    """Where the class of an object, perhaps the user's, is written; errors that name this."""
 
-    it: Any
-    wrong: type[PartError] = PartError  # what it raises
+    object: Any
+    error: type[PartError] = PartError  # what its methods raise
 
     def at(self, method: str = "") -> str:
         """FILE:LINE: CLASS.METHOD, as far as they are known."""
-        kind = type(self.it)
+        kind = type(self.object)
         name = f"{kind.__name__}.{method}" if method else kind.__name__
         try:
             source = inspect.unwrap(getattr(kind, method)) if method else kind
@@ -75,21 +75,21 @@ class Own:
     def file(self) -> str:
         """The file of the class; "" if it has none."""
         try:
-            return inspect.getsourcefile(type(self.it)) or ""
+            return inspect.getsourcefile(type(self.object)) or ""
         except TypeError:
             return ""
 
     def takes(self, method: str, *names: str) -> None:
-        """Raise `wrong` unless there is such a method, which takes so many arguments."""
+        """Raise `error` unless there is such a method, which takes so many arguments."""
         form = f"{method}({', '.join(('self', *names))})"
-        bound = getattr(self.it, method, None)
+        bound = getattr(self.object, method, None)
         if not callable(bound):
-            raise self.wrong(f"{self.at()} has no {method}; write def {form}")
+            raise self.error(f"{self.at()} has no {method}; write def {form}")
         try:
             inspect.signature(bound).bind(*names)
         except TypeError:
             has = inspect.signature(bound)
-            raise self.wrong(f"{self.at(method)}{has}: must be {form}") from None
+            raise self.error(f"{self.at(method)}{has}: must be {form}") from None
         except ValueError:  # of a built-in function, which says nothing
             pass
 
@@ -102,9 +102,9 @@ class Own:
         except FAULTS as error:
             line = user_line(error, self.file)
             if line is None:
-                raise self.wrong(f"{self.at(method)}: {one_line(error)}") from error
+                raise self.error(f"{self.at(method)}: {one_line(error)}") from error
             where, _, what = line.partition(": ")
-            raise self.wrong(f"{where}: {type(self.it).__name__}.{method}: {what}") from error
+            raise self.error(f"{where}: {type(self.object).__name__}.{method}: {what}") from error
 
 
 def install(extra: str) -> str:

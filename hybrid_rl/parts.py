@@ -26,7 +26,7 @@ from hybrid_rl.fields import FieldError
 
 TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
-ROOMS = (  # folders of hybrid_rl that hold parts
+PART_FOLDERS = (  # folders of hybrid_rl that hold parts
     *("beliefs", "constraints", "controllers", "core", "critics", "data", "envs", "features"),
     *("learners", "models", "objectives", "policies", "proposals", "rewards", "schedules"),
     "targets",
@@ -38,17 +38,16 @@ DEEPEST, SHOWN = 40, 60  # names in a key; characters of a name in a message
 
 
 def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
-    """Every `_target_` in a tree of dicts and lists, with its full key.
+    """Every `_target_` in a tree of dicts and lists, with its full key; outer ones first.
 
     Raises:
         ValueError: for a tree that is nested too deeply.
     """
     if where.count(".") > DEEPEST:
         raise ValueError(f"{printable(where)[:SHOWN]}...: is nested too deeply")
-    pairs = node.items() if isinstance(node, dict) else enumerate(node)
-    for name, value in pairs:
-        if name == TARGET:
-            yield f"{where}{name}", value
+    if isinstance(node, dict) and TARGET in node:
+        yield f"{where}{TARGET}", node[TARGET]
+    for name, value in node.items() if isinstance(node, dict) else enumerate(node):
         if isinstance(value, (dict, list)):
             yield from targets(value, f"{where}{name}.")
 
@@ -145,8 +144,8 @@ def _source(target: Any, near: Path | None) -> Path:
 
 
 def _ours(names: list[str]) -> Path:
-    """The file of the module hybrid_rl.NAMES, which must lie in one of ROOMS."""
-    if len(names) < 2 or names[0] not in ROOMS:
+    """The file of the module hybrid_rl.NAMES, which must lie in one of PART_FOLDERS."""
+    if len(names) < 2 or names[0] not in PART_FOLDERS:
         raise ValueError(NONE)
     for parent in (PACKAGE, PACKAGE.parent) if names[0] == "envs" else (PACKAGE,):
         path = parent.joinpath(*names)

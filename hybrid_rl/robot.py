@@ -25,7 +25,7 @@ from typing import Any
 import jax
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, number, one_of, read
+from hybrid_rl.cli.arguments import Argument, flag, number, read
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
@@ -35,10 +35,10 @@ from hybrid_rl.training.actor import LOST, Actor
 
 HIGHER = 10  # priority of the robot's process, where the system allows it
 ARGUMENTS = (
-    Argument("run", "", "folder of the run"),
+    Argument("run", "", "folder of the run", needed="run=DIR, of a run of task=robot"),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
     Argument("seconds", math.inf, "of motion", number(0.0)),
-    Argument("learning", "false", "true: rows for a learner", one_of("true", "false")),
+    Argument("learning", False, "true: rows for a learner", flag),
 )
 
 
@@ -76,13 +76,11 @@ def _higher() -> None:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    if not given["run"]:
-        raise UsageError("run: give the folder of a run of task=robot")
     for raised in (_real_time, _higher):  # before XLA makes its threads, which have the same
         with suppress(OSError):
             raised()
             break
-    folder, learning = Path(given["run"]), given["learning"] == "true"
+    folder = Path(given["run"])
     files = folder / "robot"
     if not files.is_dir():
         raise UsageError(f"run={folder}: holds no run of task=robot")
@@ -92,7 +90,11 @@ def main() -> None:
         except OSError as error:
             raise UsageError(f"run={folder}: another process moves the robot") from error
         (files / "stop").unlink(missing_ok=True)
-        _move(_learning(folder) if learning else _trained(folder, given["mode"]), given, files)
+        _move(
+            _learning(folder) if given["learning"] else _trained(folder, given["mode"]),
+            given,
+            files,
+        )
 
 
 def _move(actor: Actor, given: dict[str, Any], files: Path) -> None:

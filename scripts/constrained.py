@@ -84,7 +84,7 @@ def main() -> None:
     known = acting(trained, other)
     wanted = listed(given["rows"]) or list(known)
     if lost := [name for name in wanted if name not in known]:
-        raise UsageError(f"rows={lost[0]}: choose of {'; '.join(known)}")
+        raise UsageError(f"rows={lost[0]}: choose from {'; '.join(known)}")
 
     def rows() -> Iterator[Row]:
         for name in wanted:

@@ -91,7 +91,7 @@ def goals(only: list[str], who: list[str]) -> Iterator[tuple[str, str, Agent]]:
         known["both: gradient, quick"] = quicker(known["both: gradient"])
         for name in who or WHO:
             if name not in known:
-                raise UsageError(f"who={name}: choose of {'; '.join(WHO)}")
+                raise UsageError(f"who={name}: choose from {'; '.join(WHO)}")
             yield robot, name, replace(agent, controller=known[name])
 
 

@@ -19,15 +19,14 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from textwrap import dedent
-from typing import Any
 
-from omegaconf import DictConfig, ListConfig
+from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import composition, config
 from hybrid_rl.errors import UsageError
+from hybrid_rl.parts import targets
 from scripts.browser import robots
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -169,8 +168,8 @@ def methods() -> None:
 def parts(method: str) -> list[str]:
     """Classes of the method's controllers and learners, by their full names, without the world."""
     composed = composed_on_a_task(method)
-    found = [*targets(composed.controllers), *targets(composed.learners)]
-    return list(dict.fromkeys(name for name in found if ".envs." not in name))
+    found = targets([OmegaConf.to_container(composed[k]) for k in ("controllers", "learners")])
+    return list(dict.fromkeys(name for _, name in found if ".envs." not in name))
 
 
 def composed_on_a_task(method: str) -> DictConfig:
@@ -181,18 +180,6 @@ def composed_on_a_task(method: str) -> DictConfig:
         except (UsageError, ValueError):
             continue
     raise ValueError(f"algo={method}: fits none of {', '.join(TASKS)}")
-
-
-def targets(node: Any) -> Iterator[str]:
-    """The `_target_` of every part in a configuration, outer ones first."""
-    if isinstance(node, DictConfig):
-        if "_target_" in node:
-            yield node._target_
-        for value in node.values():
-            yield from targets(value)
-    elif isinstance(node, ListConfig):
-        for value in node:
-            yield from targets(value)
 
 
 def described(name: str) -> str:

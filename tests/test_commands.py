@@ -14,7 +14,7 @@ import jax
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train, contents, run
+from tiny import TINY, call, call_train, contents, rows_of, run, summary_of
 
 from hybrid_rl import config, evaluate, figures, render
 from hybrid_rl.analysis.curves import curves
@@ -50,14 +50,6 @@ def swept(tmp_path_factory):
     return parent
 
 
-def rows(folder):
-    return [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
-
-
-def summary(folder):
-    return json.loads((folder / "summary.json").read_text())
-
-
 def test_a_run_folder_holds_what_it_should(trained):
     result = {path.name for path in trained.iterdir()}
     assert result == {"config.yaml", "metrics.jsonl", "tensorboard", "checkpoints", "summary.json"}
@@ -78,9 +70,9 @@ def test_the_configuration_is_resolved_and_builds(trained):
 
 
 def test_rows_have_coordinates_and_known_names(trained):
-    steps = [row["step"] for row in rows(trained)]
+    steps = [row["step"] for row in rows_of(trained)]
     assert steps == sorted(steps)
-    for row in rows(trained):
+    for row in rows_of(trained):
         assert (type(row["step"]), row["seed"], type(row["wall_s"])) == (int, 0, float)
         names = row.keys() - {"step", "seed", "wall_s"}
         assert names
@@ -89,11 +81,11 @@ def test_rows_have_coordinates_and_known_names(trained):
 
 
 def test_rows_have_the_documented_names(trained):
-    names = {name for row in rows(trained) for name in row}
+    names = {name for row in rows_of(trained) for name in row}
     assert names >= {*MODES.values(), "train/return", "train/length"}
     assert names >= {"model/loss", "model/reward_loss", "perf/env_steps_per_s", "sac/q"}
     assert "planner/effective_samples" in names
-    ends = [row for row in rows(trained) if "train/return" in row]
+    ends = [row for row in rows_of(trained) if "train/return" in row]
     assert [(row["step"], row["train/length"]) for row in ends] == [
         (step, 40) for step in range(40, 601, 40)
     ]
@@ -102,12 +94,12 @@ def test_rows_have_the_documented_names(trained):
 def test_the_board_has_the_same_names(trained):
     (board,) = (trained / "tensorboard").iterdir()
     data = board.read_bytes()
-    names = {name for row in rows(trained) for name in row} - {"step", "seed", "wall_s"}
+    names = {name for row in rows_of(trained) for name in row} - {"step", "seed", "wall_s"}
     assert all(name.encode() in data for name in names)
 
 
 def test_the_summary_describes_the_run(trained):
-    values = summary(trained)
+    values = summary_of(trained)
     assert values.keys() >= {
         *("task", "algo", "seeds", "total_steps", "finished", "final_return", "wall_s"),
         *("env_steps_per_s", "physics", "device", "versions", "git_commit"),
@@ -118,7 +110,7 @@ def test_the_summary_describes_the_run(trained):
         [0],
     )
     assert (values["total_steps"], values["finished"], values["physics"]) == (600, True, "native")
-    last = [row["train/return"] for row in rows(trained) if row["step"] > 540 and len(row) == 5]
+    last = [row["train/return"] for row in rows_of(trained) if row["step"] > 540 and len(row) == 5]
     assert values["final_return"] == [pytest.approx(np.mean(last))]
     assert 0 < values["compile_s"] < values["wall_s"]
     assert {"jax", "mujoco", "python", "hybrid_rl"} <= values["versions"].keys()
@@ -136,7 +128,7 @@ def test_evaluate_repeats_what_training_measured_last(trained, capsys, mode):
         1,
     )
     assert values["mean"] == [row[0] for row in values["returns"]]
-    last = [row[MODES[mode]] for row in rows(trained) if MODES[mode] in row][-1]
+    last = [row[MODES[mode]] for row in rows_of(trained) if MODES[mode] in row][-1]
     assert values["mean"] == [pytest.approx(last, rel=1e-4)]
     table = capsys.readouterr().out
     assert f"mode {mode}, step 600" in " ".join(table.split())
@@ -203,7 +195,7 @@ def test_render_draws_an_episode(trained, tmp_path, capfd):
 
 def test_a_sweep_makes_a_folder_each(swept):
     folders = sorted((swept / "runs" / "pendulum").glob("*/*"))
-    values = [summary(folder) for folder in folders]
+    values = [summary_of(folder) for folder in folders]
     assert sorted((each["algo"], *each["seeds"]) for each in values) == [
         ("nn_mppi", 0),
         ("nn_mppi", 1),
@@ -234,7 +226,7 @@ def test_figures_draw_a_sweep(swept, monkeypatch, capsys):
 
 def test_a_method_without_a_planner_skips_that_evaluation(swept):
     (folder, _) = sorted((swept / "runs" / "pendulum" / "sac").iterdir())
-    names = {name for row in rows(folder) for name in row}
+    names = {name for row in rows_of(folder) for name in row}
     assert "eval/return" in names
     assert not any(name.startswith(("planner/", "model/")) for name in names)
 
@@ -242,7 +234,7 @@ def test_a_method_without_a_planner_skips_that_evaluation(swept):
 def test_python_does_what_the_commands_do(tmp_path):
     values = run(tmp_path / "run", "algo=sac")
     before = contents(tmp_path)
-    assert values == summary(tmp_path / "run")
+    assert values == summary_of(tmp_path / "run")
     trained = evaluate.load(Path(values["run_dir"]))
     assert (trained.seeds, trained.step, trained.notes) == ((0,), 600, ())
     got = evaluate.evaluate(trained, "policy", episodes=1)

@@ -1,13 +1,12 @@
 """The doctor of runs: it names what was done to a world, and finds nothing in a sound one."""
 
-import json
 from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from tiny import call, only_line, run
+from tiny import call, only_line, run, summary_of
 
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
@@ -251,5 +250,5 @@ def test_a_run_without_memory_is_examined_by_its_rows(folder, tmp_path):
     for name in ("config.yaml", "metrics.jsonl", "summary.json"):
         (tmp_path / name).write_bytes((folder / name).read_bytes())
     assert set(doctor.examine(tmp_path)) == {"random decisions"}
-    assert json.loads((tmp_path / "summary.json").read_text())["finished"]
+    assert summary_of(tmp_path)["finished"]
     assert RunFolder(tmp_path).rows

@@ -1,6 +1,5 @@
 """The how-tos of CONTRIBUTING.md, run as they are printed, from a folder outside the repository."""
 
-import json
 import os
 import re
 import sys
@@ -11,7 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train, only_line
+from tiny import TINY, call, call_train, only_line, summary_of
 
 import hybrid_rl
 from hybrid_rl import config, evaluate, render
@@ -99,7 +98,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
     assert capfd.readouterr().err == ""
     objective = written.controllers.full.controller.objective
     assert objective.target == {"_target_": "ring.Ring", "radius": 0.4}
-    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    summary = summary_of(tmp_path / "run")
     assert (summary["algo"], summary["finished"]) == ("kle3", True)
     folder = f"run={tmp_path / 'run'}"  # of a method that learns nothing
     assert call(lambda: command.run(evaluate.main), folder, "episodes=1") == 0

@@ -81,7 +81,7 @@ def test_arguments_are_parsed_as_declared(monkeypatch):
     [
         ("", "runs: not given; give runs=GLOB"),
         ("sizes=5", "sizes=5: must be an even number"),
-        ("parts=a,c", "parts=c: unknown; choose of a, b"),
+        ("parts=a,c", "parts=c: unknown; choose from a, b"),
         ("sise=3", "give key=value with sizes, parts, runs, env.* (did you mean sizes?)"),
         ("--runs r", "--runs: write runs=r"),
         ("runs = r", "runs: write runs=r"),

@@ -5,12 +5,10 @@ balanced returns about -150. The comments give the last evaluations of seeds 0 t
 two of the four.
 """
 
-import json
-
 import numpy as np
 import pytest
 from rotation import share
-from tiny import run
+from tiny import rows_of, run
 
 from hybrid_rl.core import adjoint, sampling
 
@@ -61,7 +59,7 @@ def test_a_pendulum_is_swung_up(algo, tmp_path):
     more = [f"random_steps={RANDOM}", "num_seeds=2", "eval_episodes=3", "log_every=500"]
     capacity = f"replay.capacity={decisions}"
     run(tmp_path / "run", f"algo={algo}", *settings, *lengths, *more, capacity)
-    rows = list(map(json.loads, (tmp_path / "run" / "metrics.jsonl").read_text().splitlines()))
+    rows = rows_of(tmp_path / "run")
     at_random = [r["train/return"] for r in rows if "train/return" in r and r["step"] <= RANDOM]
     learned = [r["eval/return"] for r in rows if "eval/return" in r]
     assert len(at_random) == 4

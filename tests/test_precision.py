@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from small import load
-from tiny import CONF, call, call_train, only_line
+from tiny import CONF, call, call_train, only_line, summary_of
 
 import hybrid_rl
 from hybrid_rl import evaluate
@@ -125,7 +125,7 @@ def test_a_run_keeps_its_precision_and_can_change_it(tmp_path, capfd):
     """Its parameters and the states of its optimisers are float32 with each."""
 
     def called():
-        return json.loads((folder / "summary.json").read_text())["precision"]
+        return summary_of(folder)["precision"]
 
     folder = tmp_path / "run"
     given = ["settings=tiny", "algo=sac", "eval_modes=[]", "checkpoint_every=300"]

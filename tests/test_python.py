@@ -16,7 +16,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from programs import shared
-from tiny import TINY, contents
+from tiny import TINY, contents, summary_of
 
 import hybrid_rl as hr
 from hybrid_rl.analysis.curves import Curve
@@ -119,7 +119,7 @@ def test_an_exception_of_the_function_follows_the_checkpoint(tmp_path):
     with pytest.raises(ZeroDivisionError):
         run(tmp_path / "run", on_row=broken, progress=False)
     saved = int(max((tmp_path / "run" / "checkpoints").iterdir()).name)
-    assert json.loads((tmp_path / "run" / "summary.json").read_text())["total_steps"] == saved < 600
+    assert summary_of(tmp_path / "run")["total_steps"] == saved < 600
 
 
 def test_a_function_that_raised_is_not_called_again():

@@ -1,6 +1,7 @@
 """Runs that take seconds, and commands called in this process; equal runs share their programs."""
 
 import hashlib
+import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -54,6 +55,16 @@ def call_train(*arguments: str | Path) -> int:
     """Exit code of `python -m hybrid_rl.train`."""
     with shared():
         return call(lambda: command.hydra_main(train._job), *arguments)
+
+
+def rows_of(folder: Path) -> list[dict]:
+    """The rows of metrics.jsonl of a run."""
+    return [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+
+
+def summary_of(folder: Path) -> dict:
+    """What summary.json of a run holds."""
+    return json.loads((folder / "summary.json").read_text())
 
 
 def contents(folder: Path) -> dict[str, str]:

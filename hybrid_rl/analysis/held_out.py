@@ -44,11 +44,11 @@ class RandomActions:
 
 
 def figure(
-    runs: Annotated[str, "run folders of one task; a pattern in quotes"] = "",
+    runs: Annotated[str, "run folders of one task; a pattern in quotes"],
     decisions: Annotated[int, "of each kind, drawn from the episodes", whole(10)] = 20000,
 ) -> tuple[Any, dict[str, Any]]:
     """Errors of each run on both kinds of decisions."""
-    folders = matching(runs, "held_out")
+    folders = matching(runs)
     trained = [restored(folder) for folder in folders]
     if len({run.task for run in trained}) > 1:
         raise UsageError(f"runs={runs}: the runs are of several tasks")

@@ -31,14 +31,14 @@ class Recorded(NamedTuple):
         return jax.tree.map(np.asarray, unpack(rows, self.run.agent.spec))
 
 
-def matching(pattern: str, view: str) -> list[Path]:
+def matching(pattern: str) -> list[Path]:
     """The run folders that match a pattern, sorted.
 
     Raises:
         UsageError: if there is no pattern or no match.
     """
     if not pattern:
-        raise UsageError(f'runs: not given; view={view} needs runs="PATTERN" of run folders')
+        raise UsageError('runs: not given; give runs="PATTERN" of run folders')
     folders = sorted(Path(path) for path in glob.glob(pattern))
     if not folders:
         raise UsageError(f"runs={pattern}: no run folder matches")

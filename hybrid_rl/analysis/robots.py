@@ -25,11 +25,11 @@ QUANTILES = {"median": 0.5, "99%": 0.99, "greatest": 1.0}
 
 
 def figure(
-    runs: Annotated[str, "run folders of task=robot; a pattern in quotes"] = "",
+    runs: Annotated[str, "run folders of task=robot; a pattern in quotes"],
 ) -> tuple[Any, dict[str, Any]]:
     """Returns over minutes, a panel for each robot."""
     numbers: dict[str, Any] = {"robots": {}}
-    for path in matching(runs, "robots"):
+    for path in matching(runs):
         env = built(run_folder.read(path, "runs")).agent.episode.env
         if not isinstance(env, Robot):
             raise UsageError(f"runs={path}: is no run of task=robot")

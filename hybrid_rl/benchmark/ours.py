@@ -4,7 +4,7 @@ Every program is compiled before it is timed, and ends with a wait for its resul
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
@@ -16,35 +16,15 @@ from hybrid_rl import config
 from hybrid_rl.benchmark.products import alone as products_alone
 from hybrid_rl.benchmark.products import operations, products
 from hybrid_rl.benchmark.race import Contestant
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.types import Batch, EnvState, Params, Spec
+from hybrid_rl.types import Batch, EnvState, Params
 
 TRIED = 5  # decisions that say how long one takes
 MOST = 2000  # decisions of each learner in a turn
 LEARNING = 200_000  # decisions into a run, where every part is at work
-
-
-@dataclass(frozen=True)
-class Still:
-    """A controller that costs nothing."""
-
-    actions: int
-
-    def init(self, spec: Spec) -> tuple[()]:
-        """No state."""
-        return ()
-
-    def act(
-        self, params: Params, state: tuple, obs: Array, key: Array
-    ) -> tuple[Array, tuple, dict]:
-        """Half of full actuation."""
-        return jnp.full(self.actions, 0.5), state, {}
-
-    def greedy(self) -> "Still":
-        """The same controller."""
-        return self
 
 
 def loop(
@@ -82,7 +62,7 @@ def shares(agent: Agent, learners: int, seconds: float) -> tuple[list[Contestant
     matrix products in a decision of one learner.
     """
     names = tuple(agent.learners)  # those that make no updates still give their parameters
-    still = replace(agent, controller=Still(agent.spec.act), frozen=names)
+    still = replace(agent, controller=ConstantController(0.5), frozen=names)
     parts = {"whole loop": agent, "world and memory": still}
     for name in names:
         others = tuple(other for other in names if other != name)

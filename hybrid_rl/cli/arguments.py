@@ -84,7 +84,7 @@ def several(*known: str) -> Kind:
         names = given.split(",")
         unknown = sorted(set(names) - set(known))
         if unknown:
-            line = f"{name}={','.join(unknown)}: unknown; choose of {', '.join(known)}"
+            line = f"{name}={','.join(unknown)}: unknown; choose from {', '.join(known)}"
             raise UsageError(line)
         return names
 

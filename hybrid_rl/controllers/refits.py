@@ -18,6 +18,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, lifting, sampling
+from hybrid_rl.core.members import predicted
 from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, Positive, part
 from hybrid_rl.protocols import Model, Objective, Proposal
 from hybrid_rl.types import Params, Path, Return, Spec
@@ -117,13 +118,9 @@ class RefitsController:
 
     def _score(self, params: Params, value: Return, x: Array, v: Array) -> Array:
         """S [] of a plan v [T, m] from x [n]."""
-        model: Any = self.model
 
         def forward(x: Array, u: Array) -> tuple[Array, tuple[Array, Array]]:
-            if not hasattr(model, "predictions"):
-                after = model.step(params.model, x, u)
-                return after, (after, jnp.zeros(()))
-            after, apart, _ = model.predictions(params.model, x, u)
+            after, apart, _ = predicted(self.model, params.model, x, u)
             return after, (after, apart.mean())
 
         _, (xs, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))

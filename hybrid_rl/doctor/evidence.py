@@ -24,8 +24,9 @@ import numpy as np
 from hybrid_rl.analysis.held_out import RandomActions
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.config import Run
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
-from hybrid_rl.doctor.tried import Still, Tried, episodes
+from hybrid_rl.doctor.tried import Tried, episodes
 from hybrid_rl.errors import CheckpointError, UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
@@ -122,7 +123,7 @@ class Evidence:
     @cached_property
     def at_rest(self) -> "Evidence | None":
         """The second half of new episodes without action, of those that last so long."""
-        found = episodes(self.run.agent.episode, Still(), Params())
+        found = episodes(self.run.agent.episode, ConstantController(), Params())
         if not found or not found[0].lives.all(1).any():
             return None
         return replace(self, made=found[0].second_half())

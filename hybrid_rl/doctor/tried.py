@@ -4,13 +4,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions
-from hybrid_rl.types import EnvState, Params, Spec, Transition
+from hybrid_rl.types import EnvState, Params, Transition
 
 START_KEY = 2_000_000  # of episodes, which no evaluation uses
 FEWEST, EPISODES = 16, 64  # of them
@@ -40,18 +39,6 @@ class Tried:
         over = np.zeros_like(reward)
         rows: Any = (obs[:, :-1], action, reward, over, over, obs[:, 1:])
         return Transition(*rows)
-
-
-class Still:
-    """No action."""
-
-    def init(self, spec: Spec) -> jax.Array:
-        """The action [m]."""
-        return jnp.zeros(spec.act)
-
-    def act(self, params: Params, state: jax.Array, obs: jax.Array, key: jax.Array) -> tuple:
-        """Action [m], the state, no metrics."""
-        return state, state, {}
 
 
 def episodes(

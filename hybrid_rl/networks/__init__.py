@@ -13,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from flax import linen as nn
 from jax import Array
+from scipy.linalg import block_diag
 
 from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, Must
@@ -97,18 +98,9 @@ def side_by_side(each: Sequence[Perceptron]) -> Perceptron:
             weights.append(stacked / len(each))
             biases.append(np.mean(bias, 0))
         else:
-            weights.append(_block_diagonal(kernels) if i else np.concatenate(kernels, axis=1))
+            weights.append(block_diag(*kernels) if i else np.concatenate(kernels, axis=1))
             biases.append(np.concatenate(bias))
     return first._replace(weights=tuple(weights), biases=tuple(biases))
-
-
-def _block_diagonal(blocks: Sequence[np.ndarray]) -> np.ndarray:
-    """A matrix with `blocks` along its diagonal."""
-    shapes = np.array([block.shape for block in blocks])
-    whole = np.zeros(shapes.sum(0), blocks[0].dtype)
-    for block, (row, column) in zip(blocks, shapes.cumsum(0) - shapes, strict=True):
-        whole[row : row + block.shape[0], column : column + block.shape[1]] = block
-    return whole
 
 
 def outputs(params: Any) -> int:

@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Literal
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from scipy.interpolate import CubicSpline, make_interp_spline
 
 from hybrid_rl.fields import Count, Positive, part
 from hybrid_rl.types import Params, Spec
@@ -46,26 +47,12 @@ class KnotsProposal:
 
 
 def _interpolation(steps: int, n: int, order: str) -> np.ndarray:
-    """W [T, n], float32: W e are the values at the T steps of the curve through knots e [n].
-
-    Knots have distance 1; u is the position after the knot before, v that before the knot after.
-
-        linear   v e_j + u e_{j+1}
-        cubic    + ((v^3 - v) M_j + (u^3 - u) M_{j+1}) / 6,   M_0 = M_{n-1} = 0,
-                 M_{j-1} + 4 M_j + M_{j+1} = 6 (e_{j-1} - 2 e_j + e_{j+1})
-    """
+    """W [T, n], float32: W e are the values at the T steps of the curve through knots e [n]."""
     if n == 1:
         return np.ones((steps, 1), np.float32)
-    t = np.linspace(0, n - 1, steps)
-    left = np.minimum(t.astype(int), n - 2)
-    before, after = np.eye(n)[left], np.eye(n)[left + 1]
-    u = (t - left)[:, None]
-    v = 1 - u
-    W = v * before + u * after
-    if order == "cubic" and n > 2:
-        second = np.diff(np.eye(n), 2, axis=0)  # [n-2, n] e_{j-1} - 2 e_j + e_{j+1}
-        inner = 4 * np.eye(n - 2) + np.eye(n - 2, k=1) + np.eye(n - 2, k=-1)
-        M = np.zeros((n, n))
-        M[1:-1] = np.linalg.solve(inner, 6 * second)
-        W += ((v**3 - v) * (before @ M) + (u**3 - u) * (after @ M)) / 6
-    return W.astype(np.float32)
+    at, each = np.arange(n), np.eye(n)
+    if order == "cubic":
+        curve = CubicSpline(at, each, bc_type="natural")
+    else:
+        curve = make_interp_spline(at, each, k=1)
+    return curve(np.linspace(0, n - 1, steps)).astype(np.float32)

@@ -5,6 +5,7 @@ executed. c = 0 gives the candidates of MPPI without its control cost (Williams 
 alpha = 1); c > 0 correlates them in time.
 """
 
+import math
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -42,7 +43,7 @@ class NoiseProposal:
         """A candidate v [m] around plan [m], and log p(e_t | e_{t-1}) [] of its unclipped noise."""
         share = 1 - carry.correlation**2  # of the variance that is new
         new = jnp.sqrt(share) * self.std * noise
-        log_prob = -0.5 * (new / self.std) ** 2 / share - jnp.log(self.std * 2.5066283)
+        log_prob = -0.5 * (new / self.std) ** 2 / share - jnp.log(self.std * math.sqrt(2 * math.pi))
         log_prob = jnp.sum(log_prob - 0.5 * jnp.log(share))
         e = carry.correlation * carry.e + new
         return jnp.clip(plan + e, -1, 1), log_prob, NoiseState(e, jnp.full((), self.correlation))

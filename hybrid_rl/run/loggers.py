@@ -275,7 +275,7 @@ def check(given: Any) -> tuple[str, ...]:
     """
     names = () if given is None else (given,) if isinstance(given, str) else tuple(given)
     if unknown := [name for name in names if name not in NAMES]:
-        line = f"choose of {', '.join(NAMES)}, or null"
+        line = f"choose from {', '.join(NAMES)}, or null"
         always = "every run writes metrics.jsonl and tensorboard/"
         raise UsageError(f"logger={unknown[0]}: {line}; {always}")
     for name in (each for each in names if each in PACKAGES):

@@ -51,10 +51,11 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
         return None
     have = [start.memory for start in known]
     each = [start.learners for start in known]
-    return Start(_stacked(each), None if have[0] is None else _stacked(have), known[0].line)
+    memory = None if have[0] is None else _concatenated(have)
+    return Start(_concatenated(each), memory, known[0].line)
 
 
-def _stacked(each: Sequence[Any]) -> Any:
+def _concatenated(each: Sequence[Any]) -> Any:
     return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *each)
 
 

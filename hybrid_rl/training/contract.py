@@ -16,7 +16,7 @@ import jax.numpy as jnp
 
 from hybrid_rl.core import lifting
 from hybrid_rl.core.batching import repeat
-from hybrid_rl.errors import Own, PartError
+from hybrid_rl.errors import PartError, SourceOf
 from hybrid_rl.training.traced import called, of_user, parts, shapes, traced, users, words
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
@@ -60,7 +60,7 @@ def _check_members(part: Any, role: str) -> None:
     """Raise PartError for a method or a field that a part of the user's lacks."""
     if not of_user(part):
         return
-    own = Own(part)
+    own = SourceOf(part)
     if isinstance(part, type):
         raise PartError(f"{part.__module__}: {part.__name__} is a class; give {part.__name__}()")
     for method, takes in ROLES[role].items():
@@ -103,7 +103,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         if not isinstance(given, Mapping) or {*given} != {*learner.owns}:
             got = f"{list(given)}" if isinstance(given, Mapping) else words(given)
             must = f"it must be a dict of what it owns, {list(learner.owns)}"
-            raise PartError(f"{Own(learner).at('params')}: returned {got}; {must}")
+            raise PartError(f"{SourceOf(learner).at('params')}: returned {got}; {must}")
         learned |= given
     params = Params(**learned)._replace(decisions=jax.ShapeDtypeStruct((), jnp.int32))
     names: dict[str, str] = dict.fromkeys((*COLUMNS, *OF_WORLD), "")
@@ -116,7 +116,9 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
 
         result = traced(learner, "update", update, states[name], params, memory, key)
         if not isinstance(result, tuple) or len(result) != 2:
-            raise PartError(f"{Own(learner).at('update')}: {_returned(result, 'state, metrics')}")
+            raise PartError(
+                f"{SourceOf(learner).at('update')}: {_returned(result, 'state, metrics')}"
+            )
         _check_metrics(learner, "update", result[1], names)
         _check_state(learner, "update", states[name], result[0])
     env = jax.eval_shape(agent.episode.reset, key)
@@ -127,7 +129,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         greedy = called(controller, "greedy", controller.greedy)
         if not callable(getattr(greedy, "act", None)):
             got = f"returned {words(greedy)}; it must be a controller"
-            raise PartError(f"{Own(controller).at('greedy')}: {got}")
+            raise PartError(f"{SourceOf(controller).at('greedy')}: {got}")
         for each in [controller] if greedy is controller else [controller, greedy]:
             _check_acting(each, agent, params, env, {**names} if each is controller else {})
 
@@ -139,10 +141,10 @@ def _check_model(part: Any, spec: Spec, key: Any) -> None:
     x = shapes(part, "lift", part.lift, params, obs)
     after = shapes(part, "step", part.step, params, x, u)
     if getattr(x, "ndim", 1) != 1:
-        raise PartError(f"{Own(part).at('lift')}: returned {words(x)}; it must be float32[n]")
+        raise PartError(f"{SourceOf(part).at('lift')}: returned {words(x)}; it must be float32[n]")
     if _leaves(x) != _leaves(after):
         must = f"it must be {words(x)}, as lift returned"
-        raise PartError(f"{Own(part).at('step')}: returned {words(after)}; {must}")
+        raise PartError(f"{SourceOf(part).at('step')}: returned {words(after)}; {must}")
 
 
 def _check_acting(
@@ -156,7 +158,7 @@ def _check_acting(
         return part.act(params._replace(world=env), state, env.obs, key)
 
     result = traced(part, "act", act, params, state, env, key)
-    at = Own(part).at("act")
+    at = SourceOf(part).at("act")
     if not isinstance(result, tuple) or len(result) != 3:
         raise PartError(f"{at}: {_returned(result, 'action, state, metrics')}")
     wanted = jax.ShapeDtypeStruct((agent.spec.act,), jnp.float32)
@@ -193,13 +195,13 @@ def _check_objectives(owner: Any, agent: Any, params: Params, env: EnvState) -> 
             if words(got) != must:
                 what = "J of a path" if name == "prepare" else "it"
                 line = f"{what} is {words(got)}; it must be {must}, with T = {T} decisions"
-                raise PartError(f"{Own(part).at(name)}: {line}")
+                raise PartError(f"{SourceOf(part).at(name)}: {line}")
 
 
 def _check_state(part: Any, method: str, before: Any, after: Any) -> None:
     """Raise PartError unless a state is as `init` gave it, in structure, shapes and types."""
     one, two = _leaves(before), _leaves(after)
-    at = Own(part).at(method)
+    at = SourceOf(part).at(method)
     if one == two and jax.tree.structure(before) != jax.tree.structure(after):
         raise PartError(f"{at}: returned a state of another structure than init")
     for name in (*one, *two):
@@ -217,11 +219,11 @@ def _check_metrics(part: Any, method: str, metrics: Any, names: dict[str, str]) 
     """
     if not isinstance(metrics, Mapping):
         must = "it must be a dict of numbers"
-        raise PartError(f"{Own(part).at(method)}: returned metrics {words(metrics)}; {must}")
+        raise PartError(f"{SourceOf(part).at(method)}: returned metrics {words(metrics)}; {must}")
     for name in metrics:
         if name in names and of_user(part):
             line = f"metric {name}: {names[name] or 'every row'} has it, too; write mine/{name}"
-            raise PartError(f"{Own(part).at(method)}: {line}")
+            raise PartError(f"{SourceOf(part).at(method)}: {line}")
         names[name] = type(part).__name__
 
 

@@ -10,7 +10,7 @@ import jax
 import numpy as np
 
 from hybrid_rl import protocols
-from hybrid_rl.errors import FAULTS, Own, PartError, UsageError, one_line, user_line
+from hybrid_rl.errors import FAULTS, PartError, SourceOf, UsageError, one_line, user_line
 from hybrid_rl.training import pairs
 
 OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
@@ -29,7 +29,7 @@ def traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) ->
         for name, value in metrics.items() if isinstance(metrics, Mapping) else ():
             if not isinstance(value, (jax.Array, np.generic, np.ndarray, int, float)):
                 line = f"metric {name} is {words(value)}; it must be a number, float32[]"
-                raise PartError(f"{Own(part).at(method)}: {line}")
+                raise PartError(f"{SourceOf(part).at(method)}: {line}")
         return result
 
     programs = [jax.jit(partial(judged)) for _ in range(2)]  # two functions: neither is kept
@@ -37,8 +37,8 @@ def traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) ->
     first, second = (f"{each.jaxpr}{[*map(str, each.jaxpr.consts)]}" for each in both)
     if of_user(part) and first != second:
         raise PartError(
-            f"{Own(part).at(method)}: gives other numbers when it is traced again: what NumPy or "
-            "Python draws is a constant of the compiled program; use jax.random, with the key"
+            f"{SourceOf(part).at(method)}: gives other numbers when it is traced again: what NumPy "
+            "or Python draws is a constant of the compiled program; use jax.random, with the key"
         )
     return both[0].out_info
 
@@ -50,7 +50,7 @@ def shapes(part: Any, method: str, call: Callable[..., Any], *arguments: Any) ->
 
 def called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
     """What `call` returns; its errors name the user's part and the line."""
-    mine = Own(next(users(part), part))
+    mine = SourceOf(next(users(part), part))
     try:
         with pairs.refused():
             return call(*arguments)
@@ -59,7 +59,7 @@ def called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) ->
     except FAULTS as error:
         line = user_line(error)
         if line is None and isinstance(error, AttributeError) and of_user(error.obj):
-            line = f"{Own(error.obj).at()} has no {error.name}{_where(error.name)}"
+            line = f"{SourceOf(error.obj).at()} has no {error.name}{_where(error.name)}"
         line = line or f"{mine.at()}: {one_line(error)}"
         raise PartError(f"{line.rstrip('.')}; in {type(part).__name__}.{method}") from error
 

@@ -60,9 +60,6 @@ class Player:
         self._coming: Future[Cast] | None = None
         self.problem = ""  # why the last choice is not shown
         subject = self._subject(choice)
-        if choice.mode not in subject.controllers:
-            known = ", ".join(subject.controllers)
-            raise UsageError(f"mode={choice.mode}: choose one of {known}")
         quick = "policy" if "policy" in subject.controllers else choice.mode
         self.cast = self._make(replace(choice, mode=quick))
         self.begin(seed)
@@ -143,16 +140,18 @@ class Player:
             self.state = jax.tree.unflatten(cast.world.structure, leaves)
 
     def _subject(self, choice: Choice) -> Subject:
+        """The subject of a choice, read once; UsageError for a choice that does not fit."""
         key = choice.reward, tuple(sorted(choice.changes.items())), choice.quick
         if key not in self._subjects:
             self._subjects[key] = self.source.subject(choice.reward, choice.changes, choice.quick)
-        return self._subjects[key]
+        subject = self._subjects[key]
+        if choice.mode not in subject.controllers:
+            raise UsageError(f"mode={choice.mode}: choose one of {', '.join(subject.controllers)}")
+        return subject
 
     def _make(self, choice: Choice) -> Cast:
         """The programs of a choice; in a thread."""
         subject = self._subject(choice)
-        if choice.mode not in subject.controllers:
-            raise UsageError(f"mode={choice.mode}: choose one of {', '.join(subject.controllers)}")
         numbers = self._numbers(subject)
         if subject.episode not in self._made:
             self._made[subject.episode] = programs.world(subject.episode, numbers)

@@ -10,7 +10,7 @@ import time
 
 import pytest
 from hydra.errors import MissingConfigException
-from tiny import TINY, call_train
+from tiny import TINY, call_train, summary_of
 
 from hybrid_rl import composition, train
 
@@ -39,7 +39,7 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
     assert first["overrides"].endswith("learning_rate=1e+30")
     assert "sac/critic_loss is not finite" in first["line"]
     assert second["line"].startswith(("training return -", "evaluation -"))
-    assert json.loads((tmp_path / second["run_dir"] / "summary.json").read_text())["finished"]
+    assert summary_of(tmp_path / second["run_dir"])["finished"]
     assert (tmp_path / first["run_dir"] / "config.yaml").exists()
     assert "hybrid_rl: job 0: seed 0, step" in err
     shown = out.splitlines()[-4:]
@@ -138,7 +138,7 @@ def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path):
     assert "job 1 ends: lost: " in done.stdout
     first, second = table(tmp_path)
     assert (first["code"], second["code"]) == (0, 1)
-    assert json.loads((tmp_path / first["run_dir"] / "summary.json").read_text())["finished"]
+    assert summary_of(tmp_path / first["run_dir"])["finished"]
 
 
 SLURM = ["-m", *TINY, "algo=sac,nn_mppi", "hydra/launcher=submitit_slurm"]

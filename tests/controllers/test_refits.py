@@ -17,6 +17,15 @@ from hybrid_rl.types import Params
 
 
 @dataclass(frozen=True)
+class Breaking(Cart):
+    """The mass on a line, of which nothing is known beyond u = 0.2."""
+
+    def step(self, params: Any, x: Array, u: Array) -> Array:
+        """The next state [2]."""
+        return jnp.where(u[0] > 0.2, jnp.nan, super().step(params, x, u))
+
+
+@dataclass(frozen=True)
 class Right:
     """A policy that pushes with 0.9."""
 
@@ -56,6 +65,13 @@ def test_disagreement_costs_its_price() -> None:
         for price in (1.0, 0.0)
     )
     assert abs(float(still[0])) < 0.1 < 0.5 < float(moving[0])
+
+
+def test_candidates_whose_prediction_is_not_finite_rank_last() -> None:
+    """J rises with u up to 0.2, beyond which the model gives NaN."""
+    u, state, _ = act(RefitsController(Breaking(), Speed(), horizon=2))
+    assert np.isfinite(state.plan).all()
+    assert 0.1 < float(u[0]) <= 0.2
 
 
 def test_more_elites_than_candidates_are_refused() -> None:

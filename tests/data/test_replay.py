@@ -49,3 +49,14 @@ def test_the_size_in_bytes_is_known_before_allocation() -> None:
     """`nbytes` is what `init` allocates."""
     replay = Replay(1000)
     assert replay.init(SPEC, 4).rows.nbytes == replay.nbytes(SPEC)
+
+
+@pytest.mark.parametrize("times", [3, 9])
+def test_decisions_are_recent_as_far_back_as_the_memory_reaches(times: int) -> None:
+    """The newest was made 0 rounds ago; there is none before the oldest that is kept."""
+    replay, memory = filled(5, 1, times)
+    held = min(times, 5)
+    found = [replay.recent(memory, SPEC, ago) for ago in range(7)]
+    assert [each is not None for each in found] == [ago < held for ago in range(7)]
+    rewards = [float(each.reward[0]) for each in found if each is not None]
+    assert rewards == [-100.0 * (times - 1 - ago) for ago in range(held)]

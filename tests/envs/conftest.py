@@ -1,4 +1,4 @@
-"""What the tests of broken worlds share; see broken.py."""
+"""What the tests of broken worlds share; see faulty.py."""
 
 import sys
 

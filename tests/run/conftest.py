@@ -1,17 +1,22 @@
 """What the tests of runs share."""
 
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
+import shutil
 
 import pytest
+from states import state_at
 
-SCRIPT = Path(__file__).parents[2] / "scripts" / "interrupt.py"
+from hybrid_rl.run import checkpoint
 
 
-@pytest.fixture(scope="module")
-def interrupt():
-    """scripts/interrupt.py."""
-    spec = spec_from_file_location("interrupt", SCRIPT)
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+@pytest.fixture
+def three(tmp_path):
+    """A folder with three checkpoints, of which the newest two stay."""
+    for step in (10, 20, 30):
+        checkpoint.save(tmp_path, step, state_at(step), {"offset": step})
+    return tmp_path
+
+
+@pytest.fixture
+def copied(trained, tmp_path):
+    """A copy of the file's run that is done, to harm."""
+    return shutil.copytree(trained, tmp_path / "run")

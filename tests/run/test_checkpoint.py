@@ -13,13 +13,6 @@ from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import checkpoint, integrity, leaves
 
 
-@pytest.fixture
-def three(tmp_path):
-    for step in (10, 20, 30):
-        checkpoint.save(tmp_path, step, state_at(step), {"offset": step})
-    return tmp_path
-
-
 @pytest.mark.parametrize("abstract", [False, True])
 def test_every_bit_comes_back(tmp_path, abstract):
     state = state_at(7)

@@ -16,14 +16,6 @@ from states import assert_same, state_at
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import checkpoint, leaves
 
-
-@pytest.fixture
-def three(tmp_path):
-    for step in (10, 20, 30):
-        checkpoint.save(tmp_path, step, state_at(step), {"offset": step})
-    return tmp_path
-
-
 KILLED = """
 import os, signal, sys
 from pathlib import Path

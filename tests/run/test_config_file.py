@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call, call_train, contents, demonstrate, only_line, run
+from tiny import TINY, call, call_train, contents, demonstrate, only_line, run, summary_of
 
 from hybrid_rl import __version__, config, evaluate, figures, render
 from hybrid_rl import demonstrate as recording
@@ -40,7 +40,7 @@ def old(trained, tmp_path):
     folder = shutil.copytree(trained, tmp_path / "run")
     file = folder / "config.yaml"
     file.write_text(re.sub(r"(?m)^version: .*\n", "", file.read_text()))
-    summary = json.loads((folder / "summary.json").read_text())
+    summary = summary_of(folder)
     summary["versions"]["hybrid_rl"] = "0.1.0"
     (folder / "summary.json").write_text(json.dumps(summary))
     return folder
@@ -87,7 +87,7 @@ def test_a_fresh_process_evaluates_and_resumes(trained, tmp_path):
         whole = [sys.executable, "-m", f"hybrid_rl.{name}", *arguments]
         done = subprocess.run(whole, cwd=tmp_path, capture_output=True, text=True)
         assert (done.returncode, done.stderr) == (0, "")
-    assert json.loads((folder / "summary.json").read_text())["total_steps"] == 150
+    assert summary_of(folder)["total_steps"] == 150
 
 
 @pytest.mark.parametrize("command_name", [*READERS, "train"])
@@ -105,7 +105,7 @@ def test_a_run_of_an_older_version_is_one_line_and_stays(old, tmp_path, capfd, c
 
     before = contents(tmp_path)
     key = "resume" if command_name == "train" else "run"
-    commit = json.loads((old / "summary.json").read_text())["git_commit"]
+    commit = summary_of(old)["git_commit"]
     line = refuse()
     assert line == (
         f"hybrid_rl: {key}={old}: made by hybrid_rl 0.1.0, and this is {__version__}; "

@@ -3,13 +3,12 @@
 import json
 import re
 import resource
-import shutil
 
 import jax
 import jax.numpy as jnp
 import programs
 import pytest
-from tiny import TINY, call, call_train, contents, only_line, run
+from tiny import TINY, call, call_train, contents, only_line, run, summary_of
 
 from hybrid_rl import evaluate
 from hybrid_rl.cli import command
@@ -26,12 +25,6 @@ def trained(tmp_path_factory):
     folder = tmp_path_factory.mktemp("trained") / "run"
     run(folder, "algo=sac")
     return folder
-
-
-@pytest.fixture
-def copied(trained, tmp_path):
-    """A run that is done, to harm."""
-    return shutil.copytree(trained, tmp_path / "run")
 
 
 def harm(folder):
@@ -131,7 +124,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
     )
     assert " gives reward nan, obs [" in line
     assert line.endswith("; checkpoint 50 is whole: mend the world and resume it\n")
-    assert not json.loads((folder / "summary.json").read_text())["finished"]
+    assert not summary_of(folder)["finished"]
     assert checkpoint.steps(folder / "checkpoints") == [50]
     assert call_train(f"resume={folder}") == 0
     theirs, ours = (copied / "metrics.jsonl", folder / "metrics.jsonl")

@@ -1,13 +1,12 @@
 """Two processes that share the learners of one run."""
 
-import json
 import os
 import socket
 import subprocess
 import sys
 
 import pytest
-from tiny import TINY, call_train, run
+from tiny import TINY, call_train, rows_of, run, summary_of
 
 pytestmark = pytest.mark.turns(3)
 
@@ -28,13 +27,12 @@ def together(*overrides):
         )
         for i in range(2)
     ]
-    ends = [(process.communicate()[1].decode(), process.returncode) for process in several]
-    return ends
+    return [(process.communicate()[1].decode(), process.returncode) for process in several]
 
 
 def rows(folder, seed):
     """What was measured of a learner, without times."""
-    result = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    result = rows_of(folder)
     return [
         {name: value for name, value in row.items() if name not in TIMES}
         for row in result
@@ -48,7 +46,7 @@ def test_each_process_trains_its_share_and_goes_on_with_it(tmp_path, monkeypatch
     ends = together(*LINE, "num_seeds=3", f"run_dir={folder}")
     assert [code for _, code in ends] == [0, 0], ends
     shares = [folder / f"process_{i}" for i in range(2)]
-    summaries = [json.loads((share / "summary.json").read_text()) for share in shares]
+    summaries = [summary_of(share) for share in shares]
     assert [summary["seeds"] for summary in summaries] == [[0, 1], [2]]
     run(tmp_path / "alone", *LINE, "seed=2")
     assert rows(shares[1], 2) == rows(tmp_path / "alone", 2)

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from tiny import TINY, call_train
+from tiny import TINY, call_train, rows_of
 
 from hybrid_rl import config
 from hybrid_rl.run import duration
@@ -50,7 +50,7 @@ def test_a_run_says_how_long_it_takes_and_ends_with_its_curve(monkeypatch, tmp_p
     assert printed.count(HINT) == 1
     assert "600 decisions\n" in printed
     assert (folder / "curve.png").stat().st_size > 1000
-    rows = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    rows = rows_of(folder)
     (line,) = json.loads((folder / "curve.json").read_text())["curves"]
     evaluated = {row["step"]: row["eval/return"] for row in rows if "eval/return" in row}
     assert dict(zip(line["x"], line["iqm"], strict=True)) == pytest.approx(evaluated)

@@ -32,12 +32,6 @@ def trained(tmp_path_factory):
     return folder
 
 
-@pytest.fixture
-def copied(trained, tmp_path):
-    """The same, to harm."""
-    return shutil.copytree(trained, tmp_path / "run")
-
-
 def test_a_run_that_is_being_written_is_not_resumed(copied, trained, capfd):
     with locked(copied, "run_dir"):
         assert call_train(f"resume={copied}", "total_steps=200") == 2

@@ -1,12 +1,11 @@
 """Copies of the rows: a table of CSV, and runs of Weights & Biases without a network."""
 
 import csv
-import json
 import sys
 from types import SimpleNamespace
 
 import pytest
-from tiny import call_train, only_line
+from tiny import call_train, only_line, rows_of
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import loggers
@@ -26,7 +25,7 @@ def table(folder):
 
 def numbers(folder):
     """What metrics.jsonl holds, as lines of the table."""
-    rows = map(json.loads, (folder / "metrics.jsonl").read_text().splitlines())
+    rows = rows_of(folder)
     return [
         [*(str(each[name]) for name in ("step", "seed", "wall_s")), name, str(value)]
         for each in rows
@@ -130,7 +129,7 @@ def test_trackio_gets_the_rows_of_a_seed_together(tmp_path, monkeypatch):
 def test_a_logger_is_unknown_or_not_installed_in_one_line(monkeypatch, tmp_path, capfd):
     assert loggers.check(None) == ()
     assert loggers.check(["csv"]) == ("csv",)
-    with pytest.raises(UsageError, match="logger=mlflow: choose of csv, wandb, trackio, or null"):
+    with pytest.raises(UsageError, match="logger=mlflow: choose from csv, wandb, trackio, or null"):
         loggers.check(["csv", "mlflow"])
     monkeypatch.setenv("TRACKIO_DIR", str(tmp_path))
     for name in loggers.PACKAGES:

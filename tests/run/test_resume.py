@@ -8,10 +8,11 @@ import time
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
-from tiny import TINY, call_train, contents, run
+from tiny import TINY, call_train, contents, run, summary_of
 
 from hybrid_rl import __version__
 from hybrid_rl.run import checkpoint
+from scripts import interrupt
 
 pytestmark = pytest.mark.turns(4)
 
@@ -36,7 +37,7 @@ def halves(tmp_path_factory):
     return folders
 
 
-def stopped(interrupt, folder, by, *overrides):
+def stopped(folder, by, *overrides):
     """Exit code of a run that fault `by` stops after its first checkpoint."""
     process = interrupt.start([*TINY, *overrides, f"run_dir={folder}"])
     while interrupt.newest(folder) is None and process.poll() is None:
@@ -48,23 +49,23 @@ def stopped(interrupt, folder, by, *overrides):
     ("by", "code"),
     [("SIGINT and SIGTERM", {130, 143}), ("SIGKILL", {-signal.SIGKILL}), ("moved", {1})],
 )
-def test_a_stopped_run_goes_on_bit_for_bit(interrupt, whole, tmp_path, by, code):
+def test_a_stopped_run_goes_on_bit_for_bit(whole, tmp_path, by, code):
     folder = tmp_path / "run"
-    assert stopped(interrupt, folder, by, *HYBRID) in code
+    assert stopped(folder, by, *HYBRID) in code
     reached = interrupt.newest(folder)
     assert 0 < reached < 600
     if by == "SIGINT and SIGTERM":
-        summary = json.loads((folder / "summary.json").read_text())
+        summary = summary_of(folder)
         assert not summary["finished"]
         assert summary["total_steps"] == reached == interrupt.rows(folder)[-1]["step"]
     assert call_train(f"resume={folder}") == 0
     assert interrupt.difference(folder, whole) == ""
-    summary = json.loads((folder / "summary.json").read_text())
+    summary = summary_of(folder)
     assert summary["finished"]
     assert summary["total_steps"] == 600
 
 
-def test_native_physics_goes_on_bit_for_bit(interrupt, tmp_path):
+def test_native_physics_goes_on_bit_for_bit(tmp_path):
     """Stopped anywhere, also before there is a checkpoint."""
     run(tmp_path / "whole", *NATIVE)
     line = [*TINY, *NATIVE]
@@ -73,7 +74,7 @@ def test_native_physics_goes_on_bit_for_bit(interrupt, tmp_path):
     assert interrupt.line(1, done).startswith("    1  same  ")
 
 
-def test_a_difference_is_found(interrupt, whole, halves, tmp_path):
+def test_a_difference_is_found(whole, halves, tmp_path):
     assert interrupt.difference(halves[0], whole) == "checkpoint 300 and 600"
     assert "at step 300" in interrupt.difference(halves[0], halves[1])
     edited = tmp_path / "edited"
@@ -85,7 +86,7 @@ def test_a_difference_is_found(interrupt, whole, halves, tmp_path):
     assert interrupt.difference(edited, whole).startswith("row {'step': 51,")
 
 
-def test_no_row_twice_and_none_lost(interrupt, whole):
+def test_no_row_twice_and_none_lost(whole):
     """Rows of what is due when: episodes of 200, means every 50, evaluations every 300."""
     rows = interrupt.rows(whole)
     assert [r["step"] for r in rows if "train/return" in r] == [200, 400, 600]
@@ -93,7 +94,7 @@ def test_no_row_twice_and_none_lost(interrupt, whole):
     assert [r["step"] for r in rows if "eval/return" in r] == [300, 600]
 
 
-def test_a_run_made_longer_is_the_longer_run(interrupt, whole, halves, tmp_path):
+def test_a_run_made_longer_is_the_longer_run(whole, halves, tmp_path):
     folder = tmp_path / "run"
     shutil.copytree(halves[0], folder)
     assert call_train(f"resume={folder}", "total_steps=600") == 0
@@ -111,7 +112,7 @@ def test_a_finished_run_stays_as_it_is(whole, capsys, given):
     assert contents(whole) == before
 
 
-def test_without_replay_it_goes_on_and_says_so(interrupt, whole, tmp_path, capsys):
+def test_without_replay_it_goes_on_and_says_so(whole, tmp_path, capsys):
     folder = tmp_path / "run"
     run(folder, *HYBRID, "checkpoint_replay=false", "total_steps=300")
     listed = json.loads((folder / "checkpoints" / "300" / "leaves.json").read_text())
@@ -125,7 +126,7 @@ def test_without_replay_it_goes_on_and_says_so(interrupt, whole, tmp_path, capsy
     assert checkpoint.steps(folder / "checkpoints")[-1] == 600
 
 
-def test_seeds_side_by_side_are_the_seeds_alone(interrupt, halves, tmp_path):
+def test_seeds_side_by_side_are_the_seeds_alone(halves, tmp_path):
     """To rounding, which grows with every decision: 2e-5 after 100, 2e-4 to 5e-4 after 300.
 
     The agreement signal is a small difference of predicted returns: in units of those. The means of

@@ -9,7 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from tiny import TINY, call_train, run
+from tiny import TINY, call_train, rows_of, run, summary_of
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.overrides import quoted
@@ -20,6 +20,7 @@ from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop
+from scripts import interrupt
 
 pytestmark = pytest.mark.turns(3)
 
@@ -38,14 +39,6 @@ def whole(tmp_path_factory):
 def short(monkeypatch):
     """Calls of seven rounds at most, so that they end between the marks."""
     monkeypatch.setattr(Pace, "rounds", lambda self, left: min(left, 7))
-
-
-def rows(folder):
-    return [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
-
-
-def summary(folder):
-    return json.loads((folder / "summary.json").read_text())
 
 
 def stop_at(monkeypatch, step):
@@ -84,8 +77,8 @@ def test_a_program_that_trains_hears_the_signal_after_the_checkpoint(monkeypatch
         assert signal.getsignal(number) is handler
     finally:
         signal.signal(number, before)
-    assert heard == [summary(folder)["total_steps"]]
-    assert summary(folder)["signal"] == number
+    assert heard == [summary_of(folder)["total_steps"]]
+    assert summary_of(folder)["signal"] == number
     assert not (folder / "lock").exists()
 
 
@@ -126,12 +119,12 @@ def test_metrics_in_parts_are_the_metrics_as_one():
     assert parts.pack() == ([], None)
 
 
-def test_calls_of_other_lengths_make_the_same_run(interrupt, whole, short, tmp_path):
+def test_calls_of_other_lengths_make_the_same_run(whole, short, tmp_path):
     run(tmp_path / "run", *SAC)
     assert interrupt.difference(tmp_path / "run", whole) == ""
 
 
-def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp_path, capsys):
+def test_a_run_stopped_anywhere_goes_on_bit_for_bit(whole, short, tmp_path, capsys):
     """Between marks, before an evaluation is made, and before the last one is.
 
     The name of the folder means something to the shell, to Hydra, to Orbax and to glob.
@@ -143,14 +136,14 @@ def test_a_run_stopped_anywhere_goes_on_bit_for_bit(interrupt, whole, short, tmp
             stop_at(patch, step)
             assert call_train(*(line or begin)) == 128 + signal.SIGTERM
         printed = capsys.readouterr().out.splitlines()[-1]
-        result, line = summary(folder), shlex.split(printed)[4:]
+        result, line = summary_of(folder), shlex.split(printed)[4:]
         assert printed.startswith("continue: python -m hybrid_rl.train ")
         assert step <= result["total_steps"] < step + 7
         assert not result["finished"]
     assert call_train(*line) == 0
     assert interrupt.difference(folder, whole) == ""
-    assert summary(folder)["finished"]
-    assert summary(folder)["final_eval"] == summary(whole)["final_eval"]
+    assert summary_of(folder)["finished"]
+    assert summary_of(folder)["final_eval"] == summary_of(whole)["final_eval"]
 
 
 def break_learner(patch, number, step):
@@ -198,15 +191,11 @@ def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
     assert (found["finished"], found["final_eval"][1], found["final_return"][1]) == (
         *(True, None, None),
     )
-    mine = [row for row in rows(folder) if row["seed"] == 1]
+    mine = [row for row in rows_of(folder) if row["seed"] == 1]
     assert mine[-1].keys() == {"step", "seed", "wall_s", "diverged"}
     assert mine[-1]["diverged"] == end["quantity"]
     assert [row["step"] for row in mine if "world/reward" in row] == list(range(50, 251, 50))
-    clocks = ("wall_s", "perf/env_steps_per_s", "perf/compile_s")
-    others = [
-        [{k: v for k, v in row.items() if k not in clocks} for row in rows(f) if row["seed"] == 0]
-        for f in (folder, whole)
-    ]
+    others = [[row for row in interrupt.rows(f) if row["seed"] == 0] for f in (folder, whole)]
     assert others[0] == others[1]
     assert finite(folder)
     assert call_train(f"resume={folder}", "total_steps=700") == 1  # and it stays out
@@ -215,8 +204,8 @@ def test_one_learner_diverges_and_the_other_goes_on(whole, tmp_path, capfd):
         f"hybrid_rl: seed 1, step 251: {end['quantity']} is not finite; the oth"
     )
     assert printed.count("\n") == 1
-    assert {row["seed"] for row in rows(folder) if row["step"] > 251} == {0}
-    assert rows(folder)[-1]["step"] == 700
+    assert {row["seed"] for row in rows_of(folder) if row["step"] > 251} == {0}
+    assert rows_of(folder)[-1]["step"] == 700
     assert finite(folder)
 
 
@@ -235,8 +224,9 @@ def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path):
     )
     assert checkpoint.steps(folder / "checkpoints") == [100, 200]
     assert integrity.verify(folder / "checkpoints" / "200") is None
-    assert rows(folder)[-1]["diverged"] == "eval/return"
-    assert (summary(folder)["finished"], summary(folder)["diverged"][0]["step"]) == (False, 300)
+    assert rows_of(folder)[-1]["diverged"] == "eval/return"
+    summary = summary_of(folder)
+    assert (summary["finished"], summary["diverged"][0]["step"]) == (False, 300)
 
 
 def test_a_learner_without_a_checkpoint_goes_back_to_its_first_state(tmp_path):
@@ -250,9 +240,9 @@ def test_a_learner_without_a_checkpoint_goes_back_to_its_first_state(tmp_path):
 
 def test_the_speed_is_that_of_learning(whole):
     """Half of the first decisions are random, then the batch fills: no speed before."""
-    found = [row for row in rows(whole) if "world/reward" in row]
+    found = [row for row in rows_of(whole) if "world/reward" in row]
     assert [r["step"] for r in found if "perf/env_steps_per_s" not in r] == [50, 50]
-    assert summary(whole)["env_steps_per_s"] > 0
+    assert summary_of(whole)["env_steps_per_s"] > 0
     speed = Speed()
     assert speed.rate is None
     speed.add(100, 2.0)

@@ -7,7 +7,7 @@ import jax
 import numpy as np
 import pytest
 from programs import shared
-from tiny import TINY, call, call_train, only_line
+from tiny import TINY, call, call_train, only_line, rows_of, summary_of
 
 import hybrid_rl
 from hybrid_rl import evaluate, export, train
@@ -28,9 +28,7 @@ def trained(*overrides):
 
 
 def rows(folder):
-    lines = (folder / "metrics.jsonl").read_text().splitlines()
-    each = [json.loads(line) for line in lines]
-    return [{k: v for k, v in row.items() if k not in NOT_COMPARED} for row in each]
+    return [{k: v for k, v in row.items() if k not in NOT_COMPARED} for row in rows_of(folder)]
 
 
 def same_learners(one, other):
@@ -59,8 +57,8 @@ def test_a_run_of_a_sweep_is_the_run_alone(swept, tmp_path):
     assert rows(swept / "3") != rows(swept / "2")
     first = [row["sac/alpha"] for row in rows(swept / "3") if "sac/alpha" in row]
     assert 0 < first[0] < 0.11
-    same = json.loads((alone / "summary.json").read_text()).keys()
-    assert json.loads((swept / "3" / "summary.json").read_text()).keys() == same
+    same = summary_of(alone).keys()
+    assert summary_of(swept / "3").keys() == same
 
 
 def test_one_value_is_the_run_without_a_sweep_bit_for_bit(tmp_path):
@@ -106,7 +104,7 @@ def test_a_learner_that_diverges_ends_alone(tmp_path, capfd):
     assert call_train(*SHORT, rates, f"run_dir={tmp_path / 'x'}") == 1
     line = only_line(capfd)
     assert line.startswith("hybrid_rl: seed 0 of policy_learner.policy_learning_rate=1e+30, step")
-    ends = [json.loads((tmp_path / "x" / k / "summary.json").read_text()) for k in "01"]
+    ends = [summary_of(tmp_path / "x" / k) for k in "01"]
     assert [len(each["diverged"]) for each in ends] == [2, 0]
     assert None not in ends[1]["final_eval"]
 

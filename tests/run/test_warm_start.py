@@ -1,19 +1,19 @@
 """train run=DIR: a new run begins with what another one knows, as far as it is true there."""
 
-import json
 import shutil
 
 import jax
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
-from tiny import call_train, contents, only_line, run
+from tiny import call_train, contents, only_line, rows_of, run, summary_of
 
 from hybrid_rl import config, trained
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import inherited, start
 from hybrid_rl.run.store import Store
 from hybrid_rl.training.loop import Loop
+from scripts import interrupt
 
 pytestmark = pytest.mark.turns(3)
 
@@ -162,20 +162,20 @@ def test_what_is_frozen_stays(source, warm):
     before, after = saved(source).learners, saved(warm).learners
     assert same(before["policy"], after["policy"])
     assert not same(before["model"], after["model"])
-    rows = [json.loads(line) for line in (warm / "metrics.jsonl").read_text().splitlines()]
+    rows = rows_of(warm)
     assert [row["step"] for row in rows if "eval/return" in row] == [0, 150]
     assert [row["step"] for row in rows if "model/loss" in row] == [50, 100, 150]
     assert not [row for row in rows if "sac/q" in row]
     kept, summary = (
         OmegaConf.load(warm / "config.yaml"),
-        json.loads((warm / "summary.json").read_text()),
+        summary_of(warm),
     )
     assert (kept.run, kept.freeze, kept.begun.step) == (str(source), ["policy"], 300)
     assert summary["run"] == str(source)
     assert summary["begun"]["remembered"] == 200
 
 
-def test_it_goes_on_bit_for_bit_without_the_first_run(interrupt, source, warm, tmp_path):
+def test_it_goes_on_bit_for_bit_without_the_first_run(source, warm, tmp_path):
     first, folder = tmp_path / "first", tmp_path / "run"
     shutil.copytree(source, first)
     line = [f"run={first}", f"run_dir={folder}", "total_steps=100", "freeze=[policy]"]

@@ -1,6 +1,5 @@
 """Learners on several devices equal those on one device."""
 
-import json
 import os
 import subprocess
 import sys
@@ -8,7 +7,7 @@ import sys
 import jax
 import numpy as np
 import pytest
-from tiny import TINY, run
+from tiny import TINY, rows_of, run, summary_of
 
 pytestmark = pytest.mark.turns(3)
 
@@ -17,7 +16,7 @@ SHORT = ["algo=sac", "num_seeds=2", "total_steps=200"]
 
 def rows(folder):
     """The metrics of each seed at each step, without times."""
-    logged = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    logged = rows_of(folder)
     names = ("sac/q", "sac/alpha", "train/return", "eval/return")
     return {
         (row["step"], row["seed"], name): row[name]
@@ -58,7 +57,7 @@ def test_learners_on_two_devices_equal_those_on_one(single, tmp_path):
     for key, value in wanted.items():
         np.testing.assert_allclose(got[key], value, rtol=1e-3, atol=1e-3, err_msg=str(key))
     on_two_devices(f"resume={single}", "total_steps=300")
-    assert json.loads((single / "summary.json").read_text())["total_steps"] == 300
+    assert summary_of(single)["total_steps"] == 300
 
 
 def test_learners_that_do_not_divide_are_reported(tmp_path, monkeypatch, capsys):

@@ -66,7 +66,7 @@ def figure(
     refit: Annotated[int, "Adam steps of a new model on all decisions", whole(0)] = 0,
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers."""
-    folders = matching(runs, "of this study")
+    folders = matching(runs)
     if against not in [folder.name for folder in folders]:
         names = ", ".join(folder.name for folder in folders)
         raise UsageError(f"against={against}: no such run; choose one of {names}")

@@ -29,7 +29,7 @@ CRITERIA = {
 
 def flips(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Figure 6-9: shares of flights of the clones over the number of queries, and safety."""
-    each = explored(pattern, "backflips")
+    each = explored(pattern)
     results = {one[:2]: trained(one) for one in each}
     rows: dict[str, Any] = {}
     for one in each:
@@ -146,7 +146,7 @@ def _row(
 
 def queries(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Figure 6-10: information of the queries, under the clone that asked and the reference."""
-    each = explored(pattern, "information")
+    each = explored(pattern)
     most = max(one.most for one in each)
     rows: dict[str, Any] = {}
     for one in [one for one in each if one.most == most]:

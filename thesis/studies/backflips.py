@@ -64,13 +64,13 @@ class Explored(NamedTuple):
     visited: np.ndarray  # [S, T, 6] states of the exploration
 
 
-def explored(pattern: str, view: str) -> list[Explored]:
+def explored(pattern: str) -> list[Explored]:
     """All runs that match, sorted by label and number of queries.
 
     Raises:
         UsageError: for other runs than those of the experiment, or two with one label.
     """
-    each = sorted(map(of, matching(pattern, view)), key=lambda one: one[:2])
+    each = sorted(map(of, matching(pattern)), key=lambda one: one[:2])
     for one, other in itertools.pairwise(each):
         if one[:2] == other[:2]:
             raise UsageError(f"runs={pattern}: two runs of {one.label}, {one.most} queries")

@@ -24,7 +24,7 @@ def frames(pattern: str, times: str, trial: int) -> tuple[Any, dict[str, Any]]:
     Raises:
         UsageError: unless one run matches, which has this trial.
     """
-    runs = contacts.trials(pattern, "frames")
+    runs = contacts.trials(pattern)
     if len(runs) > 1:
         raise UsageError(f"runs={pattern}: view=frames draws one run, and {len(runs)} match")
     (run,) = runs

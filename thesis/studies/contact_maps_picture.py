@@ -51,7 +51,7 @@ def maps(
     pattern: str, names: str, times: str, trial: int, map_out: str
 ) -> tuple[Any, dict[str, Any]]:
     """Maps of the first trial of every run, and measures of all trials at the same times."""
-    runs = trials(pattern, "map", names)
+    runs = trials(pattern, names)
     dt, length = runs[0].world.spec.dt, min(run.y.shape[1] for run in runs)
     marks = marks_of(times, length, dt)
     fine = sorted({*marks, *np.linspace(length / 12, length, 12).round().astype(int).tolist()})

@@ -44,7 +44,7 @@ EVERY = 10  # decisions between two entropies
 
 def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
     """Errors of the mean pose over time, and the times until it is found."""
-    runs = trials(pattern, "pose", names)
+    runs = trials(pattern, names)
     dt, length = runs[0].world.spec.dt, min(run.y.shape[1] for run in runs)
     marks = marks_of(times, length, dt)
     numbers: dict[str, Any] = {"times": [mark * dt for mark in marks], "methods": {}}
@@ -176,7 +176,7 @@ def _against(one: dict[str, Any]) -> str:
 
 def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     """Entropy of the pose over time, and the error of its mean, by which measurements count."""
-    run = trials(pattern, "absence")[0]
+    run = trials(pattern)[0]
     errors(run)  # refuses a run without poses
     dt, length = run.world.spec.dt, run.y.shape[1]
     at = np.array(marks_of(times, length, dt)) - 1

@@ -46,9 +46,9 @@ class Trials(NamedTuple):
     rows: dict[str, np.ndarray]  # metric -> [S, T] of metrics.jsonl
 
 
-def trials(pattern: str, view: str, names: str = "method") -> list[Trials]:
+def trials(pattern: str, names: str = "method") -> list[Trials]:
     """The trials of all runs that match, named by method or by folder, without its number."""
-    folders = matching(pattern, view)
+    folders = matching(pattern)
     if names == "folder":
         words = [re.sub(r"^\d+_", "", path.name) for path in folders]
     else:

@@ -29,7 +29,7 @@ EARLY = 5  # iterations of the thesis' claim about the arm
 
 def embedding(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Iterations of the carts, distances of the arms."""
-    folders = matching(pattern, "embedding")
+    folders = matching(pattern)
     numbers: dict[str, Any] = {CART: {}, ARM: {}}
     for folder in folders:
         run = RunFolder(folder)

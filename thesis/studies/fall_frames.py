@@ -18,7 +18,7 @@ def frames(pattern: str) -> tuple[Any, dict[str, Any]]:
     """A strip for each run; the numbers are the heights [m] at the times of the pictures."""
     from matplotlib.figure import Figure
 
-    each = falls(pattern, "frames")
+    each = falls(pattern)
     figure = Figure(figsize=(9, 1.5 * len(each)), layout="constrained")
     parts: Any = np.ravel(np.asarray(figure.subfigures(len(each), 1)))
     heights = {fall.label: _strip(part, fall) for part, fall in zip(parts, each, strict=True)}

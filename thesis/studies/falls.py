@@ -42,13 +42,13 @@ class Fall(NamedTuple):
     seconds: float  # wall time of a decision of all trials, over their number; NaN: not known
 
 
-def falls(pattern: str, view: str) -> list[Fall]:
+def falls(pattern: str) -> list[Fall]:
     """The trials of all runs that match, with the same first observations.
 
     Raises:
         UsageError: for runs that cannot be compared.
     """
-    folders = matching(pattern, view)
+    folders = matching(pattern)
     each = [of(read(path, "quadcopter_se3"), label) for path, label in _named(folders)]
     check_starts(each, folders)
     return each

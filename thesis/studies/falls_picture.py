@@ -14,18 +14,18 @@ LOWEST = 1e-4  # of the errors' axis
 
 def information(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Figure 7-2: information, error, share at rest."""
-    numbers = _measured(pattern, "falls")
+    numbers = _measured(pattern)
     return draw_information(numbers), numbers
 
 
 def initial(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Figure 7-3: error and share at rest by the first K."""
-    numbers = _measured(pattern, "initial")
+    numbers = _measured(pattern)
     return draw_initial(numbers), numbers
 
 
-def _measured(pattern: str, view: str) -> dict[str, Any]:
-    each = falls(pattern, view)
+def _measured(pattern: str) -> dict[str, Any]:
+    each = falls(pattern)
     return {"methods": {fall.label: reported(fall, regressors(fall)) for fall in each}}
 
 

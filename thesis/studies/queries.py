@@ -49,7 +49,7 @@ class Row(NamedTuple):
 
 def queries(pattern: str, refit: int, at: Sequence[int]) -> dict[str, Any]:
     """Shares over demonstrations, as trained and after a refit of `refit` steps at N in `at`."""
-    folders = matching(pattern, "queries")
+    folders = matching(pattern)
     configs = [_config(folder) for folder in folders]
     tasks = sorted({config.task for config in configs})
     if len(tasks) > 1:

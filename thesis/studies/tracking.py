@@ -67,7 +67,7 @@ class Track(NamedTuple):
 
 def tracking(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Paths of the first trial, RMSE and lag of each method."""
-    folders = matching(pattern, "tracking")
+    folders = matching(pattern)
     runs = [read(folder, *ROBOTS) for folder in folders]
     tasks = {run.config.task for run in runs}
     if len(tasks) > 1:

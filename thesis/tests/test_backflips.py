@@ -103,7 +103,7 @@ def test_runs_become_two_figures(
     line = ["experiment=thesis/fig_6_9", "algo=minie", "policy.hidden=[64]"]
     line += [*few, *asking, "dagger_learner.better=false", "run_dir=minie", "compile_cache=null"]
     train.train(config.load(line))
-    (one,) = backflips.explored("minie", "backflips")
+    (one,) = backflips.explored("minie")
     assert (one.label, one.most, one.asked.tolist()) == ("minie, spacing 3", 3, [3, 3])
     np.testing.assert_array_equal(one.decision, [[0, 3, 6]] * 2)
     np.testing.assert_array_equal(one.x, one.visited[:, [0, 3, 6]])

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from tiny import call
+from tiny import call, rows_of
 
 from hybrid_rl import config, figures, train
 from hybrid_rl.analysis.curves import Curve
@@ -38,7 +38,7 @@ def test_runs_become_a_picture_and_its_numbers(tmp_path, capsys) -> None:
     assert "lqr_bayesopt, 2 trials: best value " in printed
     assert "above 95% in 0 of 2; greatest V " in printed
     numbers = json.loads(out.with_suffix(".json").read_text())["lqr_bayesopt"]
-    rows = [json.loads(line) for line in (folder / "metrics.jsonl").read_text().splitlines()]
+    rows = rows_of(folder)
     for seed, peak in enumerate(numbers["V_peak"]):
         logged = [
             row["planner/lyapunov"]

@@ -42,7 +42,7 @@ def test_the_scene_and_the_outline_are_those_of_the_record(contact_runs: Runs) -
     """theta of the log, positions of the memory; the disc is where theta moved it."""
     recorded = read(contact_runs["pose"])
     trial = belief_frames.trial_of(recorded, SEED)
-    (run,) = contacts.trials(str(contact_runs["pose"]), "frames")
+    (run,) = contacts.trials(str(contact_runs["pose"]))
     theta = [run.rows[f"world/pose_{axis}"][SEED, 0] for axis in ("x", "y", "angle")]
     qpos, apart = belief_frames.scenes(trial)
     np.testing.assert_allclose(qpos[:, :3], np.tile(theta, (STEPS + 1, 1)), atol=1e-6)
@@ -99,10 +99,10 @@ def test_frames_have_the_errors_of_the_log(
         line = f"runs={run}", "trial=1", "times=0.5,1.2", f"out={tmp_path}/{name}.png"
         assert draw(*line) == 0
         got[name] = json.loads((tmp_path / f"{name}.json").read_text())
-    (pose,) = contacts.trials(str(contact_runs["pose"]), "frames")
+    (pose,) = contacts.trials(str(contact_runs["pose"]))
     for name, errors in zip(("position", "angle"), contacts.errors(pose), strict=True):
         assert got["pose"][name] == pytest.approx(errors[SEED, [4, 11]], rel=1e-3)  # rounded
-    (run,) = contacts.trials(str(contact_runs["map"]), "frames")
+    (run,) = contacts.trials(str(contact_runs["map"]))
     measured = contacts.quality(run, contacts.decisions(run, [5, 12]), [5, 12])
     for name, values in measured.items():
         assert got["map"][name] == pytest.approx(values[SEED], rel=1e-3)

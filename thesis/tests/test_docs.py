@@ -28,6 +28,11 @@ def test_every_method_has_one_section():
     assert sorted(names) == options("algo")
 
 
+def test_the_parts_of_a_method_stand_outer_ones_first():
+    names = [name.rpartition(".")[2] for name in docs.parts("ddpg")]
+    assert names[:4] == ["NoisyController", "PolicyController", "TanhGaussian", "DDPG"]
+
+
 def test_the_same_eight_methods_come_first_everywhere():
     """In the listing, in the README and on the page of methods."""
     for name in ("README.md", "docs/methods.md"):

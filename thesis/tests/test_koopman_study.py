@@ -130,8 +130,8 @@ def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
     (babble / "config.yaml").write_text(settings.replace("koopman_direct", "koopman_babble"))
     out = tmp_path / "f.png"
     runs = f"runs={tmp_path}/runs/*"
-    both = falls.falls(f"{tmp_path}/runs/*", "falls")
-    monkeypatch.setattr(falls_picture, "falls", lambda pattern, view: both)
+    both = falls.falls(f"{tmp_path}/runs/*")
+    monkeypatch.setattr(falls_picture, "falls", lambda pattern: both)
     assert draw("view=falls", runs, f"out={out}") == 0
     numbers = json.loads(out.with_suffix(".json").read_text())["methods"]
     assert set(numbers) == {"koopman_direct", "koopman_babble"}
@@ -145,7 +145,7 @@ def test_runs_become_falls(tmp_path, capsys, monkeypatch) -> None:
     assert draw("view=initial", runs, f"out={out}") == 0
     monkeypatch.undo()
     assert draw("view=falls", f"out={out}") == 2
-    assert "runs: not given; view=falls needs" in capsys.readouterr().err
+    assert "runs: not given; give runs=" in capsys.readouterr().err
 
 
 def test_labels_name_the_settings_that_differ(tmp_path) -> None:
@@ -208,7 +208,7 @@ def test_tracks_become_numbers_and_a_picture(tmp_path, monkeypatch, capsys) -> N
         "exact": Track("exact", exact + 0.003, reference, action, rate, 0.0, 1 / 30),
     }
     of = SimpleNamespace(config=SimpleNamespace(task="sprk_sand"))
-    monkeypatch.setattr(tracking, "matching", lambda pattern, view: list(tracks))
+    monkeypatch.setattr(tracking, "matching", lambda pattern: list(tracks))
     monkeypatch.setattr(tracking, "labels", lambda folders: folders)
     monkeypatch.setattr(tracking, "read", lambda folder, *tasks: of)
     monkeypatch.setattr(tracking, "of", lambda run, label: tracks[label])
@@ -273,7 +273,7 @@ def test_a_fall_is_a_strip_of_attitudes_with_heights(tmp_path, monkeypatch) -> N
     obs[0, :, 2] = -np.arange(800) * DT
     obs[0, 400:, 3:12] = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]).ravel()  # on its side
     fall = SimpleNamespace(label="mine", obs=obs)
-    monkeypatch.setattr(fall_frames, "falls", lambda pattern, view: [fall])
+    monkeypatch.setattr(fall_frames, "falls", lambda pattern: [fall])
     drawn = []
 
     def frames(scene, poses, width, height) -> np.ndarray:

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from tiny import call
+from tiny import call, rows_of
 
 from hybrid_rl import config, figures, train
 from hybrid_rl.cli import command
@@ -119,7 +119,7 @@ def test_runs_become_a_picture_and_its_numbers(tmp_path, capsys) -> None:
     hover, noise = numbers["normal_noise 0"], numbers["ou_noise 0.1"]
     assert hover["power_loss"][0] < 1e-3 < noise["power_loss"][0]
     assert noise["kept_hover"] == 1
-    rows = map(json.loads, (tmp_path / "runs" / "ou" / "metrics.jsonl").read_text().splitlines())
+    rows = rows_of(tmp_path / "runs" / "ou")
     logged = [row["world/power_loss"] for row in rows if "world/power_loss" in row]
     assert noise["power_loss"][0] == pytest.approx(np.mean(logged), rel=1e-3)
     assert out.stat().st_size > 1000
