@@ -26,12 +26,19 @@ class Adjoint(NamedTuple):
     gradient: Array  # g [T, m] [J / u]
 
 
-UNROLLED = 32  # longest loop that is unrolled completely [decisions]
+UNROLLED = 32  # longest loop that a GPU unrolls completely [decisions]
+TURNS = 4  # steps in a turn of other loops
 
 
 def scan_unroll(length: int) -> int:
-    """The unroll factor of a loop of `length` steps: XLA takes minutes to compile 120 of them."""
-    return length if length <= UNROLLED else 4
+    """The unroll factor of a loop of `length` steps.
+
+    Each turn of a loop costs a GPU launches; XLA takes minutes to compile 120 steps, though. On a
+    CPU longer turns are slower, and where a step uses its state twice, XLA computes each of them
+    again for every use of its result: 2^length times.
+    """
+    whole = length <= UNROLLED and jax.default_backend() != "cpu"
+    return length if whole else min(length, TURNS)
 
 
 def roll(step: Step, policy: Callable[[Array], Array], x: Array, correction: Array) -> Path:

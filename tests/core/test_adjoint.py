@@ -166,3 +166,8 @@ def test_the_mode_insertion_gradient_scales_with_the_variance_and_its_ratio_does
     rates = [float(each["planner/insertion_per_variance"]) for each in (of_wide, of_narrow)]
     np.testing.assert_allclose(rates, float(g[0] ** 2), rtol=2e-2)
     assert float(of_narrow["planner/policy_variance"]) == pytest.approx(1e-4)
+
+
+def test_a_cpu_unrolls_few_steps() -> None:
+    """There XLA would compute a coupled step again for every use of its result."""
+    assert [adjoint.scan_unroll(length) for length in (1, 4, 5, 32, 120)] == [1, 4, 4, 4, 4]
