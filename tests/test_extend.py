@@ -120,7 +120,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
         ),
         (
             ["algo=nn_mppi", "proposal=noise"],
-            "proposal: nn_mppi does not use it; it uses model_proposal",
+            "proposal: nn_mppi does not use it; it uses proposal@model_proposal",
         ),
     ],
     ids=["name", "value", "key", "class", "module", "unused"],

@@ -4,8 +4,8 @@ import shlex
 
 import numpy as np
 import pytest
-from test_session import SAC, rows
-from tiny import TINY, call_train, run
+from test_session import SAC
+from tiny import TINY, call_train, rows_of, run
 
 from hybrid_rl import train
 from hybrid_rl.errors import WorldError
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.turns(3)
 
 def test_the_result_is_that_of_the_policy_where_only_it_is_evaluated(tmp_path, capsys):
     result = run(tmp_path / "run", *SAC, "eval_modes=[policy]")
-    last = [row for row in rows(tmp_path / "run") if "eval/policy_return" in row][-1]
+    last = [row for row in rows_of(tmp_path / "run") if "eval/policy_return" in row][-1]
     np.testing.assert_allclose(result["final_eval"][-1], last["eval/policy_return"], rtol=1e-6)
     assert f"eval {np.mean(result['final_eval']):,.1f}" in capsys.readouterr().out
 
