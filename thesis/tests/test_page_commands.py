@@ -72,6 +72,8 @@ def folder(tmp_path_factory):
     for name in ("docs/results", "policies"):  # in which the commands of the pages write
         (folder / name).mkdir(parents=True)
     run(folder / "run", "algo=hybrid_stochastic", *size, "eval_modes=[full,policy]")
+    head = "exp_name,env_name,seed,metric,env_step,value"  # of another library's curve
+    (folder / "sb3.csv").write_text(f"{head}\nSAC,pendulum,0,avg_return,50,-300\n")
     return folder
 
 
