@@ -12,7 +12,7 @@ from hybrid_rl import demonstrate, evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
-from hybrid_rl.goals import retargeted
+from hybrid_rl.goals import aimed, retargeted
 from hybrid_rl.trained import Trained, load, read
 from scripts import new_goals
 
@@ -196,6 +196,12 @@ def test_a_policy_without_models_refuses_a_planner(word: str, capfd) -> None:
     assert call(lambda: command.run(evaluate.main), *given) == 2
     does = "imagine" if word.startswith("imagine") else "plan"
     assert f"{word}: there is no learned model to {does} with" in only_line(capfd)
+
+
+def test_a_shipped_policy_can_imagine() -> None:
+    """Its configuration lacks the keys that runs have got since."""
+    after, before = aimed(read("halfcheetah"), ["reward=level", "imagine=policy"])
+    assert before.learner.policy == after.controllers["policy"].policy
 
 
 def test_without_a_policy_none_imagines(tmp_path, capfd) -> None:
