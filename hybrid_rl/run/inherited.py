@@ -16,7 +16,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.composition import file, options
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import LACKING, REFERENCE, parse, plain, select, source
+from hybrid_rl.overrides import LACKING, REFERENCE, parse, raw_values, select, source
 from hybrid_rl.run import folder
 
 CHOSEN = ("task", "algo", "learning")  # they make the parameters
@@ -40,7 +40,7 @@ def chosen(texts: Sequence[str]) -> list[str]:
     named = [text for text in texts if text.startswith("run=") and text != "run=null"]
     if not named:
         return [*texts]
-    given = overrides.given(texts)
+    given = overrides.typed_values(texts)
     if given.get("resume", "null") != "null":
         raise UsageError(
             "run, resume: give one of them; run=DIR begins a new run with what DIR has learned, "
@@ -59,7 +59,7 @@ def chosen(texts: Sequence[str]) -> list[str]:
             line = line or f"with {named[-1]} the settings come from there; give single keys"
             raise UsageError(f"{key}={given[key]}: {line}{has}")
     more = [f"{key}={value}" for key, value in words[0].items() if key not in given]
-    at, known = texts.index(named[-1]), plain(runs[0])
+    at, known = texts.index(named[-1]), raw_values(runs[0])
     kept = [text if select(known, _key(text)) is LACKING else f"++{text}" for text in texts]
     return [*kept[:at], *more, *kept[at:]]
 
@@ -77,7 +77,9 @@ def _choices(config: DictConfig) -> dict[str, str]:
         files: dict[str, Any] = {
             name: OmegaConf.load(file("task", name)) for name in options("task")
         }
-        same = [n for n, c in files.items() if select(plain(c), "env._target_") == _kind(config)]
+        same = [
+            n for n, c in files.items() if select(raw_values(c), "env._target_") == _kind(config)
+        ]
         words["task"] = same[0] if same else config.task
     method = file("algo", config.algo).read_text() if config.algo in options("algo") else ""
     if "policy_learning" in config and "override /learning:" in method:
@@ -99,7 +101,7 @@ def resolved(config: DictConfig, texts: Sequence[str]) -> DictConfig:
     """
     if config.get("run") is None:
         return configuration.resolved(config)
-    raw, typed = plain(config), parse(texts)
+    raw, typed = raw_values(config), parse(texts)
     if deleted := [each for each in typed if each.is_delete()]:
         raise UsageError(f"{deleted[0].input_line}: with run=DIR keys cannot be deleted")
     now: Any = OmegaConf.to_container(config, resolve=True)

@@ -23,11 +23,11 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import LACKING, plain, select, source
+from hybrid_rl.overrides import LACKING, raw_values, select, source
 from hybrid_rl.run import folder, inherited
 from hybrid_rl.run.folder import SWEEP
 from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.records import flat
+from hybrid_rl.run.records import flatten_keys
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of
@@ -61,8 +61,8 @@ def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     Raises:
         UsageError: for a key that does not exist or is not used, or values that are no numbers.
     """
-    texts, raw = [text for text in texts if not overrides.is_swept(text)], plain(config)
-    lists, config = flat(raw.pop("sweep") or {}), config.copy()
+    texts, raw = [text for text in texts if not overrides.is_swept(text)], raw_values(config)
+    lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
     config.sweep = {}
     for key, values in lists.items():
         _check_values(config, raw, key, values)
