@@ -228,7 +228,7 @@ class OnlineLearner:
         path = _free(folder)
         while self._waiting:
             self._advance()
-        with locked(run_folder.writable(path, "folder"), "folder"), self._lock:
+        with locked(run_folder.ensure_writable(path, "folder"), "folder"), self._lock:
             values: Any = OmegaConf.to_container(self.config)
             store = Store(path / "checkpoints", self._loop, True, flatten_keys(values))
             store.known = set(checkpoint.steps(store.folder))
@@ -281,7 +281,7 @@ def _free(folder: Path | str) -> Path:
     if not str(folder):
         raise UsageError("folder=: give the folder that save writes")
     if (path / "config.yaml").exists():
-        env = run_folder.parsed(path, "folder").get("env")
+        env = run_folder.parse_config(path, "folder").get("env")
         if (env or {}).get("_target_") != OUTSIDE:
             raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
     return path

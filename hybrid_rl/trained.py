@@ -117,7 +117,7 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     config = run_folder.read(folder, key)
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"{key}={folder}: holds no checkpoint yet; train it further first")
-    with run_folder.blamed(folder):
+    with run_folder.blame_config(folder):
         check(config)
         prepare(config)
         return replace(of(built(config), folder), config=config)

@@ -209,7 +209,7 @@ def test_a_sweep_makes_a_folder_each(swept):
 def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:
     folder = tmp_path / "runs" / "pendulum" / "sac"
     with ThreadPoolExecutor(16) as pool:
-        made = list(pool.map(lambda _: run_folder.writable(folder, "run_dir"), range(2000)))
+        made = list(pool.map(lambda _: run_folder.ensure_writable(folder, "run_dir"), range(2000)))
     assert set(made) == {folder}
     assert not list(folder.iterdir())
 

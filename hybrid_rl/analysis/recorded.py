@@ -11,7 +11,7 @@ from hybrid_rl.analysis.results import RunFolder, differences, short
 from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.folder import parsed
+from hybrid_rl.run.folder import parse_config
 from hybrid_rl.trained import built, restore
 
 
@@ -52,7 +52,7 @@ def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
         UsageError: unless it is a run of one of the tasks, or of any if none is given, with a
             complete memory of one world.
     """
-    config: Any = parsed(folder, key)
+    config: Any = parse_config(folder, key)
     fits = config.task in tasks or not tasks
     if not fits or config.num_envs != 1 or not config.checkpoint_replay:
         words = f"{' or '.join(tasks)}, " if tasks else ""

@@ -230,7 +230,7 @@ def read(path: Path) -> Evidence:
     config = run_folder.read(path, "run")
     if run_folder.rowless(path):
         raise UsageError(f"run={path}: {path / 'metrics.jsonl'}: no row of metrics yet")
-    with run_folder.blamed(path):
+    with run_folder.blame_config(path):
         prepare(config)
         run = built(config, "memory")
         return Evidence(RunFolder(path), config, run, _made(path, config, run))

@@ -63,7 +63,7 @@ def built(config: DictConfig) -> tuple[Run, Start | None]:
     """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
     if config.get("run") is None:
         return configuration.build(config), None
-    with folder.blamed(Path(str(config.run)), lacking=True):
+    with folder.blame_config(Path(str(config.run)), lacking=True):
         return begun(config)
 
 

@@ -171,8 +171,8 @@ def _refused(members: Sequence[Member], path: str, why: str = "") -> UsageError:
 
 
 @contextmanager
-def fresh(members: Sequence[Member]) -> Iterator[list[Path]]:
-    """A new run folder for each run of a sweep, as `folder.fresh`, and sweep.json beside them."""
+def claim_folders(members: Sequence[Member]) -> Iterator[list[Path]]:
+    """Folders for the runs of a sweep, as `folder.claim_folder`, and sweep.json beside them."""
     config = members[0].config
     given = config.run_dir is not None
     parent = Path(str(config.run_dir)) if given else folder.new_folder(config)
@@ -187,7 +187,7 @@ def fresh(members: Sequence[Member]) -> Iterator[list[Path]]:
             for number, member in enumerate(members):
                 with open_dict(member.config):
                     member.config.run_dir = str(parent / str(number))
-                each.append(stack.enter_context(folder.fresh(member.config)))
+                each.append(stack.enter_context(folder.claim_folder(member.config)))
             columns = {key: [one.values[key] for one in members] for key in members[0].values}
             write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
             yield each

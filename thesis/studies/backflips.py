@@ -29,7 +29,7 @@ from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import labels
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.folder import parsed
+from hybrid_rl.run.folder import parse_config
 from hybrid_rl.trained import restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import (
@@ -104,7 +104,7 @@ def of(folder: Path) -> Explored:
     Raises:
         UsageError: unless they asked for flips of a lander.
     """
-    config: Any = parsed(folder) if (folder / "config.yaml").exists() else {}
+    config: Any = parse_config(folder) if (folder / "config.yaml").exists() else {}
     if "spacing" not in (config.get("learners", {}).get("policy") or {}):
         raise UsageError(f"runs={folder}: needs a run of experiment=thesis/fig_6_9")
     recorded = read(folder, "lander")

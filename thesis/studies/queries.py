@@ -23,7 +23,7 @@ from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run.folder import parsed
+from hybrid_rl.run.folder import parse_config
 from hybrid_rl.trained import built, restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
@@ -83,7 +83,7 @@ def queries(pattern: str, refit: int, at: Sequence[int]) -> dict[str, Any]:
 
 def _config(folder: Path) -> Any:
     """The configuration of a run whose clone asks a teacher."""
-    config: Any = parsed(folder)
+    config: Any = parse_config(folder)
     learner = config.learners.get("policy")
     if learner is None or "teacher" not in learner or not learner.first:
         raise UsageError(
