@@ -64,13 +64,13 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
         UsageError: if an override fits nothing in conf/, or names a key that does not exist or that
             the method does not use; if the user's own task file is incomplete; for run, sweep.
     """
-    config = composed(overrides, config_dir)
+    config = compose_raw(overrides, config_dir)
     for key in (key for key in ("run", "sweep") if config[key]):
         raise UsageError(f"{key}={config[key]}: only the command and hybrid_rl.train take it")
     return resolved(config)
 
 
-def composed(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
+def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """The configuration of these overrides with its interpolations; errors as `load`."""
     if isinstance(overrides, str):
         raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')

@@ -215,7 +215,7 @@ def main() -> None:
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.envs.mujoco.scenery import scene_of
-    from hybrid_rl.goals import chosen
+    from hybrid_rl.goals import load_changed
 
     default = f"{named}/video.mp4" if given["run"] else f"{Path(named).stem}.mp4"
     out = Path(given["out"] or default)
@@ -230,7 +230,7 @@ def main() -> None:
     if given["mode"] == "training" and given["run"]:
         _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
         return
-    trained = None if given["task"] else chosen(given, changes)[0]
+    trained = None if given["task"] else load_changed(given, changes)[0]
     if trained is not None and isinstance(trained.episode.env, External):
         _outside(trained, given, out)
         return

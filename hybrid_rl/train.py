@@ -189,7 +189,7 @@ def _run_of(agent: Agent, settings: dict[str, Any]) -> Run:
 def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds. on_row: as of `train`."""
     typed = overrides.of_job(HydraConfig.get())
-    members = together.expanded(config, typed)
+    members = together.expand_sweep(config, typed)
     config = members[0].config
     output = launch.Output.of(on_row)
     given = overrides.typed_values(typed)

@@ -19,7 +19,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, read, whole
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import chosen
+from hybrid_rl.goals import load_changed
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
 from scripts.seeds import Row, every, listed, write
@@ -78,7 +78,7 @@ def measured(trained: Trained, controller: Any, episodes: int) -> dict[str, Any]
 def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, CHANGES)
-    trained, words = chosen(given, changes)
+    trained, words = load_changed(given, changes)
     other = load(given["penalised"], "penalised") if given["penalised"] else None
     other = other and replace(other, episode=trained.episode)  # the same world and constraint
     known = acting(trained, other)

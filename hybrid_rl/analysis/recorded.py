@@ -12,7 +12,7 @@ from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.folder import parse_config
-from hybrid_rl.trained import built, restore
+from hybrid_rl.trained import build_run, restore
 
 
 class Recorded(NamedTuple):
@@ -57,7 +57,7 @@ def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
     if not fits or config.num_envs != 1 or not config.checkpoint_replay:
         words = f"{' or '.join(tasks)}, " if tasks else ""
         raise UsageError(f"{key}={folder}: needs {words}num_envs=1, checkpoint_replay=true")
-    run = built(config, "memory")
+    run = build_run(config, "memory")
     memory = restore(folder, run, "memory")[1].memory
     decisions = min(int(np.asarray(memory.count).min()), memory.rows.shape[1])
     return Recorded(RunFolder(folder), config, run, memory, decisions)

@@ -18,7 +18,7 @@ from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.trained import built
+from hybrid_rl.trained import build_run
 
 BIN = 0.5  # [min]
 QUANTILES = {"median": 0.5, "99%": 0.99, "greatest": 1.0}
@@ -30,7 +30,7 @@ def figure(
     """Returns over minutes, a panel for each robot."""
     numbers: dict[str, Any] = {"robots": {}}
     for path in matching(runs):
-        env = built(run_folder.read(path, "runs")).agent.episode.env
+        env = build_run(run_folder.read(path, "runs")).agent.episode.env
         if not isinstance(env, Robot):
             raise UsageError(f"runs={path}: is no run of task=robot")
         data = (path / "robot" / "rows").read_bytes()

@@ -83,7 +83,7 @@ def hydra_main(job: Callable[..., Any]) -> None:
         return
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
-        sys.argv[1:] = overrides.allow_sweep_keys(inherited.chosen(_ordered(sys.argv[1:])))
+        sys.argv[1:] = overrides.allow_sweep_keys(inherited.add_choices(_ordered(sys.argv[1:])))
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except Exception as error:
         report(error)

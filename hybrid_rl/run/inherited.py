@@ -1,8 +1,8 @@
 """The configuration of a run that begins with another one: that of run=DIR, with the overrides.
 
 config.yaml holds values without references, and not all names of the parts that were chosen. So
-the overrides are composed with the task and the method of DIR (`chosen`), and what they change,
-there or by reference elsewhere, is changed in the values of DIR (`resolved`).
+the overrides are composed with the task and the method of DIR (`add_choices`), and what they
+change, there or by reference elsewhere, is changed in the values of DIR (`resolve_config`).
 """
 
 import re
@@ -28,10 +28,10 @@ def load(texts: Sequence[str], config_dir: str | Path | None = None) -> DictConf
     """The resolved configuration of these overrides, also of run=DIR; errors as `config.load`."""
     if isinstance(texts, str) or not any(text.startswith("run=") for text in texts):
         return configuration.load(texts, config_dir)
-    return resolved(configuration.composed(chosen(texts), config_dir), texts)
+    return resolve_config(configuration.compose_raw(add_choices(texts), config_dir), texts)
 
 
-def chosen(texts: Sequence[str]) -> list[str]:
+def add_choices(texts: Sequence[str]) -> list[str]:
     """The words of a command, with the task and the method of DIR before run=DIR.
 
     Raises:
@@ -91,7 +91,7 @@ def _kind(config: DictConfig) -> str:
     return str(config.env.get("_target_"))
 
 
-def resolved(config: DictConfig, texts: Sequence[str]) -> DictConfig:
+def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
     """The resolved configuration of a run, with the values of DIR if it has run=DIR.
 
     config: composed from the overrides `texts`, with its interpolations.

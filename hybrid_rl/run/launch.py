@@ -67,7 +67,7 @@ def train(
     for each in members:
         check(each.config)
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    made = [starting.built(each.config) for each in members]
+    made = [starting.build_new_run(each.config) for each in members]
     runs = [run for run, _ in made]
     if len(runs) == 1:
         return begin(runs[0], handled, output, made[0][1])

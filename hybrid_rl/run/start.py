@@ -59,7 +59,7 @@ def _concatenated(each: Sequence[Any]) -> Any:
     return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *each)
 
 
-def built(config: DictConfig) -> tuple[Run, Start | None]:
+def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
     if config.get("run") is None:
         return configuration.build(config), None

@@ -45,15 +45,16 @@ class Member:
 
 
 def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None) -> list[Member]:
-    """The runs of these overrides, or of what is resolved; errors as of `inherited`, `expanded`."""
+    """The runs of these overrides, or what is resolved; errors of `inherited`, `expand_sweep`."""
     if isinstance(texts, DictConfig):
         return [Member(texts, {})]
     if isinstance(texts, str) or not any(map(overrides.is_swept, texts)):
         return [Member(inherited.load(texts, config_dir), {})]
-    return expanded(configuration.composed(inherited.chosen(texts), config_dir), texts)
+    config = configuration.compose_raw(inherited.add_choices(texts), config_dir)
+    return expand_sweep(config, texts)
 
 
-def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
+def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     """A run for each combination of the values of the keys below `sweep`; one if there is none.
 
     config: composed from the overrides `texts`, with its interpolations.
@@ -78,7 +79,7 @@ def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         for key, value in chosen.items():
             OmegaConf.update(own, source(raw, key), value)
         _refuse_unused(own, typed)
-        members.append(Member(inherited.resolved(own, [*texts, *typed]), chosen))
+        members.append(Member(inherited.resolve_config(own, [*texts, *typed]), chosen))
     return members
 
 

@@ -62,14 +62,14 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     from hybrid_rl.composition import options
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco.scenery import check_drawable
-    from hybrid_rl.trained import chosen
+    from hybrid_rl.trained import load_named
     from hybrid_rl.view.following import Follower
     from hybrid_rl.view.panel import Wishes
     from hybrid_rl.view.player import Choice, Player
     from hybrid_rl.view.session import Session
     from hybrid_rl.view.subject import Source, learner
 
-    trained = None if given["task"] else chosen(given)
+    trained = None if given["task"] else load_named(given)
     source = Source(given, changes, trained)
     if trained is not None and isinstance(trained.episode.env, External):
         raise UsageError("a Gymnasium environment draws itself; use render")

@@ -13,7 +13,7 @@ from typing import Any, get_args
 from hybrid_rl.config import PAID
 from hybrid_rl.demonstrate import scripted
 from hybrid_rl.fields import Must, choices, plain
-from hybrid_rl.goals import changed
+from hybrid_rl.goals import apply_changes
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
@@ -173,7 +173,7 @@ class Source:
         if reward != self.given["reward"]:
             words = {key: value for key, value in words.items() if not key.startswith("reward.")}
         given = {**self.given, "reward": reward}
-        trained = changed(self.trained, given, {**words, **changes})[0]
+        trained = apply_changes(self.trained, given, {**words, **changes})[0]
         acting = trained.controllers
         if quick:
             acting = {mode: quicker(controller) for mode, controller in acting.items()}

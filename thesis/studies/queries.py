@@ -24,7 +24,7 @@ from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.folder import parse_config
-from hybrid_rl.trained import built, restore
+from hybrid_rl.trained import build_run, restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params
@@ -146,7 +146,7 @@ def _keys(run: Run) -> Any:
 
 def taught(config: Any, score: str) -> float:
     """The mean score of the teacher over the episodes of an evaluation of all seeds."""
-    run = built(config)
+    run = build_run(config)
     learner: Any = run.agent.learners["policy"]
     teacher, episode = learner.teacher.greedy(), run.agent.episode
 
@@ -163,7 +163,7 @@ def refitted(row: Row, steps: int, at: Sequence[int], score: str) -> np.ndarray:
     Raises:
         UsageError: if the run has fewer.
     """
-    run, first = built(row.config), int(row.config.learners.policy.first)
+    run, first = build_run(row.config), int(row.config.learners.policy.first)
     learner: Any = run.agent.learners["policy"]
     state = restore(row.folder, run)[1].learners["policy"]
     counts = first * (np.array(at) + 1)
