@@ -143,7 +143,7 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     say(f"compiling, then {episodes} episodes a seed ...")  # of a planner, a minute
     got = evaluate(trained, given["mode"], episodes, _saying(trained.episode.steps))
     values = report(trained, given["mode"], got)
-    values |= {"changes": changes, "precision": precision.chosen()}
+    values |= {"changes": changes, "precision": precision.current()}
     where = "".join(f", {key}={value}" for key, value in changes.items())
     print(f"{name}, mode {given['mode']}, step {trained.step:,}{where}")  # whole, also in a pipe
     Console().print(_table(values))

@@ -110,7 +110,7 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
         "env_steps_per_s": None if rate is None else rate / len(session.shelf.logs),
         "physics": configuration.physics(config),
         "device": provenance.device(),
-        "precision": precision.chosen(),
+        "precision": precision.current(),
         "versions": provenance.versions(),
         "git_commit": provenance.git_commit(),
         "run_dir": str(run_dir),

@@ -152,7 +152,7 @@ def _run(
         each = zip(job.folders, job.axis.names, strict=True)
         notes = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in each]
         notes += [size, *run.notes]
-        if precision.chosen() == "bf16" and jax.default_backend() == "cpu":
+        if precision.current() == "bf16" and jax.default_backend() == "cpu":
             notes.append(SLOWER)
         progress.note("\n".join(notes))
         loop = job.loop()
