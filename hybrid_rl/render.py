@@ -138,11 +138,11 @@ def _episode_of(
 
     seed, asked, number = (given[name] for name in ("seed", "episode_steps", "episode"))
     if trained is None:
-        from hybrid_rl.demonstrate import scripted
+        from hybrid_rl.demonstrate import scripted_expert
         from hybrid_rl.training.rollout import evaluation_keys
 
         other = {"expert": given["expert"]} if given["expert"] else {}
-        world, controller, params = scripted(given["task"], {**other, **changes})
+        world, controller, params = scripted_expert(given["task"], {**other, **changes})
         _check(check_drawable, world.env)
         begun = replace(world, steps=_steps(world, asked, out))
         key = evaluation_keys(seed or 0, number + 1)[-1]

@@ -22,7 +22,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import load_changed
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
-from scripts.seeds import Row, every, listed, write
+from scripts.seeds import Row, every, split_names, write
 
 CHANCE = 0.1  # unless constraint.chance is given
 ARGUMENTS = (
@@ -82,7 +82,7 @@ def main() -> None:
     other = load(given["penalised"], "penalised") if given["penalised"] else None
     other = other and replace(other, episode=trained.episode)  # the same world and constraint
     known = acting(trained, other)
-    wanted = listed(given["rows"]) or list(known)
+    wanted = split_names(given["rows"]) or list(known)
     if lost := [name for name in wanted if name not in known]:
         raise UsageError(f"rows={lost[0]}: choose from {'; '.join(known)}")
 

@@ -31,7 +31,7 @@ class Recorded(NamedTuple):
         return jax.tree.map(np.asarray, unpack(rows, self.run.agent.spec))
 
 
-def matching(pattern: str) -> list[Path]:
+def run_folders(pattern: str) -> list[Path]:
     """The run folders that match a pattern, sorted.
 
     Raises:

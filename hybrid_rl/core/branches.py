@@ -1,9 +1,9 @@
 """Branches: trajectories of a policy in a model that begin at real states (Janner et al. 2019).
 
-`fresh` draws them for each update. `Branches` are kept from one update to the next: each update
-continues all of them by one decision and restarts those that ended or reached their length. Then
-one decision of the model per update is enough for branches of any length, and thus for states that
-the present policy leads to.
+`sample_fresh` draws them for each update. `Branches` are kept from one update to the next: each
+update continues all of them by one decision and restarts those that ended or reached their length.
+Then one decision of the model per update is enough for branches of any length, and thus for states
+that the present policy leads to.
 """
 
 from collections.abc import Callable

@@ -109,12 +109,12 @@ def serve(given: Mapping[str, Any]) -> Any:
     Raises:
         UsageError: without viser.
     """
-    viser: Any = installed()
+    viser: Any = import_viser()
     with contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
         return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
 
 
-def installed() -> Any:
+def import_viser() -> Any:
     """The module viser.
 
     Raises:
@@ -155,7 +155,7 @@ def main() -> None:
     given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
     robot(given, changes)
     check_address(given["host"], given["port"])
-    installed()
+    import_viser()
     show(given, changes)
 
 
