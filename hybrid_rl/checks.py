@@ -16,7 +16,7 @@ from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, printable, relative
 from hybrid_rl.fields import choices, plain
 from hybrid_rl.networks.precision import PRECISIONS
-from hybrid_rl.overrides import SHOW, meant
+from hybrid_rl.overrides import SHOW, closest_hint
 from hybrid_rl.types import NAME, Spec
 
 COUNTS = (
@@ -185,7 +185,7 @@ def check_fields(node: DictConfig, part: Any, where: str) -> None:
             called = f"{called} is no dataclass (@dataclass(frozen=True)), and"
         names = [name for name in takes if (where, name) != ("episode.", "env")]
         known = f"has {', '.join(names)}" if names else "has no fields"
-        raise UsageError(f"{where}{name}: {called} {known}{meant(name, takes)}")
+        raise UsageError(f"{where}{name}: {called} {known}{closest_hint(name, takes)}")
 
 
 def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:

@@ -47,7 +47,7 @@ def check_choices(texts: Iterable[str]) -> None:
         UsageError: with the names that the group has.
     """
     texts = list(texts)
-    typed = overrides.given(texts)
+    typed = overrides.typed_values(texts)
     one, other = (typed.get(key, "") for key in ("env.id", "env.make"))
     if overrides.value_of(one) and overrides.value_of(other):
         raise UsageError(f"env.id={one}: env.make={other} is another environment; give one of them")
@@ -93,7 +93,7 @@ def explain(error: Exception) -> str:
         deep = 2 if parts[0] == "hydra" else 1
         group, value = "/".join(parts[:deep]), "/".join(parts[deep:])
         known = sorted({*options(group), *(error.options or ())})  # theirs: of --config-dir too
-        close = overrides.meant(value, known) if len(known) < MANY else ""
+        close = overrides.closest_hint(value, known) if len(known) < MANY else ""
         if group == "task" and (kind := OF_GYMNASIUM.search(value)):
             close = f"; did you mean task=gymnasium env.{kind.lastgroup}={value}?"
         if group == "hydra/launcher" and SLURM not in known:
@@ -226,7 +226,7 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
     file = chosen(hydra, "task")
     if file is None or CONF in file.parents or config.get("resume") is not None:
         return None
-    raw, name = overrides.plain(config), relative(file)
+    raw, name = overrides.raw_values(config), relative(file)
     if isinstance(raw.get("task"), dict):
         raise UsageError(f"{name}: its first line must be {GLOBAL}")
     if lacking := [key for key in OF_A_TASK if raw.get(key) is None]:
@@ -239,9 +239,9 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
         raise UsageError(f"{name}: {error}") from error
     own: Any = OmegaConf.to_container(OmegaConf.load(file), resolve=False)
     own.pop("defaults", None)
-    read = overrides.reached(raw, roots)
+    read = overrides.reachable_keys(raw, roots)
     if lost := [key for key in own if key not in read and key not in _root_keys(hydra, file)]:
-        close = overrides.meant(lost[0], [*read, *_root_keys(hydra, file)])
+        close = overrides.closest_hint(lost[0], [*read, *_root_keys(hydra, file)])
         raise UsageError(f"{name}: {lost[0]}: unknown key, which nothing reads{close}")
     return _changed(raw, own, hydra, name)
 
@@ -275,8 +275,8 @@ def _changed(raw: dict[str, Any], own: dict[str, Any], hydra: Any, name: str) ->
     settings, typed = hydra.runtime.choices.get("settings"), overrides.of_job(hydra)
     changes = [
         (key, value, overrides.select(raw, key))
-        for key, value in overrides.reached(own, own).items()
-        if not isinstance(value, dict) and key not in overrides.given(typed)
+        for key, value in overrides.reachable_keys(own, own).items()
+        if not isinstance(value, dict) and key not in overrides.typed_values(typed)
     ]
     changes = [each for each in changes if each[1] not in (each[2], overrides.LACKING)]
     if settings is None or not changes:

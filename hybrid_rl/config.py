@@ -15,6 +15,7 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
+from hybrid_rl import overrides as overriding
 from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, check_owners, whole
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
@@ -23,7 +24,6 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
-from hybrid_rl.overrides import opened, plain, reached, refuse_new_keys, refuse_unused, search_path
 from hybrid_rl.parts import built
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
@@ -64,20 +64,20 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
         UsageError: if an override fits nothing in conf/, or names a key that does not exist or that
             the method does not use; if the user's own task file is incomplete; for run, sweep.
     """
-    config = composed(overrides, config_dir)
+    config = compose_raw(overrides, config_dir)
     for key in (key for key in ("run", "sweep") if config[key]):
         raise UsageError(f"{key}={config[key]}: only the command and hybrid_rl.train take it")
     return resolved(config)
 
 
-def composed(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
+def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """The configuration of these overrides with its interpolations; errors as `load`."""
     if isinstance(overrides, str):
         raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')
     renamed.check(overrides)
     check_choices(overrides)
-    more = [] if config_dir is None else [search_path(config_dir)]
-    overrides = opened(overrides)
+    more = [] if config_dir is None else [overriding.search_path(config_dir)]
+    overrides = overriding.allow_sweep_keys(overrides)
     try:
         if GlobalHydra.instance().is_initialized():
             return _composed(overrides, more)
@@ -89,14 +89,14 @@ def composed(overrides: Sequence[str], config_dir: str | Path | None = None) -> 
 
 def _composed(overrides: Sequence[str], more: list[str]) -> DictConfig:
     """The configuration with its interpolations; more: overrides of Hydra's own keys."""
-    refuse_new_keys(overrides, more)
+    overriding.refuse_new_keys(overrides, more)
     config = compose("train", [*more, *overrides], return_hydra_config=True)
     hydra = config.hydra
     with open_dict(config):
         del config["hydra"]
     if note := check_task(config, hydra, READ):
         warnings.warn(note, stacklevel=4)
-    refuse_unused([config], overrides, READ)
+    overriding.refuse_unused([config], overrides, READ)
     return config
 
 
@@ -109,7 +109,8 @@ def resolved(config: DictConfig) -> DictConfig:
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
-    made: Any = OmegaConf.create(_of(values, reached(plain(config), READ)))
+    read = overriding.reachable_keys(overriding.raw_values(config), READ)
+    made: Any = OmegaConf.create(_of(values, read))
     OmegaConf.set_struct(made, True)
     return made
 

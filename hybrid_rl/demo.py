@@ -71,7 +71,7 @@ def windowed(asked: str) -> bool:
         UsageError: where one is asked for without viser.
     """
     if asked == "true":
-        view.installed()
+        view.import_viser()
     has = sys.platform == "darwin" or any(map(os.environ.get, ("DISPLAY", "WAYLAND_DISPLAY")))
     return asked == "true" or (asked == "auto" and has and find_spec("mjviser") is not None)
 

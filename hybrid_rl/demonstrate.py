@@ -93,7 +93,7 @@ def record(
     )
 
 
-def scripted(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Params]:
+def scripted_expert(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Params]:
     """A task, as `changes` make it, and its scripted expert, which has no parameters.
 
     Raises:
@@ -113,7 +113,7 @@ def _expert(
     _check(given, changes)
     if given["task"]:
         changes = {"expert": given["expert"], **changes} if given["expert"] else changes
-        return given["task"], *scripted(given["task"], changes)
+        return given["task"], *scripted_expert(given["task"], changes)
     run = load(Path(given["run"]))
     return run.task, run.episode, *run.learner(mode=given["mode"], world=True)
 

@@ -45,7 +45,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, one_of, read, whole
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import chosen
+from hybrid_rl.goals import load_changed
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.run import memory
@@ -135,7 +135,7 @@ def main() -> None:
 def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     """Print and write the table of one run or policy."""
     episodes, name = given["episodes"], given["run"] or given["policy"]
-    trained, changes = chosen(given, changes)
+    trained, changes = load_changed(given, changes)
     if given["precision"]:
         precision.choose(given["precision"])
     for note in trained.notes:
@@ -143,7 +143,7 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     say(f"compiling, then {episodes} episodes a seed ...")  # of a planner, a minute
     got = evaluate(trained, given["mode"], episodes, _saying(trained.episode.steps))
     values = report(trained, given["mode"], got)
-    values |= {"changes": changes, "precision": precision.chosen()}
+    values |= {"changes": changes, "precision": precision.current()}
     where = "".join(f", {key}={value}" for key, value in changes.items())
     print(f"{name}, mode {given['mode']}, step {trained.step:,}{where}")  # whole, also in a pipe
     Console().print(_table(values))

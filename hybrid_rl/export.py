@@ -43,7 +43,7 @@ from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.networks import Perceptron, precision
 from hybrid_rl.protocols import Controller
-from hybrid_rl.trained import chosen
+from hybrid_rl.trained import load_named
 from hybrid_rl.types import Params, Spec
 
 SUFFIXES = (".stablehlo", ".npz", ".onnx", ".h")
@@ -178,7 +178,7 @@ def main() -> None:
     given, _ = read(__doc__, ARGUMENTS)
     others = (".py",) if given["out"].endswith(".npz") else ()
     out = output("out", given["out"], SUFFIXES, *others)
-    trained = chosen(given)
+    trained = load_named(given)
     if given["mode"] == "policy" and "policy" not in trained.controllers:
         line = "the run has no policy, only a planner; give mode=full out=FILE.stablehlo"
         raise UsageError(f"mode=policy: {line}")

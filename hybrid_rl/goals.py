@@ -38,8 +38,7 @@ from hybrid_rl.composition import CONF, check_choices, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import search_path
 from hybrid_rl.parts import part_class
-from hybrid_rl.trained import Trained
-from hybrid_rl.trained import chosen as named
+from hybrid_rl.trained import Trained, load_named
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import COMPILER_OPTIONS
@@ -50,7 +49,9 @@ SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it lim
 KEYS = (*configuration.PAID, *PLANNERS, "imagine")  # of conf/retarget.yaml, which a user may change
 
 
-def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Trained, dict[str, str]]:
+def load_changed(
+    given: Mapping[str, Any], changes: Mapping[str, str]
+) -> tuple[Trained, dict[str, str]]:
     """The run or policy that a command names, as its other arguments change it, and these.
 
     given: run, policy and GOAL; changes: group.KEY=VALUE of CHANGES, of the command line.
@@ -58,13 +59,13 @@ def chosen(given: Mapping[str, Any], changes: Mapping[str, str]) -> tuple[Traine
     Raises:
         UsageError: for a run, a name, a key or a value that is unusable.
     """
-    return changed(named(given), given, changes)
+    return apply_changes(load_named(given), given, changes)
 
 
-def changed(
+def apply_changes(
     trained: Trained, given: Mapping[str, Any], changes: Mapping[str, str]
 ) -> tuple[Trained, dict[str, str]]:
-    """What `chosen` returns, of a run or policy that is read already."""
+    """What `load_changed` returns, of a run or policy that is read already."""
     ours = tuple(each.name for each in GOAL)
     goal = {key: given[key] for key in ours if given[key]}
     goal |= {key: value for key, value in changes.items() if key.split(".")[0] in ours}

@@ -33,7 +33,7 @@ from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.lock import locked
-from hybrid_rl.run.records import flat
+from hybrid_rl.run.records import flatten_keys
 from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.store import Record, Store
 from hybrid_rl.training.decider import Decider
@@ -228,9 +228,9 @@ class OnlineLearner:
         path = _free(folder)
         while self._waiting:
             self._advance()
-        with locked(run_folder.writable(path, "folder"), "folder"), self._lock:
+        with locked(run_folder.ensure_writable(path, "folder"), "folder"), self._lock:
             values: Any = OmegaConf.to_container(self.config)
-            store = Store(path / "checkpoints", self._loop, True, flat(values))
+            store = Store(path / "checkpoints", self._loop, True, flatten_keys(values))
             store.known = set(checkpoint.steps(store.folder))
             record = Record([[]], [None], step=self._seen)
             store.save(self._state, Gathered(), record)
@@ -281,7 +281,7 @@ def _free(folder: Path | str) -> Path:
     if not str(folder):
         raise UsageError("folder=: give the folder that save writes")
     if (path / "config.yaml").exists():
-        env = run_folder.parsed(path, "folder").get("env")
+        env = run_folder.parse_config(path, "folder").get("env")
         if (env or {}).get("_target_") != OUTSIDE:
             raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
     return path

@@ -41,7 +41,7 @@ def of_job(hydra: Any) -> list[str]:
     return texts
 
 
-def given(texts: Iterable[str]) -> dict[str, str]:
+def typed_values(texts: Iterable[str]) -> dict[str, str]:
     """Overrides as key -> value, as they were typed."""
     pairs = (text.lstrip("+~").partition("=") for text in texts)
     return {key: value for key, _, value in pairs}
@@ -59,7 +59,7 @@ def is_swept(text: str) -> bool:
     return text.lstrip("+").startswith("sweep.")
 
 
-def opened(texts: Iterable[str]) -> list[str]:
+def allow_sweep_keys(texts: Iterable[str]) -> list[str]:
     """The overrides as Hydra takes them, to which sweep.KEY is a new key."""
     return [f"+{text}" if text.startswith("sweep.") else text for text in texts]
 
@@ -69,7 +69,7 @@ def key(override: Override) -> str:
     return override.package or override.key_or_group
 
 
-def plain(config: DictConfig) -> dict[str, Any]:
+def raw_values(config: DictConfig) -> dict[str, Any]:
     """`config` with its interpolations as text."""
     raw: Any = OmegaConf.to_container(config, resolve=False)
     return {name: value for name, value in raw.items() if name != "hydra"}
@@ -94,7 +94,7 @@ def select(raw: dict[str, Any], path: str) -> Any:
     return node
 
 
-def reached(raw: dict[str, Any], roots: Iterable[str]) -> dict[str, Any]:
+def reachable_keys(raw: dict[str, Any], roots: Iterable[str]) -> dict[str, Any]:
     """Every key at or below `roots`, and below the keys that these name, with its value."""
     values: dict[str, Any] = {}
 
@@ -120,8 +120,8 @@ def unused(config: DictConfig, typed: Iterable[Override], roots: Iterable[str]) 
 
     config: composed, with its interpolations.
     """
-    raw, lost = plain(config), {}
-    read = reached(raw, roots)
+    raw, lost = raw_values(config), {}
+    read = reachable_keys(raw, roots)
     for each in typed:
         node = select(raw, at := source(raw, key(each)))
         if node is LACKING or each.is_delete():  # a group that spreads over the configuration
@@ -154,13 +154,13 @@ def _instead(raw: dict[str, Any], read: dict[str, Any], path: str) -> list[str]:
 def near(config: DictConfig, path: str) -> str:
     """Existing keys similar to `path`, which no node of what `config` is part of has; or ""."""
     whole: Any = config._get_root()
-    raw = plain(whole)
+    raw = raw_values(whole)
     parent, _, name = path.rpartition(".")
     name = THEIRS.get(name, name)
     siblings = select(raw, parent) if parent else [*raw, *GROUPS]
     siblings = siblings if isinstance(siblings, (dict, list)) else ()
     close = difflib.get_close_matches(name, siblings, cutoff=0.8)
-    named = [each for each in reached(raw, raw) if each.endswith((f".{name}", f"_{name}"))]
+    named = [each for each in reachable_keys(raw, raw) if each.endswith((f".{name}", f"_{name}"))]
     if named and not close:  # learning_rate: policy_learner.policy_learning_rate
         here, ends = f"{source(raw, parent)}.", path.split(".")[-2:]
         named.sort(key=lambda each: (each.split(".")[-2:] != ends, not each.startswith(here)))
@@ -169,7 +169,7 @@ def near(config: DictConfig, path: str) -> str:
     return ", ".join(f"{parent}.{each}".lstrip(".") for each in close)
 
 
-def meant(word: str, known: Iterable[str]) -> str:
+def closest_hint(word: str, known: Iterable[str]) -> str:
     """The end of a message: a hint at the closest of the `known`, or "" if none is close."""
     close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.65)
     return f"; did you mean {close[0]}?" if close else ""
@@ -254,11 +254,11 @@ def refuse_unused(
     if any(config.resume is not None for config in composed):
         return
     for config in composed:
-        _refuse_words(plain(config))
+        _refuse_words(raw_values(config))
     typed = parse(text for text in overrides if not is_swept(text))
     each = [unused(config, typed, roots) for config in composed]
     for path in dict.fromkeys(path for lost in each for path in lost):
-        having = [select(plain(config), path) is not LACKING for config in composed]
+        having = [select(raw_values(config), path) is not LACKING for config in composed]
         if all(path in lost for lost in compress(each, having)):
             instead = next(filter(None, (lost.get(path) for lost in each)), "")
             methods = list(dict.fromkeys(config.algo for config in composed))
@@ -294,7 +294,7 @@ def unknown(config: DictConfig, key: str) -> str:
         return f"{key}: unknown key; did you mean {close}?"
     root: Any = config._get_root()
     parent = key.rpartition(".")[0]
-    if not isinstance(inside := select(plain(root), parent) if parent else None, dict):
+    if not isinstance(inside := select(raw_values(root), parent) if parent else None, dict):
         return f"{key}: unknown key; {SHOW}"
     names = [name for name in inside if not name.startswith("_")]
     return f"{key}: unknown key; {parent} has {', '.join(names) or 'no keys'}"

@@ -138,11 +138,11 @@ def _episode_of(
 
     seed, asked, number = (given[name] for name in ("seed", "episode_steps", "episode"))
     if trained is None:
-        from hybrid_rl.demonstrate import scripted
+        from hybrid_rl.demonstrate import scripted_expert
         from hybrid_rl.training.rollout import evaluation_keys
 
         other = {"expert": given["expert"]} if given["expert"] else {}
-        world, controller, params = scripted(given["task"], {**other, **changes})
+        world, controller, params = scripted_expert(given["task"], {**other, **changes})
         _check(check_drawable, world.env)
         begun = replace(world, steps=_steps(world, asked, out))
         key = evaluation_keys(seed or 0, number + 1)[-1]
@@ -215,7 +215,7 @@ def main() -> None:
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.envs.mujoco.scenery import scene_of
-    from hybrid_rl.goals import chosen
+    from hybrid_rl.goals import load_changed
 
     default = f"{named}/video.mp4" if given["run"] else f"{Path(named).stem}.mp4"
     out = Path(given["out"] or default)
@@ -230,7 +230,7 @@ def main() -> None:
     if given["mode"] == "training" and given["run"]:
         _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
         return
-    trained = None if given["task"] else chosen(given, changes)[0]
+    trained = None if given["task"] else load_changed(given, changes)[0]
     if trained is not None and isinstance(trained.episode.env, External):
         _outside(trained, given, out)
         return

@@ -30,7 +30,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.trained import built, load
+from hybrid_rl.trained import build_run, load
 from hybrid_rl.training.actor import LOST, Actor
 
 HIGHER = 10  # priority of the robot's process, where the system allows it
@@ -57,7 +57,7 @@ def _learning(folder: Path) -> Actor:
     """With exploration, for a learner that reads the rows."""
     config = run_folder.read(folder, "run")
     prepare(config)
-    run = built(config)
+    run = build_run(config)
     if not isinstance(run.agent.episode.env, Robot):
         raise UsageError(f"run={folder}: is of task={config.task}, which is no robot")
     return Actor(run.agent, folder / "robot", run.seeds[0])

@@ -171,7 +171,7 @@ def _composed(
         texts = ", ".join(f'"{key}={value}"' for key, value in others.items())
         raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")
     if not isinstance(method, DictConfig):
-        given = overrides.given(method)
+        given = overrides.typed_values(method)
     elif config_dir:
         raise UsageError("train: config_dir goes with a list of overrides, not a DictConfig")
     return together.load(method, config_dir), given
@@ -189,10 +189,10 @@ def _run_of(agent: Agent, settings: dict[str, Any]) -> Run:
 def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds. on_row: as of `train`."""
     typed = overrides.of_job(HydraConfig.get())
-    members = together.expanded(config, typed)
+    members = together.expand_sweep(config, typed)
     config = members[0].config
     output = launch.Output.of(on_row)
-    given = overrides.given(typed)
+    given = overrides.typed_values(typed)
     summary = launch.train(members, given, interrupt.as_call, output)
     output.raise_problem()
     if summary["signal"] is None:

@@ -117,10 +117,10 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     config = run_folder.read(folder, key)
     if not checkpoint.steps(folder / "checkpoints"):
         raise UsageError(f"{key}={folder}: holds no checkpoint yet; train it further first")
-    with run_folder.blamed(folder):
+    with run_folder.blame_config(folder):
         check(config)
         prepare(config)
-        return replace(of(built(config), folder), config=config)
+        return replace(of(build_run(config), folder), config=config)
 
 
 def of(run: Run, folder: Path) -> Trained:
@@ -131,7 +131,7 @@ def of(run: Run, folder: Path) -> Trained:
     return Trained(name, agent.episode, run.controllers, params, seeds, step, notes, agent=agent)
 
 
-def built(config: DictConfig, part: str = "learners") -> Run:
+def build_run(config: DictConfig, part: str = "learners") -> Run:
     """The run of `config`, without files of demonstrations that `restore` of `part` does not need.
 
     Raises:
@@ -171,7 +171,7 @@ def names() -> list[str]:
     return sorted(path.stem for each in archive.PARENTS for path in each.glob("policies/*.npz"))
 
 
-def chosen(given: Mapping[str, Any]) -> Trained:
+def load_named(given: Mapping[str, Any]) -> Trained:
     """What the arguments run=DIR or policy=NAME name.
 
     Raises:

@@ -19,10 +19,10 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, read, whole
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.errors import UsageError
-from hybrid_rl.goals import chosen
+from hybrid_rl.goals import load_changed
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
-from scripts.seeds import Row, every, listed, write
+from scripts.seeds import Row, every, split_names, write
 
 CHANCE = 0.1  # unless constraint.chance is given
 ARGUMENTS = (
@@ -78,11 +78,11 @@ def measured(trained: Trained, controller: Any, episodes: int) -> dict[str, Any]
 def main() -> None:
     """The command."""
     given, changes = read(__doc__, ARGUMENTS, CHANGES)
-    trained, words = chosen(given, changes)
+    trained, words = load_changed(given, changes)
     other = load(given["penalised"], "penalised") if given["penalised"] else None
     other = other and replace(other, episode=trained.episode)  # the same world and constraint
     known = acting(trained, other)
-    wanted = listed(given["rows"]) or list(known)
+    wanted = split_names(given["rows"]) or list(known)
     if lost := [name for name in wanted if name not in known]:
         raise UsageError(f"rows={lost[0]}: choose from {'; '.join(known)}")
 

@@ -35,7 +35,7 @@ from hybrid_rl.training.decider import Decider
 from hybrid_rl.types import Params
 from hybrid_rl.view.subject import quicker
 from scripts.new_goals import overrides, rows
-from scripts.seeds import listed
+from scripts.seeds import split_names
 
 ARGUMENTS = (
     Argument("of", "methods", "or goals: planners for a new reward", one_of("methods", "goals")),
@@ -102,7 +102,7 @@ def _agent(words: list[str]) -> Agent:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    of, only, who = given["of"], listed(given["only"]), listed(given["who"])
+    of, only, who = given["of"], split_names(given["only"]), split_names(given["who"])
     found: dict[str, Any] = {"device": device(), "calls": CALLS[of], "block": BLOCK, "tasks": {}}
     for task, name, agent in methods(only) if of == "methods" else goals(only, who):
         row = measured(agent, CALLS[of]) | {"period": 1e3 * agent.spec.dt}

@@ -31,8 +31,8 @@ from hybrid_rl.proposals.policy import PolicyProposal
 from hybrid_rl.trained import Trained, load
 from hybrid_rl.training.rollout import advance, begin, scores
 from hybrid_rl.types import Params
-from hybrid_rl.view.subject import exchanged
-from scripts.seeds import Row, every, listed, write
+from hybrid_rl.view.subject import replace_part
+from scripts.seeds import Row, every, split_names, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
 IMAGINED = "imagined"
@@ -152,8 +152,8 @@ def measured(
     def one(params: Any, keys: Array) -> Array:
         def on(index: Array, params: Any) -> Array:
             goal = OneOf(known, index)
-            episode = exchanged(trained.episode, known[0], goal)
-            acts = exchanged(controller, known[0], goal)
+            episode = replace_part(trained.episode, known[0], goal)
+            acts = replace_part(controller, known[0], goal)
             env, control, _ = advance(
                 episode, acts, params, begin(episode, acts, keys), jnp.int32(episode.steps)
             )
@@ -171,12 +171,12 @@ def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
     run = load(given["run"])
-    named = listed(given["goals"])
+    named = split_names(given["goals"])
     there = [retargeted(run, overrides(name)) for name in named]
     first = replace(there[0], episode=replace(there[0].episode, steps=given["steps"]))
     goals = [each.episode.reward for each in there]
     known = rows(there[0])
-    wanted = listed(given["rows"]) or list(known)
+    wanted = split_names(given["rows"]) or list(known)
     params, gained = imagined(run, named, goals) if IMAGINED in str(wanted) else (None, None)
     if given["env"]:
         first, goals = in_another(first, goals, given["env"])
@@ -202,7 +202,7 @@ def imagined(run: Trained, names: list[str], goals: list[Any]) -> tuple[Params, 
 
     def each(params: Params, key: Array) -> Any:
         def on(index: Array) -> Any:
-            learning = exchanged(before, known[0], OneOf(known, index))
+            learning = replace_part(before, known[0], OneOf(known, index))
             return learning.learned(after.episode, params, key)
 
         return jax.vmap(on)(jnp.arange(len(known)))
@@ -224,10 +224,10 @@ def in_another(trained: Trained, goals: list[Any], change: str) -> tuple[Trained
     if not hasattr(old, key):
         raise UsageError(f"env={change}: the environment has no {key}")
     new = replace(old, **{key: json.loads(text)})
-    there = {name: exchanged(c, old, new) for name, c in trained.controllers.items()}
-    episode = exchanged(trained.episode, old, new)
+    there = {name: replace_part(c, old, new) for name, c in trained.controllers.items()}
+    episode = replace_part(trained.episode, old, new)
     return replace(trained, episode=episode, controllers=there), [
-        exchanged(goal, old, new) for goal in goals
+        replace_part(goal, old, new) for goal in goals
     ]
 
 

@@ -17,7 +17,7 @@ from hybrid_rl.training.rollout import evaluation_keys
 Row = tuple[str, Mapping[str, Any]]  # who acts, and what it gave: name -> [S]
 
 
-def listed(text: str) -> list[str]:
+def split_names(text: str) -> list[str]:
     """The names in `text`, with ; between them."""
     return [each.strip() for each in text.split(";") if each.strip()]
 

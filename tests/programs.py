@@ -32,7 +32,7 @@ def shared() -> Iterator[None]:
     trace, compiled, evaluator = Loop.trace, Loop.compile, Evaluator.__init__
 
     def traced(self: Loop, state: Any) -> Any:
-        of = self.agent, self.axis, len(self.seeds), self.stride, precision.chosen()
+        of = self.agent, self.axis, len(self.seeds), self.stride, precision.current()
         return kept(lambda: trace(self, state), "trace", *of)
 
     def program(self: Loop, state: Any, given: Any = None) -> Any:
@@ -46,7 +46,7 @@ def shared() -> Iterator[None]:
             evaluator(self, loop, controller, params, keys, mode)
             return vars(self)
 
-        of = loop.agent.episode, controller, loop.axis, keys.shape, precision.chosen()
+        of = loop.agent.episode, controller, loop.axis, keys.shape, precision.current()
         vars(self).update(kept(make, "evaluation", *of))
 
     with pytest.MonkeyPatch.context() as patch:

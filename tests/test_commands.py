@@ -23,7 +23,7 @@ from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.native import cores
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.trained import built, restore
+from hybrid_rl.trained import build_run, restore
 from hybrid_rl.training.rollout import evaluation_keys
 
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}
@@ -153,7 +153,7 @@ def test_evaluate_in_another_world(trained, capsys):
 
 def test_a_part_of_a_checkpoint_is_restored_alone(trained):
     """The memory of every decision, without what was learned from it; and the other way round."""
-    made = built(run_folder.read(trained, "run"))
+    made = build_run(run_folder.read(trained, "run"))
     step, state, notes = restore(trained, made, "memory")
     assert (step, notes, state.memory.count.tolist()) == (600, (), [600])
     assert state.env is state.control is state.learners is state.key is None
@@ -209,7 +209,7 @@ def test_a_sweep_makes_a_folder_each(swept):
 def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:
     folder = tmp_path / "runs" / "pendulum" / "sac"
     with ThreadPoolExecutor(16) as pool:
-        made = list(pool.map(lambda _: run_folder.writable(folder, "run_dir"), range(2000)))
+        made = list(pool.map(lambda _: run_folder.ensure_writable(folder, "run_dir"), range(2000)))
     assert set(made) == {folder}
     assert not list(folder.iterdir())
 

@@ -60,7 +60,7 @@ def test_auto_and_mixed_follow_the_device(name, on_gpu, monkeypatch):
     precision.choose(name)
     assert products(lambda: net.init(jax.random.key(0), x))[1] == {"HIGHEST"}
     monkeypatch.setattr(precision.jax, "default_backend", lambda: "gpu")
-    assert precision.chosen() == on_gpu
+    assert precision.current() == on_gpu
 
 
 def test_residual_networks_stay_in_float32():

@@ -15,9 +15,10 @@ from programs import shared
 from hybrid_rl import config, train
 from hybrid_rl.cli import command
 from hybrid_rl.data.demonstrations import save
+from hybrid_rl.overrides import search_path
 from hybrid_rl.types import Transition
 
-CONF = config.search_path(Path(__file__).parent / "conf")
+CONF = search_path(Path(__file__).parent / "conf")
 TINY = [CONF, "settings=tiny"]  # YAML, since that may set what a method does not use
 SMALL = [CONF, "settings=small"]
 

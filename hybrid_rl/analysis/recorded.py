@@ -11,8 +11,8 @@ from hybrid_rl.analysis.results import RunFolder, differences, short
 from hybrid_rl.config import Run
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.folder import parsed
-from hybrid_rl.trained import built, restore
+from hybrid_rl.run.folder import parse_config
+from hybrid_rl.trained import build_run, restore
 
 
 class Recorded(NamedTuple):
@@ -31,7 +31,7 @@ class Recorded(NamedTuple):
         return jax.tree.map(np.asarray, unpack(rows, self.run.agent.spec))
 
 
-def matching(pattern: str) -> list[Path]:
+def run_folders(pattern: str) -> list[Path]:
     """The run folders that match a pattern, sorted.
 
     Raises:
@@ -52,12 +52,12 @@ def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
         UsageError: unless it is a run of one of the tasks, or of any if none is given, with a
             complete memory of one world.
     """
-    config: Any = parsed(folder, key)
+    config: Any = parse_config(folder, key)
     fits = config.task in tasks or not tasks
     if not fits or config.num_envs != 1 or not config.checkpoint_replay:
         words = f"{' or '.join(tasks)}, " if tasks else ""
         raise UsageError(f"{key}={folder}: needs {words}num_envs=1, checkpoint_replay=true")
-    run = built(config, "memory")
+    run = build_run(config, "memory")
     memory = restore(folder, run, "memory")[1].memory
     decisions = min(int(np.asarray(memory.count).min()), memory.rows.shape[1])
     return Recorded(RunFolder(folder), config, run, memory, decisions)

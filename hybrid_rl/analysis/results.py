@@ -19,7 +19,7 @@ import yaml
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.reading import Loader, lines, yaml_file
-from hybrid_rl.run.records import COORDINATES, WORD, flat, row_of, summary_of
+from hybrid_rl.run.records import COORDINATES, WORD, flatten_keys, row_of, summary_of
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
@@ -79,7 +79,7 @@ class RunFolder:
         values = yaml_file(file, lambda text: yaml.load(text, Loader))
         if not isinstance(values, dict):
             raise UsageError(f"{file}: is empty, or no group of keys")
-        return flat(values)
+        return flatten_keys(values)
 
     @cached_property
     def summary(self) -> dict[str, Any]:

@@ -12,13 +12,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from hybrid_rl.analysis.recorded import matching
+from hybrid_rl.analysis.recorded import run_folders
 from hybrid_rl.analysis.style import STYLE, legend_below, line_styles, words
 from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.trained import built
+from hybrid_rl.trained import build_run
 
 BIN = 0.5  # [min]
 QUANTILES = {"median": 0.5, "99%": 0.99, "greatest": 1.0}
@@ -29,8 +29,8 @@ def figure(
 ) -> tuple[Any, dict[str, Any]]:
     """Returns over minutes, a panel for each robot."""
     numbers: dict[str, Any] = {"robots": {}}
-    for path in matching(runs):
-        env = built(run_folder.read(path, "runs")).agent.episode.env
+    for path in run_folders(runs):
+        env = build_run(run_folder.read(path, "runs")).agent.episode.env
         if not isinstance(env, Robot):
             raise UsageError(f"runs={path}: is no run of task=robot")
         data = (path / "robot" / "rows").read_bytes()

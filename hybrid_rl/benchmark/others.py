@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 import optax
 
-from hybrid_rl.benchmark.ours import beginning, compiled, recalled, world
+from hybrid_rl.benchmark.ours import beginning, compile_contestant, recalled, world
 from hybrid_rl.benchmark.race import Contestant
 from hybrid_rl.envs.mujoco import native
 from hybrid_rl.envs.mujoco.physics import Physics
@@ -72,7 +72,7 @@ def bare_mjx(task: str, count: int, steps: int, implementation: str = "jax") -> 
 
     name = {"jax": "bare mjx.step", "warp": "bare mjx.step, Warp"}[implementation]
     with jax.numpy_rank_promotion("allow"):
-        return compiled(name, run, first.qpos, first.qvel, first.ctrl, work=count * steps)
+        return compile_contestant(name, run, first.qpos, first.qvel, first.ctrl, work=count * steps)
 
 
 def solver(task: str) -> dict[str, Any]:
@@ -101,7 +101,7 @@ def playground(count: int, decisions: int) -> Contestant | None:
     with jax.numpy_rank_promotion("allow"):
         state = jax.jit(jax.vmap(env.reset))(jax.random.split(jax.random.key(0), count))
         work = count * decisions * round(env.dt / env.sim_dt)
-        return compiled("MuJoCo Playground's CheetahRun", run, state, work=work)
+        return compile_contestant("MuJoCo Playground's CheetahRun", run, state, work=work)
 
 
 def brax_sac(spec: Spec, hidden: tuple[int, ...], size: int, learners: int) -> Contestant:
@@ -150,7 +150,7 @@ def brax_sac(spec: Spec, hidden: tuple[int, ...], size: int, learners: int) -> C
         keys = jax.random.split(jax.random.key(0), learners)
         state = jax.vmap(init)(keys)
         work = repeats * learners
-        return compiled("Brax's SAC", jax.vmap(one), state, batch, keys, work=work)
+        return compile_contestant("Brax's SAC", jax.vmap(one), state, batch, keys, work=work)
 
 
 def on_the_true_model(episode: Episode, samples: int, horizon: int) -> Contestant:
@@ -179,4 +179,4 @@ def on_the_true_model(episode: Episode, samples: int, horizon: int) -> Contestan
 
     plan = jnp.zeros((horizon, episode.spec.act))
     work = repeats * samples * horizon
-    return compiled("MPPI on the true model", run, start, plan, work=work)
+    return compile_contestant("MPPI on the true model", run, start, plan, work=work)

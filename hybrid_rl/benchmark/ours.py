@@ -106,7 +106,7 @@ def worlds(task: str, physics: str, count: int, decisions: int) -> Contestant:
     def run(state: EnvState) -> EnvState:
         return jax.lax.fori_loop(0, decisions, forward, state)
 
-    return compiled(f"ours, {physics}", run, state, work=count * decisions * steps)
+    return compile_contestant(f"ours, {physics}", run, state, work=count * decisions * steps)
 
 
 def decisions(name: str, agent: Agent, learners: int, each: float = 1.0) -> Contestant:
@@ -130,7 +130,7 @@ def decisions(name: str, agent: Agent, learners: int, each: float = 1.0) -> Cont
         return jax.lax.fori_loop(0, repeats, again, first)
 
     given = (params, rest, state.env.obs[:, 0], keys)
-    return compiled(name, run, *given, work=repeats * learners * each)
+    return compile_contestant(name, run, *given, work=repeats * learners * each)
 
 
 def updates(name: str, agent: Agent, which: str, learners: int) -> Contestant:
@@ -147,7 +147,7 @@ def updates(name: str, agent: Agent, which: str, learners: int) -> Contestant:
         return jax.lax.fori_loop(0, repeats, again, state)
 
     given = (state.learners[which], jax.vmap(agent.params)(state), batch, keys)
-    return compiled(name, jax.vmap(one), *given, work=repeats * learners)
+    return compile_contestant(name, jax.vmap(one), *given, work=repeats * learners)
 
 
 def recalled(learners: int, size: int, obs: int, act: int) -> Batch:
@@ -159,7 +159,7 @@ def recalled(learners: int, size: int, obs: int, act: int) -> Batch:
     return Batch(x, u, jax.random.normal(of_r, none.shape), none, none, after, next_u)
 
 
-def compiled(name: str, run: Callable[..., Any], *given: Any, work: float) -> Contestant:
+def compile_contestant(name: str, run: Callable[..., Any], *given: Any, work: float) -> Contestant:
     """`run(*given)`, compiled."""
     program = jax.jit(run).lower(*given).compile()
     return Contestant(name, lambda: jax.block_until_ready(program(*given)), work)
@@ -168,4 +168,4 @@ def compiled(name: str, run: Callable[..., Any], *given: Any, work: float) -> Co
 def product(size: int = 2048) -> Contestant:
     """A product of two square float32 matrices, which is what the chip can do; operations."""
     a = jnp.ones((size, size))
-    return compiled("matrix product", lambda a: a @ a, a, work=2.0 * size**3)
+    return compile_contestant("matrix product", lambda a: a @ a, a, work=2.0 * size**3)

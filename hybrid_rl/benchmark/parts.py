@@ -132,7 +132,7 @@ def loop(settings: Settings, rounds: int) -> Iterator[Table]:
                 agent = config.build(chosen).agent
                 for asked in settings["precision"] or [chosen.precision]:
                     with precision.using(asked):
-                        name = f"{implementation}, {precision.chosen()}"
+                        name = f"{implementation}, {precision.current()}"
                         made = ours.loop(name, agent, count, ours.MOST, settings["seconds"])
                     field.append(made[0])
                     print(f"  {name}: compiled in {made[1]:,.0f} s", flush=True)

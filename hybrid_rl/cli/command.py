@@ -22,7 +22,7 @@ from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, file, options
 from hybrid_rl.errors import UsageError, printable, user_line
-from hybrid_rl.overrides import LACKING, plain, select
+from hybrid_rl.overrides import LACKING, raw_values, select
 from hybrid_rl.run import inherited
 
 FLAGS = {  # of Hydra -> how many words follow
@@ -83,7 +83,7 @@ def hydra_main(job: Callable[..., Any]) -> None:
         return
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
-        sys.argv[1:] = overrides.opened(inherited.chosen(_ordered(sys.argv[1:])))
+        sys.argv[1:] = overrides.allow_sweep_keys(inherited.add_choices(_ordered(sys.argv[1:])))
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except Exception as error:
         report(error)
@@ -98,7 +98,7 @@ def as_typed(typed: Sequence[str]) -> Iterator[None]:
         yield
     except UsageError as error:
         line = overrides.as_typed(str(error), typed)
-        raise UsageError(_of_settings(line, overrides.given(typed))) from error
+        raise UsageError(_of_settings(line, overrides.typed_values(typed))) from error
 
 
 def _of_settings(line: str, given: Mapping[str, str]) -> str:
@@ -110,7 +110,7 @@ def _of_settings(line: str, given: Mapping[str, str]) -> str:
         lacking = field[1].rpartition(".")[2]
         return f"{line}; the method sets {field[1]}: add a field {lacking}, or another part"
     sets: Any = OmegaConf.load(file("settings", name))
-    if select(plain(sets), field[1]) is LACKING:
+    if select(raw_values(sets), field[1]) is LACKING:
         return line
     return f"settings={name}: is not for this method: {line}"
 

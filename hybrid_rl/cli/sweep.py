@@ -31,7 +31,7 @@ from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_u
 from hybrid_rl.run import together
 from hybrid_rl.run.folder import new_folder
 from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.run.start import built
+from hybrid_rl.run.start import build_new_run
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 
@@ -192,7 +192,7 @@ class Sweeper(BasicSweeper):
                 config.physics = "native"
             try:
                 with command.as_typed(overrides):
-                    _check(together.expanded(config, overrides))
+                    _check(together.expand_sweep(config, overrides))
             except (UsageError, OmegaConfBaseException) as error:
                 line = error if isinstance(error, UsageError) else explain(error)
                 raise UsageError(f"{line} ({self._called(number)})") from error
@@ -210,7 +210,7 @@ def _check(members: Sequence[together.Member]) -> None:
         if each.config.resume is None:
             check(each.config)
             prepare(each.config)  # first: a check of the user's world initialises JAX
-            runs.append(built(each.config)[0])
+            runs.append(build_new_run(each.config)[0])
     if len(runs) > 1:
         together.axis_of(members, runs)
 

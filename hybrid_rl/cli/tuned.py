@@ -72,7 +72,7 @@ class Tuner(sweep.Sweeper):
         folder = Path(str(config.run_dir or self.config.hydra.sweep.dir))
         fixed = [each for each in fixed if not each.startswith("run_dir=")]
         kept = [each for each in arguments if not each.startswith("run_dir=")]
-        self.config.hydra.sweep.dir = str(run_folder.writable(folder, "run_dir"))
+        self.config.hydra.sweep.dir = str(run_folder.ensure_writable(folder, "run_dir"))
         with (
             locked(folder, "run_dir"),
             study.opened(folder, settings, space, kept, config.eval_every) as opened,

@@ -36,7 +36,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, agreement, sampling
-from hybrid_rl.core.members import predicted
+from hybrid_rl.core.members import predict_members
 from hybrid_rl.fields import (
     Count,
     Discount,
@@ -191,7 +191,7 @@ class GradientController:
             a, b = (self._scored(params, value, x, one, member).value for one in (plan, own))
             return a - b
 
-        members = len(predicted(self.model, params.model, x, chosen.path.u[0])[2])
+        members = len(predict_members(self.model, params.model, x, chosen.path.u[0])[2])
         gains = jax.vmap(gain)(jnp.arange(members))
         surely = gains.mean() > self.doubt * gains.std()
         others = (own, self._scored(params, value, x, own))
@@ -208,7 +208,7 @@ class GradientController:
             if self.policy is not None:
                 u = one.s * self.policy.mean(params.policy, x) + v
             u = jnp.clip(u, -1, 1)
-            after, apart, each = predicted(self.model, params.model, x, u)
+            after, apart, each = predict_members(self.model, params.model, x, u)
             after = after if member is None else each[member]
             return after, (after, u, jnp.mean(apart), *self._risk(x, u, each))
 

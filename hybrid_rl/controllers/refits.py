@@ -18,7 +18,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, lifting, sampling
-from hybrid_rl.core.members import predicted
+from hybrid_rl.core.members import predict_members
 from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, Positive, part
 from hybrid_rl.protocols import Model, Objective, Proposal
 from hybrid_rl.types import Params, Path, Return, Spec
@@ -120,7 +120,7 @@ class RefitsController:
         """S [] of a plan v [T, m] from x [n]."""
 
         def forward(x: Array, u: Array) -> tuple[Array, tuple[Array, Array]]:
-            after, apart, _ = predicted(self.model, params.model, x, u)
+            after, apart, _ = predict_members(self.model, params.model, x, u)
             return after, (after, apart.mean())
 
         _, (xs, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))

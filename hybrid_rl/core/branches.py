@@ -1,9 +1,9 @@
 """Branches: trajectories of a policy in a model that begin at real states (Janner et al. 2019).
 
-`fresh` draws them for each update. `Branches` are kept from one update to the next: each update
-continues all of them by one decision and restarts those that ended or reached their length. Then
-one decision of the model per update is enough for branches of any length, and thus for states that
-the present policy leads to.
+`sample_fresh` draws them for each update. `Branches` are kept from one update to the next: each
+update continues all of them by one decision and restarts those that ended or reached their length.
+Then one decision of the model per update is enough for branches of any length, and thus for states
+that the present policy leads to.
 """
 
 from collections.abc import Callable
@@ -86,7 +86,7 @@ def extended(
     )
 
 
-def recalled(branches: Branches, m: int, key: Array) -> Batch:
+def sample_kept(branches: Branches, m: int, key: Array) -> Batch:
     """B transitions, uniform over those that are kept. The key is consumed."""
     length, size, width = branches.rows.shape
     known, n = jnp.minimum(branches.count, length) * size, branches.x.shape[1]
@@ -95,7 +95,7 @@ def recalled(branches: Branches, m: int, key: Array) -> Batch:
     return Batch(x, u, flags[:, 0], flags[:, 1], jnp.zeros(size), after)
 
 
-def fresh(step: Transitions, start: Array, m: int, steps: int, key: Array) -> Batch:
+def sample_fresh(step: Transitions, start: Array, m: int, steps: int, key: Array) -> Batch:
     """The last of 1 to `steps` decisions from each state `start` [b, n]. The key is consumed."""
     acting, moving, choosing, stopping = jax.random.split(key, 4)
     b, n = start.shape

@@ -8,7 +8,7 @@ from jax import Array
 from hybrid_rl.protocols import Model
 
 
-def predicted(model: Model, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
+def predict_members(model: Model, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
     """The next state [n], the disagreement [n] or [], and every member's next state [members, n].
 
     params: of the model.

@@ -31,7 +31,7 @@ from hybrid_rl.errors import CheckpointError, UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.trained import Trained, built, load, restore
+from hybrid_rl.trained import Trained, build_run, load, restore
 from hybrid_rl.types import Params, Transition
 
 FOLDS = 100  # stretches of time, of which every second one is predicted by the others
@@ -230,9 +230,9 @@ def read(path: Path) -> Evidence:
     config = run_folder.read(path, "run")
     if run_folder.rowless(path):
         raise UsageError(f"run={path}: {path / 'metrics.jsonl'}: no row of metrics yet")
-    with run_folder.blamed(path):
+    with run_folder.blame_config(path):
         prepare(config)
-        run = built(config, "memory")
+        run = build_run(config, "memory")
         return Evidence(RunFolder(path), config, run, _made(path, config, run))
 
 

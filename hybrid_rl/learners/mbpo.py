@@ -73,7 +73,7 @@ class MBPO:
             drawing, key = jax.random.split(key)
             step = branches.transitions(params, self.policy, self.model, self.reward)
             m, start = batch.action.shape[-1], batch.obs[:count]
-            imagined = branches.fresh(step, start, m, self.steps, drawing)
+            imagined = branches.sample_fresh(step, start, m, self.steps, drawing)
             batch = jax.tree.map(
                 lambda new, old: jnp.concatenate([new, old[count:]]),
                 imagined,

@@ -155,10 +155,10 @@ class ModelBased:
         step = branches.transitions(params, self.policy, self.model, self.reward)
         m = batch.action.shape[-1]
         if kept is None:
-            return None, branches.fresh(step, batch.obs, m, self.branch_steps, drawing), key
+            return None, branches.sample_fresh(step, batch.obs, m, self.branch_steps, drawing), key
         going_on, recalling = jax.random.split(drawing)
         kept = branches.extended(kept, step, batch.obs, m, self.branch_steps, going_on)
-        return kept, branches.recalled(kept, m, recalling), key
+        return kept, branches.sample_kept(kept, m, recalling), key
 
     def imagine(self, params: Params, batch: Batch, key: Array) -> Imagined:
         """`steps` decisions from the states [B, n] of `batch`. The key is consumed.

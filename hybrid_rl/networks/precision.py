@@ -29,7 +29,7 @@ def choose(name: str) -> None:
     _CHOSEN.set_global(name)
 
 
-def chosen() -> str:
+def current() -> str:
     """The precision of networks in this process: bf16, tf32 or float32."""
     name = _CHOSEN.value
     return OF_DEVICE[name].get(jax.default_backend(), "float32") if name in OF_DEVICE else name
@@ -37,9 +37,9 @@ def chosen() -> str:
 
 def of_products() -> Precision:
     """The precision of a network's products of float32 matrices."""
-    return Precision.HIGHEST if chosen() == "float32" else Precision.DEFAULT
+    return Precision.HIGHEST if current() == "float32" else Precision.DEFAULT
 
 
 def of_hidden() -> Any:
     """The type of hidden layers; None: that of inputs and weights."""
-    return jnp.bfloat16 if chosen() == "bf16" else None
+    return jnp.bfloat16 if current() == "bf16" else None

@@ -37,7 +37,7 @@ SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl
 
 
 @contextmanager
-def fresh(config: DictConfig) -> Iterator[Path]:
+def claim_folder(config: DictConfig) -> Iterator[Path]:
     """A new run folder for `config`, locked by this process until the end of the block.
 
     If the block raises before anything is trained, what it wrote there is deleted again, and the
@@ -49,7 +49,7 @@ def fresh(config: DictConfig) -> Iterator[Path]:
     folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
     new = config.run_dir is None or not folder.exists()
     try:
-        with locked(writable(folder, "run_dir"), "run_dir"), _cleared(folder):
+        with locked(ensure_writable(folder, "run_dir"), "run_dir"), _cleared(folder):
             saved = checkpoint.steps(folder / "checkpoints")
             if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
                 line = f"run_dir={folder}: holds a run already; choose another"
@@ -91,7 +91,7 @@ def new_folder(config: DictConfig, suffix: str = "") -> Path:
     Raises:
         UsageError: if it cannot be written to.
     """
-    parent = writable(Path("runs") / config.task / config.algo, "run_dir")
+    parent = ensure_writable(Path("runs") / config.task / config.algo, "run_dir")
     stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}{suffix}"
     for number in range(10_000):
         folder = parent / (f"{stem}_{number}" if number else stem)
@@ -103,7 +103,7 @@ def new_folder(config: DictConfig, suffix: str = "") -> Path:
     raise UsageError(f"run_dir=null: no free name left for {parent / stem}")
 
 
-def writable(folder: Path, key: str) -> Path:
+def ensure_writable(folder: Path, key: str) -> Path:
     """`folder`, created if it does not exist.
 
     Raises:
@@ -140,7 +140,7 @@ def read(folder: Path, key: str) -> DictConfig:
             training wrote.
     """
     path = folder / "config.yaml"
-    config: Any = parsed(folder, key)
+    config: Any = parse_config(folder, key)
     _check_version(folder, key, config)
     if "agent" in config:
         raise UsageError(
@@ -202,7 +202,7 @@ def _check_seeds(folder: Path, config: DictConfig) -> None:
 
 
 @contextmanager
-def blamed(folder: Path, lacking: bool = False) -> Iterator[None]:
+def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
     """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml.
 
     Raises:
@@ -249,7 +249,7 @@ def words(values: Mapping[str, float]) -> str:
     return printable(" ".join(f"{key}={value}" for key, value in values.items()))
 
 
-def parsed(folder: Path, key: str = "runs") -> DictConfig:
+def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     """What config.yaml of the run in `folder` holds, which the argument `key` named.
 
     It may come from anybody: it has plain values only, names parts only (hybrid_rl.parts), and

@@ -1,8 +1,8 @@
 """The configuration of a run that begins with another one: that of run=DIR, with the overrides.
 
 config.yaml holds values without references, and not all names of the parts that were chosen. So
-the overrides are composed with the task and the method of DIR (`chosen`), and what they change,
-there or by reference elsewhere, is changed in the values of DIR (`resolved`).
+the overrides are composed with the task and the method of DIR (`add_choices`), and what they
+change, there or by reference elsewhere, is changed in the values of DIR (`resolve_config`).
 """
 
 import re
@@ -16,7 +16,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.composition import file, options
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import LACKING, REFERENCE, parse, plain, select, source
+from hybrid_rl.overrides import LACKING, REFERENCE, parse, raw_values, select, source
 from hybrid_rl.run import folder
 
 CHOSEN = ("task", "algo", "learning")  # they make the parameters
@@ -28,10 +28,10 @@ def load(texts: Sequence[str], config_dir: str | Path | None = None) -> DictConf
     """The resolved configuration of these overrides, also of run=DIR; errors as `config.load`."""
     if isinstance(texts, str) or not any(text.startswith("run=") for text in texts):
         return configuration.load(texts, config_dir)
-    return resolved(configuration.composed(chosen(texts), config_dir), texts)
+    return resolve_config(configuration.compose_raw(add_choices(texts), config_dir), texts)
 
 
-def chosen(texts: Sequence[str]) -> list[str]:
+def add_choices(texts: Sequence[str]) -> list[str]:
     """The words of a command, with the task and the method of DIR before run=DIR.
 
     Raises:
@@ -40,7 +40,7 @@ def chosen(texts: Sequence[str]) -> list[str]:
     named = [text for text in texts if text.startswith("run=") and text != "run=null"]
     if not named:
         return [*texts]
-    given = overrides.given(texts)
+    given = overrides.typed_values(texts)
     if given.get("resume", "null") != "null":
         raise UsageError(
             "run, resume: give one of them; run=DIR begins a new run with what DIR has learned, "
@@ -59,7 +59,7 @@ def chosen(texts: Sequence[str]) -> list[str]:
             line = line or f"with {named[-1]} the settings come from there; give single keys"
             raise UsageError(f"{key}={given[key]}: {line}{has}")
     more = [f"{key}={value}" for key, value in words[0].items() if key not in given]
-    at, known = texts.index(named[-1]), plain(runs[0])
+    at, known = texts.index(named[-1]), raw_values(runs[0])
     kept = [text if select(known, _key(text)) is LACKING else f"++{text}" for text in texts]
     return [*kept[:at], *more, *kept[at:]]
 
@@ -77,7 +77,9 @@ def _choices(config: DictConfig) -> dict[str, str]:
         files: dict[str, Any] = {
             name: OmegaConf.load(file("task", name)) for name in options("task")
         }
-        same = [n for n, c in files.items() if select(plain(c), "env._target_") == _kind(config)]
+        same = [
+            n for n, c in files.items() if select(raw_values(c), "env._target_") == _kind(config)
+        ]
         words["task"] = same[0] if same else config.task
     method = file("algo", config.algo).read_text() if config.algo in options("algo") else ""
     if "policy_learning" in config and "override /learning:" in method:
@@ -89,7 +91,7 @@ def _kind(config: DictConfig) -> str:
     return str(config.env.get("_target_"))
 
 
-def resolved(config: DictConfig, texts: Sequence[str]) -> DictConfig:
+def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
     """The resolved configuration of a run, with the values of DIR if it has run=DIR.
 
     config: composed from the overrides `texts`, with its interpolations.
@@ -99,7 +101,7 @@ def resolved(config: DictConfig, texts: Sequence[str]) -> DictConfig:
     """
     if config.get("run") is None:
         return configuration.resolved(config)
-    raw, typed = plain(config), parse(texts)
+    raw, typed = raw_values(config), parse(texts)
     if deleted := [each for each in typed if each.is_delete()]:
         raise UsageError(f"{deleted[0].input_line}: with run=DIR keys cannot be deleted")
     now: Any = OmegaConf.to_container(config, resolve=True)

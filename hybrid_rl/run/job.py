@@ -13,7 +13,7 @@ from hybrid_rl.config import Run
 from hybrid_rl.networks import precision
 from hybrid_rl.run import integrity, loggers, provenance
 from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.records import Row, flat
+from hybrid_rl.run.records import Row, flatten_keys
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.store import Store
@@ -110,7 +110,7 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
         "env_steps_per_s": None if rate is None else rate / len(session.shelf.logs),
         "physics": configuration.physics(config),
         "device": provenance.device(),
-        "precision": precision.chosen(),
+        "precision": precision.current(),
         "versions": provenance.versions(),
         "git_commit": provenance.git_commit(),
         "run_dir": str(run_dir),
@@ -122,4 +122,5 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
 def written(config: DictConfig) -> dict[str, Any]:
     """What config.yaml holds, by full keys."""
     values: Any = OmegaConf.to_container(config)
-    return flat({key: value for key, value in values.items() if key not in ("expert", "version")})
+    own = {key: value for key, value in values.items() if key not in ("expert", "version")}
+    return flatten_keys(own)

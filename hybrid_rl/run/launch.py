@@ -67,14 +67,14 @@ def train(
     for each in members:
         check(each.config)
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    made = [starting.built(each.config) for each in members]
+    made = [starting.build_new_run(each.config) for each in members]
     runs = [run for run, _ in made]
     if len(runs) == 1:
         return begin(runs[0], handled, output, made[0][1])
     axis, start = together.axis_of(members, runs), starting.joined([each for _, each in made])
     size = _fits(runs)
     loggers.check(config.get("logger"))
-    with together.fresh(members) as folders:
+    with together.claim_folders(members) as folders:
         each = _run(Job(runs, folders, axis), size, handled, output, start)
     return together.summary(folders[0].parent, each)
 
@@ -85,14 +85,14 @@ def begin(
     """Run what is built, in a new folder, as `train`; start: what another run gave it."""
     size = _fits([run])
     loggers.check(run.config.get("logger"))
-    with folder.fresh(run.config) as run_dir:
+    with folder.claim_folder(run.config) as run_dir:
         return _run(Job([run], [run_dir]), size, handled, output, start)[0]
 
 
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
     """Continue what is built from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
-    with locked(folder.writable(run_dir, "run_dir"), "run_dir"):
+    with locked(folder.ensure_writable(run_dir, "run_dir"), "run_dir"):
         return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
 
 
@@ -118,9 +118,9 @@ def _resume(
     with ExitStack() as stack:
         members, runs = [], []
         for run_dir in folders:
-            stack.enter_context(locked(folder.writable(run_dir, "resume"), "resume"))
+            stack.enter_context(locked(folder.ensure_writable(run_dir, "resume"), "resume"))
             own = settings(run_dir)  # again, as another process may have continued the run
-            with folder.blamed(run_dir):
+            with folder.blame_config(run_dir):
                 check(own)
                 prepare(own)
                 runs.append(configuration.build(own))
@@ -152,7 +152,7 @@ def _run(
         each = zip(job.folders, job.axis.names, strict=True)
         notes = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in each]
         notes += [size, *run.notes]
-        if precision.chosen() == "bf16" and jax.default_backend() == "cpu":
+        if precision.current() == "bf16" and jax.default_backend() == "cpu":
             notes.append(SLOWER)
         progress.note("\n".join(notes))
         loop = job.loop()
@@ -162,7 +162,7 @@ def _run(
         if config.resume is None:
             session.begin(start)
         else:
-            with folder.blamed(job.folders[0]):
+            with folder.blame_config(job.folders[0]):
                 session.resume()
         for own, run_dir in zip(job.runs, job.folders, strict=True):
             folder.write(run_dir, own.config)  # also of a resumed run, which may be longer now
@@ -205,7 +205,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
         raise UsageError(f"{key}={given[key]}: {ONLY}{has}")
     if "total_steps" in given:
         steps = whole(config, "total_steps")
-        with folder.blamed(run_dir):
+        with folder.blame_config(run_dir):
             before = whole(old, "total_steps")
         if steps < before:
             raise UsageError(

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from hybrid_rl.errors import FAULTS, CheckpointError, UsageError, install
-from hybrid_rl.run.reading import appended, lines, text
+from hybrid_rl.run.reading import lines, open_to_append, text
 from hybrid_rl.run.records import COORDINATES, Row, row_of
 
 HEADER = (*COORDINATES, "metric", "value")
@@ -60,7 +60,7 @@ class Lines(Logger):
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / "metrics.jsonl"
-        self._file = appended(self.path)
+        self._file = open_to_append(self.path)
 
     @property
     def size(self) -> int:
@@ -105,7 +105,7 @@ class CSV(Logger):
     def __init__(self, folder: Path) -> None:
         self._path = folder / "metrics.csv"
         new = not self._path.exists()
-        self._file = appended(self._path, "a", buffering=1, encoding="ascii", newline="")
+        self._file = open_to_append(self._path, "a", buffering=1, encoding="ascii", newline="")
         self._lines = csv.writer(self._file)
         if new:
             self._lines.writerow(HEADER)

@@ -39,7 +39,7 @@ def opened(file: Path) -> BinaryIO:
     raise UsageError(f"{file}: cannot be read (it is no plain file)")
 
 
-def appended(file: Path, mode: str = "ab", **how: Any) -> Any:
+def open_to_append(file: Path, mode: str = "ab", **how: Any) -> Any:
     """A file of a run, open to append, made if there is none; a link in a run is not followed.
 
     how: as for `open`.

@@ -93,12 +93,12 @@ def changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     return list(changed.values())
 
 
-def flat(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+def flatten_keys(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
     """The values of a tree by their full keys."""
     values: dict[str, Any] = {}
     for key, value in node.items():
         if isinstance(value, Mapping) and value:
-            values |= flat(value, f"{where}{key}.")
+            values |= flatten_keys(value, f"{where}{key}.")
         else:
             values[f"{where}{key}"] = value
     return values

@@ -19,7 +19,7 @@ from hybrid_rl.config import Run
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.protocols import Goal
 from hybrid_rl.run import checkpoint, folder
-from hybrid_rl.run.records import changes, flat
+from hybrid_rl.run.records import changes, flatten_keys
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten
@@ -59,11 +59,11 @@ def _concatenated(each: Sequence[Any]) -> Any:
     return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *each)
 
 
-def built(config: DictConfig) -> tuple[Run, Start | None]:
+def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
     """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
     if config.get("run") is None:
         return configuration.build(config), None
-    with folder.blamed(Path(str(config.run)), lacking=True):
+    with folder.blame_config(Path(str(config.run)), lacking=True):
         return begun(config)
 
 
@@ -150,7 +150,7 @@ def _values(config: DictConfig) -> dict[str, Any]:
     named = {key: value for key, value in values.items() if key not in ("begun", "expert")}
     return {
         key: value
-        for key, value in flat(named).items()
+        for key, value in flatten_keys(named).items()
         if "." in key or key in ("num_envs", "task", "algo", "total_steps")
     }
 
@@ -183,14 +183,15 @@ def _like(agent: Agent, then: DictConfig) -> AgentState:
 def _world(config: DictConfig) -> dict[str, Any]:
     """What the decisions in a memory depend on, by full keys."""
     values: Any = OmegaConf.to_container(config)
-    world = flat({key: values[key] for key in WORLD if key in values})
+    world = flatten_keys({key: values[key] for key in WORLD if key in values})
     return {key: value for key, value in world.items() if key not in PASSING}
 
 
 def _plain(part: Any) -> Any:
     """The values of a part by full keys, without its copy of the world."""
     values: Any = OmegaConf.to_container(part) if isinstance(part, DictConfig) else {}
-    return {key: value for key, value in flat(values).items() if not key.startswith("world.")}
+    flat = flatten_keys(values)
+    return {key: value for key, value in flat.items() if not key.startswith("world.")}
 
 
 def _goal(episode: Episode) -> Goal | None:

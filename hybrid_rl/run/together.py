@@ -23,11 +23,11 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import LACKING, plain, select, source
+from hybrid_rl.overrides import LACKING, raw_values, select, source
 from hybrid_rl.run import folder, inherited
 from hybrid_rl.run.folder import SWEEP
 from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.records import flat
+from hybrid_rl.run.records import flatten_keys
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of
@@ -45,15 +45,16 @@ class Member:
 
 
 def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None) -> list[Member]:
-    """The runs of these overrides, or of what is resolved; errors as of `inherited`, `expanded`."""
+    """The runs of these overrides, or what is resolved; errors of `inherited`, `expand_sweep`."""
     if isinstance(texts, DictConfig):
         return [Member(texts, {})]
     if isinstance(texts, str) or not any(map(overrides.is_swept, texts)):
         return [Member(inherited.load(texts, config_dir), {})]
-    return expanded(configuration.composed(inherited.chosen(texts), config_dir), texts)
+    config = configuration.compose_raw(inherited.add_choices(texts), config_dir)
+    return expand_sweep(config, texts)
 
 
-def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
+def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     """A run for each combination of the values of the keys below `sweep`; one if there is none.
 
     config: composed from the overrides `texts`, with its interpolations.
@@ -61,8 +62,8 @@ def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     Raises:
         UsageError: for a key that does not exist or is not used, or values that are no numbers.
     """
-    texts, raw = [text for text in texts if not overrides.is_swept(text)], plain(config)
-    lists, config = flat(raw.pop("sweep") or {}), config.copy()
+    texts, raw = [text for text in texts if not overrides.is_swept(text)], raw_values(config)
+    lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
     config.sweep = {}
     for key, values in lists.items():
         _check_values(config, raw, key, values)
@@ -78,7 +79,7 @@ def expanded(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         for key, value in chosen.items():
             OmegaConf.update(own, source(raw, key), value)
         _refuse_unused(own, typed)
-        members.append(Member(inherited.resolved(own, [*texts, *typed]), chosen))
+        members.append(Member(inherited.resolve_config(own, [*texts, *typed]), chosen))
     return members
 
 
@@ -171,8 +172,8 @@ def _refused(members: Sequence[Member], path: str, why: str = "") -> UsageError:
 
 
 @contextmanager
-def fresh(members: Sequence[Member]) -> Iterator[list[Path]]:
-    """A new run folder for each run of a sweep, as `folder.fresh`, and sweep.json beside them."""
+def claim_folders(members: Sequence[Member]) -> Iterator[list[Path]]:
+    """Folders for the runs of a sweep, as `folder.claim_folder`, and sweep.json beside them."""
     config = members[0].config
     given = config.run_dir is not None
     parent = Path(str(config.run_dir)) if given else folder.new_folder(config)
@@ -187,7 +188,7 @@ def fresh(members: Sequence[Member]) -> Iterator[list[Path]]:
             for number, member in enumerate(members):
                 with open_dict(member.config):
                     member.config.run_dir = str(parent / str(number))
-                each.append(stack.enter_context(folder.fresh(member.config)))
+                each.append(stack.enter_context(folder.claim_folder(member.config)))
             columns = {key: [one.values[key] for one in members] for key in members[0].values}
             write_text(parent / SWEEP, json.dumps(columns, indent=1) + "\n")
             yield each

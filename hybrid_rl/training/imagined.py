@@ -9,7 +9,7 @@ from jax import Array
 from hybrid_rl.core.batching import where
 from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.lifting import lifted_spec
-from hybrid_rl.core.members import predicted
+from hybrid_rl.core.members import predict_members
 from hybrid_rl.fields import Count, Natural, NotNegative, part
 from hybrid_rl.protocols import LearnedPolicy, Reward, Trainable
 from hybrid_rl.training.episode import Episode
@@ -136,7 +136,7 @@ class Imagination:
             def forward(carry: tuple[Array, Array], _: None) -> tuple[tuple[Array, Array], Array]:
                 x, goes_on = carry
                 u = learner.policy.mean(params.policy, x)
-                after = predicted(learner.model, params.model, x, u)[2][member]
+                after = predict_members(learner.model, params.model, x, u)[2][member]
                 r, end = learner.reward.outcome(params, x, u, after)
                 return (after, goes_on * jax.nn.sigmoid(-end)), goes_on * r
 
@@ -144,7 +144,7 @@ class Imagination:
 
         some = states[: self.episodes]
         u = jnp.zeros_like(learner.policy.mean(params.policy, some[0]))
-        members = len(predicted(learner.model, params.model, some[0], u)[2])
+        members = len(predict_members(learner.model, params.model, some[0], u)[2])
         each = jax.vmap(jax.vmap(one, (0, None)), (None, 0))(some, jnp.arange(members))
         return each.mean(1)
 

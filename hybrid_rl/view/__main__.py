@@ -62,14 +62,14 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     from hybrid_rl.composition import options
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.envs.mujoco.scenery import check_drawable
-    from hybrid_rl.trained import chosen
+    from hybrid_rl.trained import load_named
     from hybrid_rl.view.following import Follower
     from hybrid_rl.view.panel import Wishes
     from hybrid_rl.view.player import Choice, Player
     from hybrid_rl.view.session import Session
     from hybrid_rl.view.subject import Source, learner
 
-    trained = None if given["task"] else chosen(given)
+    trained = None if given["task"] else load_named(given)
     source = Source(given, changes, trained)
     if trained is not None and isinstance(trained.episode.env, External):
         raise UsageError("a Gymnasium environment draws itself; use render")
@@ -109,12 +109,12 @@ def serve(given: Mapping[str, Any]) -> Any:
     Raises:
         UsageError: without viser.
     """
-    viser: Any = installed()
+    viser: Any = import_viser()
     with contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
         return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
 
 
-def installed() -> Any:
+def import_viser() -> Any:
     """The module viser.
 
     Raises:
@@ -155,7 +155,7 @@ def main() -> None:
     given, changes = read(__doc__, ARGUMENTS, ROBOT_CHANGES)
     robot(given, changes)
     check_address(given["host"], given["port"])
-    installed()
+    import_viser()
     show(given, changes)
 
 

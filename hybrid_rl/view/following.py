@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run import checkpoint
-from hybrid_rl.trained import Trained, built, of
+from hybrid_rl.trained import Trained, build_run, of
 from hybrid_rl.types import Params
 from hybrid_rl.view.subject import learner
 
@@ -39,7 +39,7 @@ class Follower:
             steps = checkpoint.steps(self._folder / "checkpoints")
             if not steps or steps[-1] <= self._step:
                 continue
-            run = run or built(self._config)
+            run = run or build_run(self._config)
             try:
                 trained = of(run, self._folder)
             except CheckpointError:  # replaced while it was read; the next one follows

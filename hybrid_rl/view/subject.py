@@ -11,9 +11,9 @@ from functools import cached_property
 from typing import Any, get_args
 
 from hybrid_rl.config import PAID
-from hybrid_rl.demonstrate import scripted
+from hybrid_rl.demonstrate import scripted_expert
 from hybrid_rl.fields import Must, choices, plain
-from hybrid_rl.goals import changed
+from hybrid_rl.goals import apply_changes
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
@@ -117,7 +117,7 @@ def with_goals(whole: Any, episode: Episode, numbers: Mapping[str, Any]) -> Any:
         mine = {key.partition(".")[2]: value for key, value in numbers.items()}
         mine = {key: mine[key] for key in mine if f"{name}.{key}" in numbers}
         if part is not None and mine:
-            whole = exchanged(whole, part, _put(part, mine))
+            whole = replace_part(whole, part, _put(part, mine))
     return whole
 
 
@@ -129,16 +129,16 @@ def _put(part: Any, values: Mapping[str, Any]) -> Any:
     return part
 
 
-def exchanged(whole: Any, old: Any, new: Any) -> Any:
+def replace_part(whole: Any, old: Any, new: Any) -> Any:
     """`whole`, in which `new` stands wherever `old` stood; no field is checked again."""
     if isinstance(whole, tuple) and type(whole) is tuple:
-        return tuple(exchanged(each, old, new) for each in whole)
+        return tuple(replace_part(each, old, new) for each in whole)
     if not is_dataclass(whole) or isinstance(whole, type):
         return whole
     if type(whole) is type(old) and whole == old:
         return new
     each = {field.name: getattr(whole, field.name) for field in fields(whole)}
-    other = {name: exchanged(value, old, new) for name, value in each.items()}
+    other = {name: replace_part(value, old, new) for name, value in each.items()}
     other = {name: value for name, value in other.items() if value is not each[name]}
     return _put(whole, other) if other else whole
 
@@ -167,13 +167,13 @@ class Source:
         if self.trained is None:
             expert = {"expert": self.given["expert"]} if self.given["expert"] else {}
             task = self.given["task"]
-            episode, controller, _ = scripted(task, {**expert, **self.changes, **changes})
+            episode, controller, _ = scripted_expert(task, {**expert, **self.changes, **changes})
             return Subject(episode, {"expert": controller}, scripted=True)
         words = dict(self.changes)
         if reward != self.given["reward"]:
             words = {key: value for key, value in words.items() if not key.startswith("reward.")}
         given = {**self.given, "reward": reward}
-        trained = changed(self.trained, given, {**words, **changes})[0]
+        trained = apply_changes(self.trained, given, {**words, **changes})[0]
         acting = trained.controllers
         if quick:
             acting = {mode: quicker(controller) for mode, controller in acting.items()}

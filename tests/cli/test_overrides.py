@@ -19,7 +19,7 @@ RAW = {
 
 
 def test_what_is_read_is_followed_through_interpolations():
-    read = overrides.reached(RAW, ["loop"])
+    read = overrides.reachable_keys(RAW, ["loop"])
     assert {"chosen.inner.gain", "chosen.size", "other.size", "name", "listed", "steps"} <= set(
         read
     )

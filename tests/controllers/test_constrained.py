@@ -12,7 +12,7 @@ from jax import Array
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
 from hybrid_rl.controllers.gradient import GradientController, Scored
-from hybrid_rl.core.members import predicted
+from hybrid_rl.core.members import predict_members
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.models.gaussian import Gaussian
@@ -119,7 +119,7 @@ def test_the_probability_is_the_mean_over_the_members() -> None:
     x, u = jnp.array([0.9]), jnp.array([0.3])
     limit = Limit(WORLD, "speed", 1.0, width=0.3)
     planner = replace(PLANNER, model=model, constraint=limit)
-    mean, apart, each = predicted(model, params.model, x, u)
+    mean, apart, each = predict_members(model, params.model, x, u)
     np.testing.assert_allclose(mean, model.step(params.model, x, u), rtol=1e-6)
     np.testing.assert_allclose(apart, model.disagreement(params.model, x, u), atol=1e-4)
     by_hand = [

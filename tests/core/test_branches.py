@@ -24,7 +24,7 @@ def recalled(start: float, steps: int, updates: int) -> Batch:
     extend = jax.jit(lambda kept, key: branches.extended(kept, counting, first, 1, steps, key))
     for key in jax.random.split(jax.random.key(3), updates):
         kept = extend(kept, key)
-    return branches.recalled(kept, 1, jax.random.key(4))
+    return branches.sample_kept(kept, 1, jax.random.key(4))
 
 
 def test_branches_reach_every_length() -> None:
@@ -51,5 +51,5 @@ def test_forgotten_branches_start_again() -> None:
         old = branches.extended(old, counting, first, 1, 4, key)
     kept = forgotten({"kept": old, "other": 1})["kept"]
     kept = branches.extended(kept, counting, first - 20, 1, 4, jax.random.key(5))
-    batch = branches.recalled(kept, 1, jax.random.key(4))
+    batch = branches.sample_kept(kept, 1, jax.random.key(4))
     np.testing.assert_array_equal(batch.obs, -29)

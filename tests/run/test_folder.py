@@ -165,7 +165,7 @@ def test_an_evaluation_in_a_pipe_keeps_its_paths_whole(trained, tmp_path, capfd)
 
 
 def test_a_broken_world_is_not_blamed_on_the_file(tmp_path):
-    with pytest.raises(WorldError, match=r"^w\.py:3: "), run_folder.blamed(tmp_path):
+    with pytest.raises(WorldError, match=r"^w\.py:3: "), run_folder.blame_config(tmp_path):
         raise WorldError("w.py:3: W.step: returned None")
 
 
@@ -208,20 +208,20 @@ def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp
     folder.mkdir()
     config = load([*TINY, "algo=sac", f"run_dir={folder}"])
     run_folder.write(folder, config)
-    with pytest.raises(UsageError, match="holds a run already"), run_folder.fresh(config):
+    with pytest.raises(UsageError, match="holds a run already"), run_folder.claim_folder(config):
         pass  # a file of that name, of whatever
     (folder / "metrics.jsonl").touch()
     with pytest.raises(UsageError, match="no row of metrics yet"):
         examine(folder)
-    with run_folder.fresh(config):
+    with run_folder.claim_folder(config):
         pass
 
 
 def test_a_start_beside_a_run_that_has_just_begun_deletes_nothing_of_it(tmp_path):
     config = load([*TINY, "algo=sac", f"run_dir={tmp_path / 'run'}"])
-    with run_folder.fresh(config) as folder:
+    with run_folder.claim_folder(config) as folder:
         (folder / "metrics.jsonl").touch()
         refused = pytest.raises(UsageError, match="is being written by process")
-        with refused, run_folder.fresh(config):
+        with refused, run_folder.claim_folder(config):
             pass
         assert sorted(path.name for path in folder.iterdir()) == ["lock", "metrics.jsonl"]

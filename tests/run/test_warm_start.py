@@ -42,7 +42,7 @@ def warm(source, tmp_path_factory):
 def begun(source, *overrides):
     """Configuration, loop and first state of a run that begins with `source`."""
     made = inherited.load([f"run={source}", *overrides])
-    built, first = start.built(made)
+    built, first = start.build_new_run(made)
     loop = Loop(built.agent, built.seeds, 1)
     return made, loop, first.given(loop.init()), first.line
 

@@ -24,12 +24,12 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.analysis.recorded import matching, read
+from hybrid_rl.analysis.recorded import read, run_folders
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import labels
 from hybrid_rl.envs.analytic.lander import Lander
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.folder import parsed
+from hybrid_rl.run.folder import parse_config
 from hybrid_rl.trained import restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import (
@@ -70,7 +70,7 @@ def explored(pattern: str) -> list[Explored]:
     Raises:
         UsageError: for other runs than those of the experiment, or two with one label.
     """
-    each = sorted(map(of, matching(pattern)), key=lambda one: one[:2])
+    each = sorted(map(of, run_folders(pattern)), key=lambda one: one[:2])
     for one, other in itertools.pairwise(each):
         if one[:2] == other[:2]:
             raise UsageError(f"runs={pattern}: two runs of {one.label}, {one.most} queries")
@@ -104,7 +104,7 @@ def of(folder: Path) -> Explored:
     Raises:
         UsageError: unless they asked for flips of a lander.
     """
-    config: Any = parsed(folder) if (folder / "config.yaml").exists() else {}
+    config: Any = parse_config(folder) if (folder / "config.yaml").exists() else {}
     if "spacing" not in (config.get("learners", {}).get("policy") or {}):
         raise UsageError(f"runs={folder}: needs a run of experiment=thesis/fig_6_9")
     recorded = read(folder, "lander")

@@ -119,9 +119,9 @@ def reported(best: Curve, lyapunov: Curve | None) -> dict[str, Any]:
 def _seconds(curve: Curve) -> np.ndarray:
     """Time [s] of a curve's points."""
     from hybrid_rl.config import build
-    from hybrid_rl.run.folder import parsed
+    from hybrid_rl.run.folder import parse_config
 
-    return curve.x * build(parsed(Path(curve.runs[0]))).agent.spec.dt
+    return curve.x * build(parse_config(Path(curve.runs[0]))).agent.spec.dt
 
 
 def _band(axes: Any, x: np.ndarray, each: np.ndarray, name: str, colour: str) -> None:

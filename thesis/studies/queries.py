@@ -18,13 +18,13 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.analysis.curves import band, curves, improvement, iqm
-from hybrid_rl.analysis.recorded import labels, matching
+from hybrid_rl.analysis.recorded import labels, run_folders
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run.folder import parsed
-from hybrid_rl.trained import built, restore
+from hybrid_rl.run.folder import parse_config
+from hybrid_rl.trained import build_run, restore
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import evaluate_episodes, evaluation_keys
 from hybrid_rl.types import Params
@@ -49,7 +49,7 @@ class Row(NamedTuple):
 
 def queries(pattern: str, refit: int, at: Sequence[int]) -> dict[str, Any]:
     """Shares over demonstrations, as trained and after a refit of `refit` steps at N in `at`."""
-    folders = matching(pattern)
+    folders = run_folders(pattern)
     configs = [_config(folder) for folder in folders]
     tasks = sorted({config.task for config in configs})
     if len(tasks) > 1:
@@ -83,7 +83,7 @@ def queries(pattern: str, refit: int, at: Sequence[int]) -> dict[str, Any]:
 
 def _config(folder: Path) -> Any:
     """The configuration of a run whose clone asks a teacher."""
-    config: Any = parsed(folder)
+    config: Any = parse_config(folder)
     learner = config.learners.get("policy")
     if learner is None or "teacher" not in learner or not learner.first:
         raise UsageError(
@@ -146,7 +146,7 @@ def _keys(run: Run) -> Any:
 
 def taught(config: Any, score: str) -> float:
     """The mean score of the teacher over the episodes of an evaluation of all seeds."""
-    run = built(config)
+    run = build_run(config)
     learner: Any = run.agent.learners["policy"]
     teacher, episode = learner.teacher.greedy(), run.agent.episode
 
@@ -163,7 +163,7 @@ def refitted(row: Row, steps: int, at: Sequence[int], score: str) -> np.ndarray:
     Raises:
         UsageError: if the run has fewer.
     """
-    run, first = built(row.config), int(row.config.learners.policy.first)
+    run, first = build_run(row.config), int(row.config.learners.policy.first)
     learner: Any = run.agent.learners["policy"]
     state = restore(row.folder, run)[1].learners["policy"]
     counts = first * (np.array(at) + 1)

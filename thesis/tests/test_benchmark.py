@@ -122,7 +122,7 @@ def test_a_bare_loop_steps_the_model_of_our_world(implementation, monkeypatch):
         return Contestant(name, lambda: None, work)
 
     for module in (ours, others):
-        monkeypatch.setattr(module, "compiled", traced)
+        monkeypatch.setattr(module, "compile_contestant", traced)
     if implementation == "native":
         monkeypatch.setattr(mjcf, "load", loaded)
     else:

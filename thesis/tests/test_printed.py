@@ -7,7 +7,8 @@ import pytest
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-from hybrid_rl.config import CONF, READ, plain, reached
+from hybrid_rl.config import CONF, READ
+from hybrid_rl.overrides import raw_values, reachable_keys
 from scripts.pages import printed
 
 ENTRIES = printed.entries()
@@ -33,7 +34,7 @@ def values(line: str) -> dict[str, Any]:
     """What a row's parts read: full key -> value, but for options that are off."""
     with initialize_config_dir(str(CONF), version_base="1.3"):
         raw = compose("train", line.split(" "))
-    keys: Any = reached(plain(raw), READ)
+    keys: Any = reachable_keys(raw_values(raw), READ)
     whole: Any = OmegaConf.to_container(raw, resolve=False)
     return {
         key: value
