@@ -62,7 +62,7 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
         ("algo=sac,kle3 target=mixture explorer.horizn=3", "explorer.horizn: unknown key; did you"),
         ("algo=kle3,sac adjoint_planner.horizon=3", "kle3, sac do not use it"),
         ("algo=sac,nn_mppi target=mixture", "target: the method has no such part; "),
-        ("algo=nn_mppi,sac objective=kl_ergodic", "sets (job 0: algo=nn_mppi)"),
+        ("algo=nn_mppi,sac objective=kl_ergodic", "it; what they use is objective@model_objective"),
         (  # both have an explorer, which the default method has not
             "algo=kle3,fourier_ergodic explorer.horizon=3 domain.low=[0,0] seed=-1",
             "must be a whole number, 0 or more (job 0: algo=kle3)",
