@@ -72,7 +72,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ),
     ("figures runs={trained} out={trained}", 2, "must end in .png"),
     ("figures {trained}", 2, 'unknown argument; quote the pattern: runs="GLOB"'),
-    ("figures rums={trained}", 2, "smooth, threshold (did you mean runs?)"),
+    ("figures rums={trained}", 2, "threshold, others (did you mean runs?)"),
     ("figures --runs {trained}", 2, "--runs: write runs="),
     (
         "render task=panda_stack out=/dev/null/a.mp4",

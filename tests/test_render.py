@@ -67,7 +67,7 @@ def trained(monkeypatch):
         step=7000,
     )
     run.learner = partial(Trained.learner, run)
-    monkeypatch.setattr("hybrid_rl.goals.named", lambda given: run)
+    monkeypatch.setattr("hybrid_rl.goals.load_named", lambda given: run)
     return run
 
 
