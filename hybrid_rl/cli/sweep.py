@@ -103,9 +103,10 @@ class Sweeper(BasicSweeper):
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
         (jobs,) = self.split_arguments(self._parsed(arguments), None)
         self.task.labels = labels(jobs)
-        jobs, notes = self._fitting(jobs)
+        fit, notes = self._fitting(jobs)
+        jobs, configs = [*fit], [*fit.values()]
         self.task.labels = labels(jobs)
-        jobs = _folders(jobs, self._checked(jobs, arguments))
+        jobs = _folders(jobs, self._checked(jobs, configs, arguments))
         print(*notes, sep="", end="", flush=True)
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
@@ -128,19 +129,21 @@ class Sweeper(BasicSweeper):
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
         return parser.parse_overrides([*self._parse_config(), *arguments])
 
-    def _fitting(self, jobs: Sequence[Sequence[str]]) -> tuple[list[Sequence[str]], list[str]]:
+    def _fitting(
+        self, jobs: Sequence[Sequence[str]]
+    ) -> tuple[dict[tuple[str, ...], DictConfig], list[str]]:
         """The jobs without overrides of what only other jobs have, and lines about these.
 
-        Jobs that are the same then are one.
+        Jobs that are the same then are one. With each its configuration and Hydra's own.
 
         Raises:
             UsageError: for an override of what no job has.
         """
         lost: dict[str, list[UsageError]] = {}
 
-        def fitting(number: int, job: Sequence[str]) -> tuple[str, ...]:
+        def fitting(number: int, job: Sequence[str]) -> tuple[tuple[str, ...], DictConfig]:
             try:
-                self._composed(number, job)
+                return tuple(job), self._composed(number, job)
             except UsageError as error:
                 absent = [text for text in job if concerns(error.__cause__, text)]
                 if not absent:
@@ -148,16 +151,15 @@ class Sweeper(BasicSweeper):
                 for text in absent:
                     lost.setdefault(text, []).append(error)
                 return fitting(number, [text for text in job if text not in absent])
-            return tuple(job)
 
-        fit = list(dict.fromkeys(fitting(number, job) for number, job in enumerate(jobs)))
+        fit = dict(fitting(number, job) for number, job in enumerate(jobs))
         notes = []
         for text, errors in lost.items():
             those = [str(number) for number, job in enumerate(fit) if text in job]
             if not those:  # that of the job that has most of it
                 raise max(errors, key=lambda error: str(error).find(":"))
             notes.append(f"{text}: for job {', '.join(those)} alone; the others have no such key\n")
-        return [*fit], notes
+        return fit, notes
 
     def _composed(self, number: int, overrides: Sequence[str]) -> DictConfig:
         """The configuration of a job, with Hydra's own; UsageError if there is none."""
@@ -169,22 +171,21 @@ class Sweeper(BasicSweeper):
         except HydraException as error:
             raise UsageError(f"{explain(error)} ({self._called(number)})") from error
 
-    def _checked(self, jobs: Sequence[Sequence[str]], typed: Sequence[str]) -> list[DictConfig]:
-        """The configuration of each job, after all checks that need no compilation.
+    def _checked(
+        self, jobs: Sequence[Sequence[str]], configs: list[DictConfig], typed: Sequence[str]
+    ) -> list[DictConfig]:
+        """The configurations without Hydra's own, after all checks that need no compilation.
 
         Jobs that run elsewhere are built with the physics that needs no GPU here.
         """
         assert self.config is not None
         refuse_new_keys(jobs[0], self.config.hydra.overrides.hydra)
-        configs = []
-        for number, overrides in enumerate(jobs):
-            config = self._composed(number, overrides)
+        for config in configs:
             hydra = config.hydra
             with open_dict(config):
                 del config["hydra"]
             if note := check_task(config, hydra, configuration.READ):
                 print(note, flush=True)
-            configs.append(config)
         refuse_unused(configs, typed, configuration.READ)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
             if not here(self.config.hydra) and config.physics in ACCELERATED:

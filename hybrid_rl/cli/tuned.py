@@ -66,7 +66,8 @@ class Tuner(sweep.Sweeper):
         fixed, space = self._split(parsed)
         corners = _corners(fixed, space)
         self.task.labels = sweep.labels(corners)
-        config = self._checked(corners, arguments)[0]
+        composed = [self._composed(*each) for each in enumerate(corners)]
+        config = self._checked(corners, composed, arguments)[0]
         if not [mode for mode in config.eval_modes if mode in config.controllers]:
             raise UsageError("eval_modes=[]: a study needs evaluations")
         folder = Path(str(config.run_dir or self.config.hydra.sweep.dir))
