@@ -153,7 +153,7 @@ class Copies:
             process.terminate()
         vector.closed = True  # its own `close` would ask the one that is gone
         line = f"its process ended with exit code {codes[0] if codes else 'unknown'}"
-        return f"{line}, as after out of memory" if codes == [-signal.SIGKILL] else line
+        return f"{line}, as after out of memory" if set(codes) == {-signal.SIGKILL} else line
 
     def _observed(self, method: str, obs: Any) -> np.ndarray:
         """A copy of the observations, which an environment may overwrite, as float32 [N, o]."""
