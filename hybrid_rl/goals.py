@@ -35,6 +35,8 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
 from hybrid_rl.composition import CONF, check_choices, explain
+from hybrid_rl.envs.adapters.robot import Outside, Robot
+from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import search_path
 from hybrid_rl.parts import part_class
@@ -57,9 +59,12 @@ def load_changed(
     given: run, policy and GOAL; changes: group.KEY=VALUE of CHANGES, of the command line.
 
     Raises:
-        UsageError: for a run, a name, a key or a value that is unusable.
+        UsageError: for a run, a name, a key or a value that is unusable; for a run on a robot.
     """
-    return apply_changes(load_named(given), given, changes)
+    trained = load_named(given)
+    if isinstance(trained.episode.env, Robot | Outside):
+        raise UsageError(f"{trained.task}: {ALONE}")
+    return apply_changes(trained, given, changes)
 
 
 def apply_changes(
