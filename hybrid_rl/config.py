@@ -15,8 +15,8 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
+from hybrid_rl import checks, renamed
 from hybrid_rl import overrides as overriding
-from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, check_owners, whole
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
 from hybrid_rl.envs.adapters.external import External, checked
@@ -67,7 +67,7 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
     config = compose_raw(overrides, config_dir)
     for key in (key for key in ("run", "sweep") if config[key]):
         raise UsageError(f"{key}={config[key]}: only the command and hybrid_rl.train take it")
-    return resolved(config)
+    return resolved(config, overrides)
 
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
@@ -100,18 +100,18 @@ def _composed(overrides: Sequence[str], more: list[str]) -> DictConfig:
     return config
 
 
-def resolved(config: DictConfig) -> DictConfig:
-    """A copy with every interpolation replaced by its value.
+def resolved(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
+    """A copy with every interpolation replaced by its value, composed from the overrides.
 
     What the run does not read is left out; all that the user may override is in it.
     """
     values: Any = OmegaConf.to_container(config, resolve=True)
+    values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
     read = overriding.reachable_keys(overriding.raw_values(config), READ)
-    made: Any = OmegaConf.create(_of(values, read))
-    OmegaConf.set_struct(made, True)
+    made: Any = OmegaConf.create(_of(values, read), flags={"struct": True})
     return made
 
 

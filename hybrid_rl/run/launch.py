@@ -233,7 +233,8 @@ def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
 
 def _same(old: DictConfig, config: DictConfig) -> bool:
     """Whether the whole configuration that the user gave is that of the run."""
-    return all(old[key] == config[key] for key in old if key in config and key not in OF_A_SESSION)
+    free = (*OF_A_SESSION, "random_steps")  # which may follow from total_steps
+    return all(old[key] == config[key] for key in old if key in config and key not in free)
 
 
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
