@@ -60,7 +60,7 @@ class Items(dict):
         return hash(repr(sorted(self.items(), key=repr)))
 
 
-def imported(make: Any) -> Callable[..., Any]:
+def import_named(make: Any) -> Callable[..., Any]:
     """The function or class that `MODULE:NAME` names; what is no text stays as it is.
 
     Raises:
