@@ -2,7 +2,7 @@
 
 import inspect
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import fields, is_dataclass
 from types import NoneType
 from typing import Any, get_origin
@@ -131,6 +131,17 @@ def check_owners(parts: Any, owned: Collection[str], spec: Spec) -> None:
             line = f"{type(parts).__name__} acts by it, and no learner of this method trains it"
             remedy = f"leave {name}= out, or choose a method that learns a {name}"
             raise ValueError(f"{name}={type(part).__name__}: {line}; {remedy}")
+
+
+def random_decisions(values: Mapping[str, Any], given: Mapping[str, str]) -> Any:
+    """`random_steps`: half of `total_steps` at most, where the user gave these and not those.
+
+    values: of the configuration; given: overrides of the user, key -> value.
+    """
+    random, total = values["random_steps"], values["total_steps"]
+    if "total_steps" not in given or {"random_steps", "model_random_steps"} & given.keys():
+        return random
+    return min(random, (total + 1) // 2) if type(random) is type(total) is int else random
 
 
 def countable(config: DictConfig) -> None:

@@ -2,13 +2,14 @@
 
 import difflib
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, get_args
 
 import yaml
+from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
@@ -40,13 +41,12 @@ def options(group: str) -> list[str]:
     )
 
 
-def check_choices(texts: Iterable[str]) -> None:
+def check_choices(texts: Sequence[str]) -> None:
     """Refuse an override that gives a group something else than a name, and two environments.
 
     Raises:
         UsageError: with the names that the group has.
     """
-    texts = list(texts)
     typed = overrides.typed_values(texts)
     one, other = (typed.get(key, "") for key in ("env.id", "env.make"))
     if overrides.value_of(one) and overrides.value_of(other):
@@ -188,8 +188,7 @@ def _choice(word: str, known: Sequence[str]) -> str:
 
 def _no_yaml(error: yaml.YAMLError) -> str:
     """The file, the line and what is wrong there."""
-    mark = getattr(error, "problem_mark", None)
-    if mark is None:
+    if (mark := getattr(error, "problem_mark", None)) is None:
         return _sentences(str(error))
     problem = str(getattr(error, "problem", "it cannot be read"))
     tab = "; indent with spaces, not with a tab" if "'\\t'" in problem else ""
@@ -220,9 +219,10 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
 
     Raises:
         UsageError: in one line that names the file: keys that it lacks, or sets in vain; for an
-            experiment with fields of another task's world.
+            experiment with fields of another task's world; for a choice that changes nothing.
     """
     _check_experiment(config, hydra)
+    _refuse_idle(config, hydra, roots)
     file = chosen(hydra, "task")
     if file is None or CONF in file.parents or config.get("resume") is not None:
         return None
@@ -260,14 +260,28 @@ def _check_experiment(config: DictConfig, hydra: Any) -> None:
         raise UsageError(line) from error
 
 
+def _refuse_idle(config: DictConfig, hydra: Any, roots: Sequence[str]) -> None:
+    """Raise UsageError for a typed choice, as of `learning`, that sets nothing which is read."""
+    read = overrides.reachable_keys(overrides.raw_values(config), roots)
+    for text in overrides.of_job(hydra) if config.resume is None else ():
+        file = chosen(hydra, group := text.partition("=")[0])
+        if file is None or group in config or hydra.mode == RunMode.MULTIRUN:  # of another job
+            continue
+        sets: Any = OmegaConf.to_container(OmegaConf.load(file), resolve=False)
+        named = [key for each in sets.pop("defaults", ()) if isinstance(each, dict) for key in each]
+        keys = {*sets, *(re.split("[/@ ]", key)[-1] for key in named)}
+        if keys.isdisjoint(key.partition(".")[0] for key in read):
+            raise UsageError(f"{text}: {config.algo} uses nothing of what it sets")
+
+
 def _root_keys(hydra: Any, without: Path) -> set[str]:
     """The keys at the root of all YAML files that can be chosen, one left out."""
     sources = [Path(each.path) for each in hydra.runtime.config_sources if each.schema == "file"]
     files = {file for source in (*sources, THESIS) for file in source.rglob("*.yaml")} - {without}
-    texts = [file.read_text(encoding="utf-8", errors="replace") for file in files]
-    spread = [text for text in texts if GLOBAL in text]
+    texts = (file.read_text(encoding="utf-8", errors="replace") for file in files)
     root = (CONF / "train.yaml").read_text(encoding="utf-8")
-    return {key for text in (root, *spread) for key in ROOT_KEY.findall(text)}
+    spread = (root, *(text for text in texts if GLOBAL in text))
+    return {key for text in spread for key in ROOT_KEY.findall(text)}
 
 
 def _changed(raw: dict[str, Any], own: dict[str, Any], hydra: Any, name: str) -> str | None:

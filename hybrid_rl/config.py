@@ -15,16 +15,16 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
+from hybrid_rl import checks, renamed
 from hybrid_rl import overrides as overriding
-from hybrid_rl import renamed
 from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, check_owners, whole
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
-from hybrid_rl.envs.adapters.external import External, checked
+from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.envs.mujoco.physics import resolve
+from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
 from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
-from hybrid_rl.parts import built
+from hybrid_rl.parts import build as build_part
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
@@ -67,7 +67,7 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
     config = compose_raw(overrides, config_dir)
     for key in (key for key in ("run", "sweep") if config[key]):
         raise UsageError(f"{key}={config[key]}: only the command and hybrid_rl.train take it")
-    return resolved(config)
+    return resolve(config, overrides)
 
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
@@ -100,18 +100,18 @@ def _composed(overrides: Sequence[str], more: list[str]) -> DictConfig:
     return config
 
 
-def resolved(config: DictConfig) -> DictConfig:
-    """A copy with every interpolation replaced by its value.
+def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
+    """A copy with every interpolation replaced by its value, composed from the overrides.
 
     What the run does not read is left out; all that the user may override is in it.
     """
     values: Any = OmegaConf.to_container(config, resolve=True)
+    values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
     read = overriding.reachable_keys(overriding.raw_values(config), READ)
-    made: Any = OmegaConf.create(_of(values, read))
-    OmegaConf.set_struct(made, True)
+    made: Any = OmegaConf.create(_of(values, read), flags={"struct": True})
     return made
 
 
@@ -190,7 +190,7 @@ def episodes(config: DictConfig) -> Episode:
 def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     """The episodes of the sections `env` and `episode`, and notes about a world of the user's."""
     env = _instantiate(parts.env, "env")
-    notes = checked(env)
+    notes = check_world(env)
     if not type(env).__module__.startswith("hybrid_rl.") and "steps" not in parts.episode:
         line = f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode"
         notes = (*notes, line)
@@ -239,7 +239,7 @@ def physics(config: DictConfig) -> str | None:
     value = config.env.get("physics")
     if not isinstance(value, str):
         return None
-    return resolve(value, config.num_seeds * config.num_envs)
+    return resolve_physics(value, config.num_seeds * config.num_envs)
 
 
 def _on_this_machine(config: DictConfig) -> DictConfig:
@@ -263,7 +263,7 @@ def _on_this_machine(config: DictConfig) -> DictConfig:
 def _instantiate(node: Any, where: str) -> Any:
     """The part at the key `where`."""
     values = OmegaConf.to_container(node, resolve=True) if OmegaConf.is_config(node) else node
-    return built(values, where=where)
+    return build_part(values, where=where)
 
 
 @contextmanager

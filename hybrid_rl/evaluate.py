@@ -10,9 +10,10 @@ With env.KEY=VALUE or episode.KEY=VALUE the world differs from that of the train
 controller does not; the file is then DIR/evaluation_<mode>_<changes>.json.
 
 With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
-model that the run has learned; nothing is trained. planner=NAME is another planner. With
-imagine=policy the policy goes on learning in that model before it acts, for seconds. Below the
-table is the return of the policy alone.
+model that the run has learned; nothing is trained. planner=NAME is another planner, and
+planner.KEY=VALUE alone another value of a key of the one that the run has. With imagine=policy the
+policy goes on learning in that model before it acts, for seconds. Below the table is the return of
+the policy alone.
 
 With constraint=NAME, of conf/constraint, the world counts the decisions that violate it, and the
 planner keeps it; the return stays as it is.

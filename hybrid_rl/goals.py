@@ -3,6 +3,7 @@
     evaluate run=DIR reward=speed reward.target=5
     evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
     evaluate run=DIR planner=sampling planner.samples=256
+    evaluate run=DIR planner.horizon=5
     evaluate run=DIR reward=level imagine=policy
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
@@ -11,6 +12,8 @@ without a learned model keeps its policy, which knows nothing of the reward.
 
 `constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
 `gradient` keeps it, for the new reward or for that of the training.
+
+`planner.KEY=VALUE` alone changes the planner of the run, also one of yours.
 
 Nothing is trained, unless `imagine=policy` lets the policy go on learning in the models, before
 anything acts (training.imagined).
@@ -35,8 +38,10 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
 from hybrid_rl.composition import CONF, check_choices, explain
+from hybrid_rl.envs.adapters.robot import Outside, Robot
+from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import search_path
+from hybrid_rl.overrides import search_path, value_of
 from hybrid_rl.parts import part_class
 from hybrid_rl.trained import Trained, load_named
 from hybrid_rl.training.episode import Episode
@@ -57,9 +62,12 @@ def load_changed(
     given: run, policy and GOAL; changes: group.KEY=VALUE of CHANGES, of the command line.
 
     Raises:
-        UsageError: for a run, a name, a key or a value that is unusable.
+        UsageError: for a run, a name, a key or a value that is unusable; for a run on a robot.
     """
-    return apply_changes(load_named(given), given, changes)
+    trained = load_named(given)
+    if isinstance(trained.episode.env, Robot | Outside):
+        raise UsageError(f"{trained.task}: {ALONE}")
+    return apply_changes(trained, given, changes)
 
 
 def apply_changes(
@@ -101,6 +109,8 @@ def aimed(
     if not overrides:
         return trained, None
     named = {text.partition("=")[0] for text in overrides}
+    if "controllers" in (trained.config or ()) and all(key.startswith("planner.") for key in named):
+        return _adjusted(trained, overrides), None
     for text in overrides:
         group, dot, _ = text.partition("=")[0].partition(".")
         goal = (*configuration.PAID, "imagine") if group == "planner" else ()  # they bring one
@@ -124,6 +134,19 @@ def aimed(
         config=changed,
     )
     return now, before
+
+
+def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
+    """`trained` with other values of keys of the planner that acts in it, planner.KEY=VALUE."""
+    config: Any = OmegaConf.create(OmegaConf.to_container(trained.config, resolve=True))
+    for text in overrides:
+        key, _, value = text.partition("=")
+        OmegaConf.update(config, key.replace("planner", "controllers.full", 1), value_of(value))
+    try:
+        controllers = configuration.acting(config)[1]
+    except UsageError as error:
+        raise UsageError(str(error).replace("controllers.full.", "planner.", 1)) from error
+    return replace(trained, controllers=controllers, config=config)
 
 
 def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:

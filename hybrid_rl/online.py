@@ -32,7 +32,7 @@ from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare, refuse_x64
-from hybrid_rl.run.lock import locked
+from hybrid_rl.run.lock import lock
 from hybrid_rl.run.records import flatten_keys
 from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.store import Record, Store
@@ -228,7 +228,7 @@ class OnlineLearner:
         path = _free(folder)
         while self._waiting:
             self._advance()
-        with locked(run_folder.ensure_writable(path, "folder"), "folder"), self._lock:
+        with lock(run_folder.ensure_writable(path, "folder"), "folder"), self._lock:
             values: Any = OmegaConf.to_container(self.config)
             store = Store(path / "checkpoints", self._loop, True, flatten_keys(values))
             store.known = set(checkpoint.steps(store.folder))

@@ -89,7 +89,7 @@ def part_class(target: Any, near: Path | None = None) -> Any:
     return found
 
 
-def built(node: Any, near: Path | None = None, where: str = "") -> Any:
+def build(node: Any, near: Path | None = None, where: str = "") -> Any:
     """The part that `node` describes, with the parts in it; what is no part stays as it is.
 
     where: key of `node` in its configuration, which messages about a field begin with.

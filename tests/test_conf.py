@@ -106,6 +106,22 @@ def test_settings_can_be_overridden_on_the_command_line() -> None:
     config.build(one)
 
 
+@pytest.mark.parametrize(
+    ("given", "random"),
+    [
+        (["total_steps=3001"], 1501),
+        (["total_steps=3001", "algo=sac"], 1501),  # of its own 10,000
+        (["total_steps=20000"], 5000),
+        (["total_steps=3000", "random_steps=4000"], 4000),
+        (["total_steps=3000", "model_random_steps=2000"], 2000),
+        (["settings=light"], 5000),
+    ],
+)
+def test_random_decisions_leave_half_of_a_short_run_to_learning(given, random) -> None:
+    """What the task, the settings and the method say holds for their own total_steps."""
+    assert config.load(["task=halfcheetah", *given]).random_steps == random
+
+
 def test_how_a_hybrid_method_learns_is_one_override() -> None:
     """By default from five imagined decisions; learning=mbpo was the default until 0.2."""
     c = config.load(["algo=hybrid_stochastic"])

@@ -114,6 +114,8 @@ USAGE = [  # overrides of train, words of the line
     ("objective=weighted_sum", "objective.terms.task: refers to the part that it is in; give it"),
     ("algo=nn_mppi planner.execute=mean", "it uses model_planner.execute"),
     ("algo=deterministic_mpc planner.horizon=7", "it uses adjoint_planner.horizon"),
+    ("algo=sac learning=replay settings=light", "learning=replay: sac uses nothing of what it se"),
+    ("algo=bc settings=fast", "settings=fast: bc uses nothing of what it sets"),
     ("algo=sac target=mixture", "target: the method has no such part"),
     ("domain.low=[0]", "domain.low: hybrid_stochastic does not use it"),
     ("demonstrations=file algo=sac", "demonstrations: sac does not use it"),

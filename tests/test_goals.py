@@ -1,6 +1,7 @@
 """A trained run on rewards that it was not trained on, from its folder and from a policy's file."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import jax
@@ -12,6 +13,7 @@ from hybrid_rl import demonstrate, evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
+from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import aimed, retargeted
 from hybrid_rl.trained import Trained, load, read
 from scripts import new_goals
@@ -70,6 +72,23 @@ def test_another_planner_keeps_the_reward_and_its_critic(known: Trained) -> None
     assert isinstance(planned, SamplingController)
     assert isinstance(planner, GradientController)
     assert planner.objective == planned.objective
+
+
+def test_keys_of_the_planner_of_the_run_change_alone(known: Trained) -> None:
+    """Also those that its file left at their defaults, as in a class of the user's."""
+    was, now = known.controllers, retargeted(known, ["planner.horizon=2", "planner.rest=0.5"])
+    assert now.controllers["full"] == replace(was["full"], horizon=2, rest=0.5)
+    assert [now.controllers[mode] == was[mode] for mode in ("policy", "planner")] == [True, True]
+    assert now.episode == known.episode
+    for wrong, words in (
+        ("planner.horizn=2", r"planner\.horizn: SamplingController has .*; did you mean horizon"),
+        ("planner.horizon=many", r"planner\.horizon=many: must be a whole number"),
+        ("planner.horizon=0", r"planner\.horizon=0: must be"),
+    ):
+        with pytest.raises(UsageError, match=f"^{words}"):
+            retargeted(known, [wrong])
+    with pytest.raises(UsageError, match="is a key of planner=NAME"):
+        retargeted(read("halfcheetah"), ["planner.horizon=2"])
 
 
 def test_a_policy_has_proposals_for_any_planner() -> None:
@@ -162,7 +181,7 @@ def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
     [
         ("reward=fame", "reward=fame: unknown; choose one of aim, height, level"),
         ("reward.target=2", "reward.target=2: is a key of reward=NAME; give that with it"),
-        ("planner.samples=2", "planner.samples=2: is a key of planner=NAME; give that with it"),
+        ("planner.samples=0", "planner.samples=0: must be a whole number, 1 or more"),
         ("constraint.most=2", "constraint.most=2: is a key of constraint=NAME; give that with it"),
         ("episode.sensor_noise=a", "episode.sensor_noise=a: must be 1 or 5 numbers, each 0 or"),
         ("episode.sensor_noise=[1", "episode.sensor_noise=[1: is no YAML: expected ',' or ']'"),

@@ -2,7 +2,8 @@
 
 import multiprocessing
 import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property, partial
 from multiprocessing.connection import wait
 from typing import Any, NamedTuple
@@ -51,7 +52,6 @@ class Copies:
         one = partial(self.env.one, self.render_mode)
         if not self.env.processes:
             return InTurn([one() for _ in self.seeds])
-        gymnasium.logger.min_level = SILENT  # it warns of what is raised, too
         makers = [partial(Located, one) for _ in self.seeds]
         return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.DISABLED)
 
@@ -130,7 +130,8 @@ class Copies:
     def _call(self, method: str, call: Callable[[], Any]) -> Any:
         """The result of a method of the environments; an error names the user's line."""
         try:
-            return call()
+            with self._quiet():
+                return call()
         except UsageError:
             raise
         except multiprocessing.TimeoutError as error:
@@ -169,7 +170,19 @@ class Copies:
     def close(self, **options: Any) -> None:
         """End the environments, and their processes."""
         if "_vector" in vars(self):
-            vars(self).pop("_vector").close(**options)
+            with self._quiet():
+                vars(self).pop("_vector").close(**options)
+
+    @contextmanager
+    def _quiet(self) -> Iterator[None]:
+        """Gymnasium's log without what it says of processes: what it warns of is raised, too."""
+        before = gymnasium.logger.min_level
+        if self.env.processes:
+            gymnasium.logger.min_level = SILENT
+        try:
+            yield
+        finally:
+            gymnasium.logger.min_level = before
 
 
 class InTurn:

@@ -25,7 +25,7 @@ from gymnasium.wrappers import FlattenObservation
 from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
-from hybrid_rl.envs.adapters.unstepped import Made, imported
+from hybrid_rl.envs.adapters.unstepped import Made, import_named
 from hybrid_rl.envs.contract import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.types import EnvState, Spec
@@ -108,7 +108,7 @@ class External(Made):
             env = gymnasium.make(self.id, **options, **given)
         else:
             try:
-                env = imported(self.make)(**given)
+                env = import_named(self.make)(**given)
             except TypeError as error:
                 if render_mode is None:  # as when its spaces were read
                     raise
@@ -184,7 +184,7 @@ def _known(env: External) -> Known:
     return Known(Spec(*sizes, float(dt)), limit, space, notes)
 
 
-def checked(env: Any) -> tuple[str, ...]:
+def check_world(env: Any) -> tuple[str, ...]:
     """Notes about a world of the user's, before a run in it.
 
     Raises:

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, imported
+from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, import_named
 from hybrid_rl.errors import FAULTS, UsageError, blame
 from hybrid_rl.types import Spec
 
@@ -83,7 +83,7 @@ class Robot(Made):
         """The user's class."""
         if not self.make:
             raise UsageError("env.make: give MODULE:CLASS of your robot")
-        kind = imported(self.make)
+        kind = import_named(self.make)
         missing = [name for name in METHODS if not callable(getattr(kind, name, None))]
         missing += [name for name in ("dt", "low", "high", "obs") if not hasattr(kind, name)]
         if missing:

@@ -12,6 +12,9 @@ from jax import Array
 from hybrid_rl.errors import FAULTS, UsageError, user_line
 from hybrid_rl.types import EnvState, Spec
 
+ALONE = "steps by itself; no method can plan on it, and evaluate and render cannot step it "
+ALONE += "(`python -m hybrid_rl.robot run=DIR` moves a robot)"
+
 
 class Unstepped:
     """A world of which JAX knows the sizes alone."""
@@ -29,10 +32,7 @@ class Unstepped:
         Raises:
             UsageError: always.
         """
-        raise UsageError(
-            f"{type(self).__name__}: steps by itself; no method can plan on it, and evaluate and "
-            "render cannot step it (`python -m hybrid_rl.robot run=DIR` moves a robot)"
-        )
+        raise UsageError(f"{type(self).__name__}: {ALONE}")
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Items(dict):
         return hash(repr(sorted(self.items(), key=repr)))
 
 
-def imported(make: Any) -> Callable[..., Any]:
+def import_named(make: Any) -> Callable[..., Any]:
     """The function or class that `MODULE:NAME` names; what is no text stays as it is.
 
     Raises:

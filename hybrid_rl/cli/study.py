@@ -213,7 +213,7 @@ class Study:
 
 
 @contextmanager
-def opened(
+def open_study(
     folder: Path, settings: Settings, space: Mapping[str, Any], typed: Iterable[str], every: int
 ) -> Iterator[Study]:
     """The study in `folder`, a new one if there is none.

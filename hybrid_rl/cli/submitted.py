@@ -29,7 +29,7 @@ def require_slurm(launcher: str) -> None:
 
 
 @contextmanager
-def watched(results: dict[int, Result]) -> Iterator[None]:
+def watch(results: dict[int, Result]) -> Iterator[None]:
     """Print a line when a job of Submitit is sent, begins and ends.
 
     A lost job, whose process was killed, for example, counts as failed.

@@ -24,7 +24,7 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command
-from hybrid_rl.cli.submitted import Result, require_slurm, watched
+from hybrid_rl.cli.submitted import Result, require_slurm, watch
 from hybrid_rl.composition import check_task, concerns, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
@@ -114,7 +114,7 @@ class Sweeper(BasicSweeper):
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
         results, size = self.task.results, self.max_batch_size or len(jobs)
         try:
-            with nullcontext() if here(self.config.hydra) else watched(results):
+            with nullcontext() if here(self.config.hydra) else watch(results):
                 for first in range(0, len(jobs), size):
                     self.launcher.launch(jobs[first : first + size], first)
         finally:

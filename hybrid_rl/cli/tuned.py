@@ -24,7 +24,7 @@ from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.lock import locked
+from hybrid_rl.run.lock import lock
 
 INSTALL = f"hydra/sweeper=tuned: Optuna is not installed; {install('tune')}"
 OWN = ("resume", "distributed")  # keys that trials cannot have
@@ -75,8 +75,8 @@ class Tuner(sweep.Sweeper):
         kept = [each for each in arguments if not each.startswith("run_dir=")]
         self.config.hydra.sweep.dir = str(run_folder.ensure_writable(folder, "run_dir"))
         with (
-            locked(folder, "run_dir"),
-            study.opened(folder, settings, space, kept, config.eval_every) as opened,
+            lock(folder, "run_dir"),
+            study.open_study(folder, settings, space, kept, config.eval_every) as opened,
         ):
             OmegaConf.save(self.config, folder / "multirun.yaml")
             print(f"study of {settings.trials} trials: {folder}", flush=True)

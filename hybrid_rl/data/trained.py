@@ -87,7 +87,7 @@ def part(prefix: str, file: str, node: Any) -> Any:
     try:
         if any(name == ITSELF for _, name in parts.targets([node])):
             raise ValueError("describes a policy in another file, not its own")
-        return parts.built(node, archive.find(file))
+        return parts.build(node, archive.find(file))
     except ValueError as error:
         raise ValueError(f"{prefix} {error}") from error
 

@@ -16,7 +16,7 @@ from omegaconf import OmegaConf
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
-from hybrid_rl.envs.adapters.external import checked
+from hybrid_rl.envs.adapters.external import check_world
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.jax_settings import prepare
@@ -65,7 +65,7 @@ def run_of(
         | {"run_dir": None if run_dir is None else str(run_dir), "resume": None, "logger": None}
     )
     prepare(config)  # first: a check of the user's world initialises JAX's devices
-    notes = checked(agent.episode.env)
+    notes = check_world(agent.episode.env)
     rounds = -(-counts["total_steps"] // agent.num_envs)
     agent.check(rounds * agent.num_envs)
     sized = replace(agent, replay=agent.replay.within(rounds, agent.num_envs))

@@ -33,7 +33,7 @@ class Evaluations:
         """Compile all of them; params: [S, ...]."""
         self.keys = jnp.stack([evaluation_keys(seed, episodes) for seed in loop.seeds])
         self._evaluators = {
-            mode: HostEvaluator(loop.agent.episode, controller, params, self.keys)
+            mode: _on_host(loop, controller, params, self.keys, mode)
             if isinstance(loop, HostLoop)
             else Evaluator(loop, controller, params, self.keys, mode)
             for mode, controller in controllers.items()
@@ -74,6 +74,14 @@ class Evaluator:
         """The `scores` [S, N]; None once `cut` is true."""
         begun, more = self._begin(self.numbers, keys), partial(self._advance, self.numbers, params)
         return finish_episodes(begun, more, self.steps, lambda made: cut())
+
+
+def _on_host(
+    loop: Loop, controller: Controller, params: Params, keys: Array, mode: str
+) -> HostEvaluator:
+    """The evaluator of a loop whose environments are on the host; arguments as of `Evaluator`."""
+    of = partial(loop.axis.put, controller, f"controllers.{mode}")
+    return HostEvaluator(loop.agent.episode, controller, params, keys, loop.numbers, of)
 
 
 def finish_episodes(

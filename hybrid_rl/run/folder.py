@@ -29,7 +29,7 @@ from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.anchors import as_yaml
 from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.lock import locked
+from hybrid_rl.run.lock import lock
 from hybrid_rl.run.reading import json_file, yaml_file
 
 FIRST = "0.2"  # version that writes its number to config.yaml
@@ -49,7 +49,7 @@ def claim_folder(config: DictConfig) -> Iterator[Path]:
     folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
     new = config.run_dir is None or not folder.exists()
     try:
-        with locked(ensure_writable(folder, "run_dir"), "run_dir"), _cleared(folder):
+        with lock(ensure_writable(folder, "run_dir"), "run_dir"), _cleared(folder):
             saved = checkpoint.steps(folder / "checkpoints")
             if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
                 line = f"run_dir={folder}: holds a run already; choose another"

@@ -100,7 +100,7 @@ def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
         UsageError: if there is no such run, or an override deletes a key.
     """
     if config.get("run") is None:
-        return configuration.resolved(config)
+        return configuration.resolve(config, texts)
     raw, typed = raw_values(config), parse(texts)
     if deleted := [each for each in typed if each.is_delete()]:
         raise UsageError(f"{deleted[0].input_line}: with run=DIR keys cannot be deleted")

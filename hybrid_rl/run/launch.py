@@ -19,7 +19,7 @@ from hybrid_rl.run import start as starting
 from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.job import Job, Output, written
-from hybrid_rl.run.lock import locked
+from hybrid_rl.run.lock import lock
 from hybrid_rl.run.progress import Progress, Silent
 from hybrid_rl.run.records import changes, summary_of
 from hybrid_rl.run.schedule import Schedule
@@ -92,7 +92,7 @@ def begin(
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
     """Continue what is built from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
-    with locked(folder.ensure_writable(run_dir, "run_dir"), "run_dir"):
+    with lock(folder.ensure_writable(run_dir, "run_dir"), "run_dir"):
         return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
 
 
@@ -118,7 +118,7 @@ def _resume(
     with ExitStack() as stack:
         members, runs = [], []
         for run_dir in folders:
-            stack.enter_context(locked(folder.ensure_writable(run_dir, "resume"), "resume"))
+            stack.enter_context(lock(folder.ensure_writable(run_dir, "resume"), "resume"))
             own = settings(run_dir)  # again, as another process may have continued the run
             with folder.blame_config(run_dir):
                 check(own)
@@ -233,7 +233,8 @@ def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
 
 def _same(old: DictConfig, config: DictConfig) -> bool:
     """Whether the whole configuration that the user gave is that of the run."""
-    return all(old[key] == config[key] for key in old if key in config and key not in OF_A_SESSION)
+    free = (*OF_A_SESSION, "random_steps")  # which may follow from total_steps
+    return all(old[key] == config[key] for key in old if key in config and key not in free)
 
 
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:

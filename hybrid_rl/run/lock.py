@@ -20,7 +20,7 @@ NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)  # of so
 
 
 @contextmanager
-def locked(folder: Path, key: str) -> Iterator[Path]:
+def lock(folder: Path, key: str) -> Iterator[Path]:
     """`folder`, locked by this process until the end of the block.
 
     key: the argument that named the folder.

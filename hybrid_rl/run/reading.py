@@ -23,7 +23,7 @@ NO_WAIT, NO_LINK = getattr(os, "O_NONBLOCK", 0), getattr(os, "O_NOFOLLOW", 0)
 Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def opened(file: Path) -> BinaryIO:
+def open_file(file: Path) -> BinaryIO:
     """A plain file, open for reading.
 
     Raises:
@@ -64,7 +64,7 @@ def text(file: Path, most: int = TEXT) -> str:
     Raises:
         UsageError: if it is no plain file, too large, or no text.
     """
-    with opened(file) as data:
+    with open_file(file) as data:
         content = data.read(most + 1)
     if len(content) > most:
         raise UsageError(f"{file}: is larger than {most // 2**20} MB")
@@ -80,7 +80,7 @@ def lines(file: Path, most: int | None = None) -> Iterator[bytes]:
     Raises:
         UsageError: if it is no plain file, or a line is too long.
     """
-    with opened(file) as data:
+    with open_file(file) as data:
         left, number = most, 0
         while left is None or left > 0:
             line = data.readline(LINE if left is None else min(left, LINE))

@@ -111,9 +111,10 @@ class Session:
         if self.finished:
             return
         plan, random = self.schedule, self.loop.agent.random_steps
-        if plan.total_steps <= random:
-            decisions = f"all {plan.total_steps:,} decisions are random"
-            self.progress.note(f"{decisions}: random_steps={random}")
+        if plan.total_steps <= 2 * random:
+            which = "all" if plan.total_steps <= random else f"the first {random:,} of"
+            words = f"decisions are random: random_steps={random}"
+            self.progress.note(f"{which} {plan.total_steps:,} {words}")
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle_note}")
         with self.progress.doing("compiling"):
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
@@ -121,8 +122,7 @@ class Session:
             self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
             began = perf_counter()
-            modes = {mode: self.controllers[mode] for mode in plan.eval_modes}
-            params = self._params()
+            modes, params = {m: self.controllers[m] for m in plan.eval_modes}, self._params()
             self.evaluations = Evaluations(self.loop, modes, plan.eval_episodes, params)
             self.loop.compile_s += perf_counter() - began
         self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")

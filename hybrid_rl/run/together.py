@@ -22,6 +22,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.config import Run
+from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import LACKING, raw_values, select, source
 from hybrid_rl.run import folder, inherited
@@ -31,7 +32,7 @@ from hybrid_rl.run.records import flatten_keys
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of
-from hybrid_rl.training.rollout import advance, begin
+from hybrid_rl.training.rollout import act, advance, begin
 
 Values = Mapping[str, float]  # key -> value
 
@@ -153,9 +154,12 @@ def _check_traced(axis: Axis, members: Sequence[Member], run: Run) -> None:
 
 def _episode(loop: Loop, controller: Any, path: str, state: Any) -> Any:
     """A decision of an evaluation."""
+    episode, params = loop.agent.episode, loop.agent.params(state)
     controller = loop.axis.put(controller, path, state.numbers)
-    carry = begin(loop.agent.episode, controller, state.key[None])
-    return advance(loop.agent.episode, controller, loop.agent.params(state), carry, jnp.int32(1))
+    carry = begin(episode, controller, state.key[None])
+    if isinstance(episode.env, External):  # JAX does not step it
+        return act(controller, params, carry[1], carry[0], carry[2])
+    return advance(episode, controller, params, carry, jnp.int32(1))
 
 
 def _refused(members: Sequence[Member], path: str, why: str = "") -> UsageError:

@@ -17,7 +17,7 @@ import jax.numpy as jnp
 from hybrid_rl.core import lifting
 from hybrid_rl.core.batching import repeat
 from hybrid_rl.errors import PartError, SourceOf
-from hybrid_rl.training.traced import called, of_user, parts, shapes, traced, users, words
+from hybrid_rl.training.traced import call, of_user, parts, shapes, trace, users, words
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
 ROLES = {  # kind of a part -> its methods and what they take
@@ -114,7 +114,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
             drawing, updating = jax.random.split(key)
             return of.update(state, params, agent._batch(memory, of, params, drawing), updating)
 
-        result = traced(learner, "update", update, states[name], params, memory, key)
+        result = trace(learner, "update", update, states[name], params, memory, key)
         if not isinstance(result, tuple) or len(result) != 2:
             raise PartError(
                 f"{SourceOf(learner).at('update')}: {_returned(result, 'state, metrics')}"
@@ -126,7 +126,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         _check_objectives(owner, agent, params, env)
     for controller in controllers:
         _check_members(controller, "controller")
-        greedy = called(controller, "greedy", controller.greedy)
+        greedy = call(controller, "greedy", controller.greedy)
         if not callable(getattr(greedy, "act", None)):
             got = f"returned {words(greedy)}; it must be a controller"
             raise PartError(f"{SourceOf(controller).at('greedy')}: {got}")
@@ -157,7 +157,7 @@ def _check_acting(
     def act(params: Params, state: Any, env: EnvState, key: Any) -> Any:
         return part.act(params._replace(world=env), state, env.obs, key)
 
-    result = traced(part, "act", act, params, state, env, key)
+    result = trace(part, "act", act, params, state, env, key)
     at = SourceOf(part).at("act")
     if not isinstance(result, tuple) or len(result) != 3:
         raise PartError(f"{at}: {_returned(result, 'action, state, metrics')}")

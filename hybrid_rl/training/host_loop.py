@@ -14,9 +14,10 @@ The programs donate the state: the replay memory is not copied. Metrics stay on 
 the end of a call.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
+from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -36,6 +37,7 @@ from hybrid_rl.training.rollout import act
 from hybrid_rl.training.sending import mailbox, send
 from hybrid_rl.types import EnvState, Params
 
+NONE: Mapping[str, Array] = MappingProxyType({})
 RESUMED = "the environment begins a new episode, as its own state is in no checkpoint: the "
 RESUMED += "decisions after this one differ from those of a run without the interruption"
 
@@ -59,12 +61,9 @@ class HostLoop(Loop):
 
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that decides; that of the other one is kept."""
-        began, at, agent = perf_counter(), jnp.zeros(4, jnp.int32), self.agent
-        got = outcome_like(state.env)
-        u, _, planned = jax.eval_shape(jax.vmap(agent.decide, (0, None)), state, at[0])
-        led = jax.eval_shape(jax.vmap(self._observed, (0, 0, 0, None)), state, u, got, at[0])[1]
-        learned = jax.eval_shape(jax.vmap(agent.learn, (0, None)), state, at[0])[1]
-        self.rows = self.rows_of({**planned, **learned, **led})
+        began, at, got = perf_counter(), jnp.zeros(4, jnp.int32), outcome_like(state.env)
+        u = np.zeros((*got.reward.shape, self.agent.spec.act), np.float32)
+        self.rows = self.rows_of(jax.eval_shape(jax.vmap(self.step, (0, None)), state, at[0])[1])
         parts = (SEEDS, METRICS, SEEDS, SEEDS, REPLICATED), (SEEDS, METRICS)
         traced, self.closing = (
             self.shard(each, *parts, donate_argnums=(0, 1)).trace(state, self.rows, u, got, at)
@@ -78,6 +77,13 @@ class HostLoop(Loop):
         act = super().compile(state, self.trace(state) if traced is None else traced)
         return HostProgram(self, act, super().compile(state, self.closing))
 
+    def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
+        """As of `Loop`, in an environment where nothing changes: for the shapes."""
+        u, state, planned = self._decide(state, step)
+        state, led = self._observed(state, u, outcome_like(state.env), 1)
+        state, learned = self._learn(state, step)
+        return state, {**planned, **learned, **led}
+
     def copies(self) -> Copies:
         """The environments [S * E] of training, each with a seed of its own."""
         seeds = [seed_of(seed, i) for seed in self.seeds for i in range(self.agent.num_envs)]
@@ -90,7 +96,7 @@ class HostLoop(Loop):
             first = jax.vmap(self.agent.episode.reset)(jax.random.split(state.key, len(obs)))
             memory = self.agent.replay.interrupted(state.memory, self.agent.spec)
             state = state.replace(env=first.replace(obs=obs), memory=memory)
-            return state.replace(control=self.agent.first_control())
+            return state.replace(control=self._of(state.numbers).first_control())
 
         return self.shard(jax.vmap(one), SEEDS, SEEDS, donate_argnums=0)(state, obs)
 
@@ -105,10 +111,10 @@ class HostLoop(Loop):
         if self.early:
             state, led = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, made)
             rows = put(rows, led, row - 1)
-        u, state, metrics = jax.vmap(self.agent.decide, (0, None))(state, step)
+        u, state, metrics = jax.vmap(self._decide, (0, None))(state, step)
         state = jax.vmap(self._expecting)(state, send(u, ticket, *SEEDS))
         if self.early:
-            state, learned = jax.vmap(self.agent.learn, (0, None))(state, step)
+            state, learned = jax.vmap(self._learn, (0, None))(state, step)
             metrics |= learned
         return state, put(rows, metrics, row)
 
@@ -116,9 +122,17 @@ class HostLoop(Loop):
         """All learners after u [S, E, m], the decision of `at`, led to `got` [S, E, ...]."""
         state, metrics = jax.vmap(self._observed, (0, 0, 0, None))(state, u, got, 1)
         if not self.early:
-            state, learned = jax.vmap(self.agent.learn, (0, None))(state, at[1])
+            state, learned = jax.vmap(self._learn, (0, None))(state, at[1])
             metrics |= learned
         return state, put(rows, metrics, at[0])
+
+    def _decide(self, state: AgentState, step: Array) -> tuple[Array, AgentState, dict[str, Array]]:
+        """`Agent.decide` of one learner."""
+        return self._of(state.numbers).decide(state, step)
+
+    def _learn(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
+        """`Agent.learn` of one learner."""
+        return self._of(state.numbers).learn(state, step)
 
     def _expecting(self, state: AgentState, u: Array) -> AgentState:
         """One learner whose memory has the actions u [E, m]."""
@@ -133,7 +147,7 @@ class HostLoop(Loop):
         """
         (now, after), count = states(state.env, got), state.memory.count
         before = state.replace(memory=state.memory.replace(count=count - made))
-        seen = self.agent.observe(before, u, now, after)
+        seen = self._of(state.numbers).observe(before, u, now, after)
         both = (seen.env, seen.control), (state.env, state.control)
         env, control = where(jnp.asarray(made) > 0, *both)
         memory = seen.memory.replace(count=count)
@@ -183,26 +197,39 @@ def outcome_like(env: EnvState) -> Outcome:
 class HostEvaluator:
     """Episodes of every learner under `controller`, on environments that are not those of training.
 
-    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode, which seed them.
+    It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode, which seed them;
+    numbers: those of a loop's axis by path [S]; of: them, one learner's -> its `controller`.
     """
 
     def __init__(
-        self, episode: Episode, controller: Controller, params: Params, keys: Array
+        self,
+        episode: Episode,
+        controller: Controller,
+        params: Params,
+        keys: Array,
+        numbers: Mapping[str, Array] = NONE,
+        of: Callable[[Any], Controller] | None = None,
     ) -> None:
         """Compile one decision in all of them."""
-        self.episode, shape = episode, keys.shape
-        self.control = repeat(controller.init(episode.spec), *shape)
+        self.episode, (learners, count), self.numbers = episode, keys.shape, dict(numbers)
         empty = episode.reset(jax.random.key(0))
 
-        def decide(params: Params, control: Any, obs: Array, keys: Array) -> tuple:
+        def acting(numbers: Any) -> Controller:
+            return controller if of is None else of(numbers)
+
+        def begun(numbers: Any) -> Any:
+            return repeat(acting(numbers).init(episode.spec), count)
+
+        def decide(numbers: Any, params: Params, control: Any, obs: Array, keys: Array) -> tuple:
             env = repeat(empty, len(obs))
             keys, now = jnp.moveaxis(jax.vmap(jax.random.split)(keys), 1, 0)
-            u, control, _ = act(controller, params, control, env.replace(obs=obs), now)
+            u, control, _ = act(acting(numbers), params, control, env.replace(obs=obs), now)
             return u, control, keys
 
-        obs = np.zeros((*shape, episode.spec.obs), np.float32)
-        program = jax.jit(jax.vmap(decide), donate_argnums=1)
-        self._decide = program.lower(params, self.control, obs, keys).compile()
+        self.control = jax.vmap(begun, axis_size=learners)(self.numbers)
+        obs = np.zeros((*keys.shape, episode.spec.obs), np.float32)
+        program = jax.jit(jax.vmap(decide), donate_argnums=2)
+        self._decide = program.lower(self.numbers, params, self.control, obs, keys).compile()
 
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[], bool] = lambda: False
@@ -216,7 +243,8 @@ class HostEvaluator:
             if cut():
                 copies.close()
                 return None
-            u, control, keys = self._decide(params, control, obs.reshape(*shape, -1), keys)
+            seen = obs.reshape(*shape, -1)
+            u, control, keys = self._decide(self.numbers, params, control, seen, keys)
             got = copies.step(np.asarray(u).reshape(len(seeds), -1))
             returns += np.where(done, 0, got.reward)
             done, obs = done | got.terminated | got.truncated, got.following

@@ -24,17 +24,15 @@ def loop_of(
     folder: of the run, in which the files of a robot are. axis: of `Loop`.
 
     Raises:
-        UsageError: for a world that the caller steps, or an axis without a world in JAX.
+        UsageError: for a world that the caller steps, or an axis on a robot.
     """
-    env = agent.episode.env
-    if axis is not None and axis.numbers:
-        if isinstance(env, Robot | Outside | External):
-            raise UsageError("sweep: is for worlds in JAX; use -m, with one job after another")
-        return Loop(agent, seeds, stride, axis=axis)
+    env, axis = agent.episode.env, Axis() if axis is None else axis
+    if axis.numbers and isinstance(env, Robot | Outside):
+        raise UsageError("sweep: one robot has one learner; use -m, with one job after another")
     if isinstance(env, Robot):
         files = folder / "robot"
         files.mkdir(exist_ok=True)
         return RobotLoop(agent, seeds, stride, folder=files)
     if isinstance(env, Outside):
         raise UsageError("task=online: is for a loop of yours; use hybrid_rl.OnlineLearner")
-    return (HostLoop if isinstance(env, External) else Loop)(agent, seeds, stride)
+    return (HostLoop if isinstance(env, External) else Loop)(agent, seeds, stride, axis=axis)

@@ -17,7 +17,7 @@ PROMOTION = "Following NumPy automatic rank promotion"  # how JAX's warning begi
 
 
 @contextmanager
-def refused() -> Iterator[None]:
+def refuse() -> Iterator[None]:
     """While it is open, what is traced may not combine [.., n, 1] with [n], n above 1.
 
     Other ranks may differ, as those of a batch [B, n] and a weight [n].

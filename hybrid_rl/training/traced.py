@@ -16,15 +16,15 @@ from hybrid_rl.training import pairs
 OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
 
 
-def traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
-    """Shapes of what `call` returns, which belongs to `method` of `part`, traced twice.
+def trace(part: Any, method: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Shapes of what `function` returns, which belongs to `method` of `part`, traced twice.
 
     Raises:
         PartError: if the two differ, as NumPy or Python drew numbers.
     """
 
     def judged(*arguments: Any) -> Any:
-        result = call(*arguments)
+        result = function(*arguments)
         metrics = result[-1] if isinstance(result, tuple) else None
         for name, value in metrics.items() if isinstance(metrics, Mapping) else ():
             if not isinstance(value, (jax.Array, np.generic, np.ndarray, int, float)):
@@ -33,7 +33,7 @@ def traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) ->
         return result
 
     programs = [jax.jit(partial(judged)) for _ in range(2)]  # two functions: neither is kept
-    both = [called(part, method, each.trace, *arguments) for each in programs]
+    both = [call(part, method, each.trace, *arguments) for each in programs]
     first, second = (f"{each.jaxpr}{[*map(str, each.jaxpr.consts)]}" for each in both)
     if of_user(part) and first != second:
         raise PartError(
@@ -43,17 +43,17 @@ def traced(part: Any, method: str, call: Callable[..., Any], *arguments: Any) ->
     return both[0].out_info
 
 
-def shapes(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
-    """Shapes of what `call` returns."""
-    return called(part, method, jax.eval_shape, call, *arguments)
+def shapes(part: Any, method: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Shapes of what `function` returns."""
+    return call(part, method, jax.eval_shape, function, *arguments)
 
 
-def called(part: Any, method: str, call: Callable[..., Any], *arguments: Any) -> Any:
-    """What `call` returns; its errors name the user's part and the line."""
+def call(part: Any, method: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    """What `function` returns; its errors name the user's part and the line."""
     mine = SourceOf(next(users(part), part))
     try:
-        with pairs.refused():
-            return call(*arguments)
+        with pairs.refuse():
+            return function(*arguments)
     except UsageError:
         raise
     except FAULTS as error:

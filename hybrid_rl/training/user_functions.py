@@ -30,7 +30,7 @@ def check(name: str, part: Any, spec: Spec) -> None:
     call, rng, sizes = getattr(part, METHODS[name]), np.random.default_rng(0), (spec.obs, spec.act)
     x, u = (rng.normal(size=(2, size)).astype(np.float32) for size in sizes)
     try:
-        with pairs.refused():
+        with pairs.refuse():
             got = jax.eval_shape(call, x[0], u[0], x[1])
         check_indices(call, (x[0], u[0], x[1]), (x[1], u[1], x[0]))
     except FAULTS as error:

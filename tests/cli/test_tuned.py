@@ -31,7 +31,7 @@ def settings(trials, **given):
 
 def search(folder, plan, stop=None, given=()):
     """Trials whose evaluations at 100, 200, 300 are made of c; stop: dies in this trial's midst."""
-    with study.opened(folder, plan, space(*given), ["x=1"], 100) as opened:
+    with study.open_study(folder, plan, space(*given), ["x=1"], 100) as opened:
         for count in range(100):
             if not opened.open:
                 return opened.numbers()
@@ -107,7 +107,7 @@ def test_values_that_were_tried_are_not_run_again(tmp_path):
 
 def test_a_folder_holds_one_study(tmp_path):
     search(tmp_path, settings(1))
-    other = study.opened(tmp_path, settings(2), space(), ["x=2"], 100)
+    other = study.open_study(tmp_path, settings(2), space(), ["x=2"], 100)
     with pytest.raises(UsageError, match="holds a study with x=1"), other:
         pass
     (tmp_path / "other").mkdir()

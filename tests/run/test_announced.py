@@ -43,8 +43,10 @@ def test_after_a_fault_of_the_world_it_says_how_to_go_on(
 
 
 def test_a_run_says_what_to_expect(tmp_path, capsys):
-    run(tmp_path / "a", "algo=sac", "total_steps=40")
+    run(tmp_path / "a", "algo=sac", "total_steps=40", "random_steps=50")
     assert "all 40 decisions are random: random_steps=50" in capsys.readouterr().out
+    run(tmp_path / "c", "algo=sac", "total_steps=40")
+    assert "the first 20 of 40 decisions are random: random_steps=20" in capsys.readouterr().out
     result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
     printed = capsys.readouterr().out
     assert "random:" not in printed
@@ -68,7 +70,8 @@ def test_a_run_of_random_actions_or_without_evaluations_ends_with_a_line(
 ):
     done = {"signal": None, "run_dir": str(tmp_path), "wall_s": 1.0, "seeds": [0]}
     monkeypatch.setattr(train.launch, "train", lambda *_: done)
-    assert call_train("task=pendulum", "algo=sac", "total_steps=1000", "eval_modes=[]") == 0
+    random = ["total_steps=1000", "random_steps=1000"]
+    assert call_train("task=pendulum", "algo=sac", *random, "eval_modes=[]") == 0
     first, *rest = capsys.readouterr().out.splitlines()
     assert first.startswith("evaluation none yet; training return none yet")
     assert rest == [

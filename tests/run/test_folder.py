@@ -16,7 +16,7 @@ from hybrid_rl.doctor.__main__ import examine
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run import integrity
-from hybrid_rl.run.lock import locked
+from hybrid_rl.run.lock import lock
 from hybrid_rl.training.loop import Loop
 
 pytestmark = pytest.mark.turns(3)
@@ -33,7 +33,7 @@ def trained(tmp_path_factory):
 
 
 def test_a_run_that_is_being_written_is_not_resumed(copied, trained, capfd):
-    with locked(copied, "run_dir"):
+    with lock(copied, "run_dir"):
         assert call_train(f"resume={copied}", "total_steps=200") == 2
         assert "is being written by process" in only_line(capfd)
         (copied / "lock").unlink()
@@ -180,7 +180,7 @@ def test_links_in_a_run_folder_lead_to_nothing_that_is_written(tmp_path):
     (tmp_path / "lock").symlink_to(precious)
     (tmp_path / ".config.yaml.tmp").symlink_to(precious)
     refused = pytest.raises(UsageError, match=r"cannot be written to \(lock is a link\)")
-    with refused, locked(tmp_path, "run_dir"):
+    with refused, lock(tmp_path, "run_dir"):
         pass
     integrity.write_text(tmp_path / "config.yaml", "new")
     assert (tmp_path / "config.yaml").read_text() == "new"

@@ -11,7 +11,7 @@ import sys
 import pytest
 from tiny import TINY, call_train, contents, only_line
 
-from hybrid_rl.run.lock import locked
+from hybrid_rl.run.lock import lock
 
 pytestmark = pytest.mark.turns(3)
 
@@ -19,8 +19,8 @@ pytestmark = pytest.mark.turns(3)
 HOLD = """
 import sys, time
 from pathlib import Path
-from hybrid_rl.run.lock import locked
-with locked(Path(sys.argv[1]), "run_dir"):
+from hybrid_rl.run.lock import lock
+with lock(Path(sys.argv[1]), "run_dir"):
     print("held", flush=True)
     time.sleep(60)
 """
@@ -52,7 +52,7 @@ def test_a_file_that_a_killed_process_left_is_no_lock(holder):
     process.send_signal(signal.SIGKILL)
     process.wait()
     assert (folder / "lock").read_text().startswith(f"process {process.pid}")
-    with locked(folder, "run_dir"):
+    with lock(folder, "run_dir"):
         pass
     assert contents(folder) == {}
 
@@ -62,12 +62,12 @@ def test_one_at_a_time_has_a_folder(tmp_path):
     code = (
         "import sys\n"
         "from pathlib import Path\n"
-        "from hybrid_rl.run.lock import locked\n"
+        "from hybrid_rl.run.lock import lock\n"
         "from hybrid_rl.errors import UsageError\n"
         "folder, done = Path(sys.argv[1]), 0\n"
         "while done < 200:\n"
         "    try:\n"
-        "        with locked(folder, 'run_dir'):\n"
+        "        with lock(folder, 'run_dir'):\n"
         "            (folder / 'alone').mkdir()\n"  # raises where another one is inside
         "            (folder / 'alone').rmdir()\n"
         "            done += 1\n"
@@ -86,7 +86,7 @@ def test_a_disk_without_locks_is_one_line(tmp_path, monkeypatch, capsys):
         raise OSError(errno.ENOLCK, "No locks available")
 
     monkeypatch.setattr(fcntl, "flock", none)
-    with locked(tmp_path, "run_dir"):
+    with lock(tmp_path, "run_dir"):
         line = capsys.readouterr().out
     assert line == f"{tmp_path}: this disk has no locks; let no other process write there\n"
 
@@ -107,7 +107,7 @@ def test_two_fresh_runs_of_one_folder_do_not_both_begin(tmp_path):
 def test_the_lock_of_a_folder_with_the_name_of_a_moved_one_stays(tmp_path):
     folder = tmp_path / "run"
     folder.mkdir()
-    with locked(folder, "run_dir"):
+    with lock(folder, "run_dir"):
         folder.rename(tmp_path / "moved")
         folder.mkdir()
         (folder / "lock").write_text("of another process")
@@ -120,5 +120,5 @@ def test_a_lock_that_fails_is_named(tmp_path, monkeypatch):
 
     monkeypatch.setattr(fcntl, "flock", fails)
     named = pytest.raises(OSError, match=f"Input/output error: '{tmp_path}/lock'")
-    with named, locked(tmp_path, "run_dir"):
+    with named, lock(tmp_path, "run_dir"):
         pass

@@ -10,8 +10,8 @@ import pytest
 from omegaconf import OmegaConf
 from tiny import TINY, call_train, contents, run, summary_of
 
-from hybrid_rl import __version__
-from hybrid_rl.run import checkpoint
+from hybrid_rl import __version__, config
+from hybrid_rl.run import checkpoint, launch
 from scripts import interrupt
 
 pytestmark = pytest.mark.turns(4)
@@ -110,6 +110,13 @@ def test_a_finished_run_stays_as_it_is(whole, capsys, given):
     assert call_train(f"resume={whole}", *given) == 0
     assert "finished already at 600; raise total_steps to go on" in capsys.readouterr().out
     assert contents(whole) == before
+
+
+def test_a_short_run_is_made_longer_with_its_settings_repeated():
+    """Its random decisions were half of it."""
+    short, longer = (config.load(["algo=sac", f"total_steps={n}"]) for n in (1500, 90000))
+    assert short.random_steps == 750
+    assert launch._same(short, longer)
 
 
 def test_without_replay_it_goes_on_and_says_so(whole, tmp_path, capsys):

@@ -7,11 +7,15 @@ import sys
 
 import numpy as np
 import pytest
+from tiny import call
 
 import hybrid_rl
+from hybrid_rl import evaluate
+from hybrid_rl.cli import command
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.doctor.__main__ import CHECKS, examine
 from hybrid_rl.envs.adapters.stand_in import Cartpole
+from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.types import Spec
 
 pytestmark = pytest.mark.turns(3)
@@ -32,7 +36,7 @@ def port():
         process.terminate()
 
 
-def test_a_run_on_a_robot(port, tmp_path):
+def test_a_run_on_a_robot(port, tmp_path, capfd):
     make = "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole"
     line = ["task=robot", make, f"env.kwargs={{port:{port}}}", "algo=sac", "policy.hidden=[8]"]
     line += ["critic.hidden=[8]", "random_steps=20", "checkpoint_every=50", "log_every=25"]
@@ -59,3 +63,8 @@ def test_a_run_on_a_robot(port, tmp_path):
     )
     assert moved.returncode == 0, moved.stderr
     assert int(re.search(r"(\d+) decisions, ", moved.stdout)[1]) > 10
+    capfd.readouterr()
+    assert call(lambda: command.run(evaluate.main), f"run={folder}") == 2
+    printed = capfd.readouterr()
+    assert printed.err == f"hybrid_rl: hybrid_rl.envs.adapters.stand_in_Cartpole: {ALONE}\n"
+    assert "compiling" not in printed.out

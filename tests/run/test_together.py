@@ -61,6 +61,18 @@ def test_a_run_of_a_sweep_is_the_run_alone(swept, tmp_path):
     assert summary_of(swept / "3").keys() == same
 
 
+def test_a_sweep_in_an_environment_of_gymnasium_is_the_runs_alone(tmp_path):
+    """Training and evaluation have the numbers of each run, and the environments its seeds."""
+    line = [*TINY, "task=gymnasium", "algo=nn_mppi", "total_steps=200", "eval_every=200"]
+    swept, alone = tmp_path / "swept", tmp_path / "alone"
+    train.train([*line, "sweep.model_planner.rest=[0.0,0.9]", f"run_dir={swept}"], progress=False)
+    train.train([*line, "model_planner.rest=0.9", f"run_dir={alone}"], progress=False)
+    assert rows(swept / "1") != rows(swept / "0")
+    for mine, theirs in zip(rows(swept / "1"), rows(alone), strict=True):
+        assert list(mine) == list(theirs)
+        np.testing.assert_allclose([*mine.values()], [*theirs.values()], 1e-2, 1e-2)
+
+
 def test_one_value_is_the_run_without_a_sweep_bit_for_bit(tmp_path):
     value = "policy_learner.discount"
     trained(f"{value}=0.5", f"run_dir={tmp_path / 'plain'}")

@@ -162,9 +162,7 @@ def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
         External(make=Count, dt=0)
 
 
-def test_an_id_without_a_version_has_the_time_limit_of_the_newest(monkeypatch):
-    warn = gymnasium.logger.WARN  # environments in processes leave the logger silent
-    monkeypatch.setattr(gymnasium.logger, "min_level", warn)
+def test_an_id_without_a_version_has_the_time_limit_of_the_newest():
     with pytest.warns(UserWarning, match="latest versioned"):
         assert External(id="Pendulum").known.steps == 200
 

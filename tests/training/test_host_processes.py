@@ -2,6 +2,7 @@
 
 import sys
 
+import gymnasium
 import imageio.v3 as iio
 import numpy as np
 import pytest
@@ -61,7 +62,10 @@ class Sleeper(gymnasium.Env):
         ("kill", r"sleeper:Sleeper: step: its process ended with exit code -9, as after out of"),
     ],
 )
-def test_a_step_that_does_not_return_raises_or_ends_is_one_line(tmp_path, monkeypatch, fault, line):
+def test_a_step_that_does_not_return_raises_or_ends_is_one_line(
+    tmp_path, monkeypatch, recwarn, fault, line
+):
+    """Gymnasium warns of it neither, and goes on to warn of other things."""
     (tmp_path / "sleeper.py").write_text(SLEEPER)
     monkeypatch.syspath_prepend(str(tmp_path))
     given = {"make": "sleeper:Sleeper", "kwargs": {"fault": fault}}
@@ -72,6 +76,9 @@ def test_a_step_that_does_not_return_raises_or_ends_is_one_line(tmp_path, monkey
     with pytest.raises(WorldError, match=line):
         copies.step(np.zeros((2, 1)))
     copies.close(terminate=True)
+    assert not [each for each in recwarn if "gymnasium" in each.filename]
+    with pytest.warns(UserWarning, match="another thing"):
+        gymnasium.logger.warn("another thing")
 
 
 PAINTER = (
