@@ -6,7 +6,7 @@ a: action in [-1, 1]; w: 0.1 x joint velocity; theta: joint angle scaled so that
 -1 and 1; alive: +1 or -1 by the robot's own rule; x: position of the root (in pybullet the mean
 over all parts).
 
-Source: pybullet_envs, WalkerBaseBulletEnv (the thesis' reward, section 3.4).
+Source: pybullet_envs, WalkerBaseBulletEnv (the thesis' reward, Appendix B).
 """
 
 import jax.numpy as jnp

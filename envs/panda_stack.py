@@ -24,7 +24,7 @@ In both the hand closes by the true positions, in spite of `episode.sensor_noise
 grasped: commanded to close, both fingers touch the block's sides, and e is inside the block.
 success: block over base within 0.02 m, height within 0.01 m, released, slower than 0.05 m/s.
 
-Source: thesis section 3.4 and Appendix B (state, action, reward; its action is a velocity only);
+Source: thesis section 3.2.2 and Appendix B (state, action, reward; its action is a velocity only);
 initial pose from Franka; rate and workspace from the author's franka_interface. Filter, speed,
 blocks, their initial positions, automatic closing and success are our choice.
 """

@@ -17,10 +17,10 @@ success. `extra` appends to o, each of order one:
 
 psi is the block's angle about the vertical; a square is the same after a quarter of a turn.
 
-Source: thesis section 3.4 and Appendix B; state, rate, filter, workspace, success and the reward in
-metres from the author's HybridLearning, experiments/sawyer_pusher.py; reward=code: weights of his
-earlier code for the same robot, as we read its two distances. The initial positions of
-block and target are our choice.
+Source: thesis section 3.2.1 and Appendix B; state, rate, filter, workspace, success and the reward
+in metres from the author's HybridLearning, experiments/sawyer_pusher.py; reward=code: weights of
+his earlier code for the same robot, as we read its two distances. The initial positions of block
+and target are our choice.
 """
 
 from typing import Literal

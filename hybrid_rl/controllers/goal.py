@@ -7,7 +7,7 @@ With a stabilizing policy, s* is its goal, and the robot measures at its actual 
 environment without dynamics. Source: thesis section 6.3.1 and Algorithm 1.
 
 With `ahead` T > 0 the target instead values the way to s_i: its T positions on a straight line,
-the last one s_i (thesis section 5.3.3).
+the last one s_i (thesis section 5.3.1).
 """
 
 from typing import NamedTuple, Protocol, cast

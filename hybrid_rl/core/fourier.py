@@ -4,7 +4,7 @@
     c_k = mean_t F_k(x_t),   phi_k = E_p F_k,   E = sum_k Lambda_k (c_k - phi_k)^2
     Lambda_k = (1 + |k|^2)^(-(v+1)/2),   c(s) = sum_k c_k F_k(s)
 
-K^v coefficients: the cost is exponential in v. Source: Mathew and Mezic 2011; thesis section 5.2.
+K^v coefficients: the cost is exponential in v. Source: Mathew and Mezic 2011; thesis section 5.1.
 """
 
 import jax.numpy as jnp

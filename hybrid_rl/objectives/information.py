@@ -25,7 +25,7 @@ class Information:
 
     model: LinearModel
     criterion: Literal["gain", "norm"] = "gain"
-    noise: Positive = 0.1  # sigma of gain
+    noise: Positive = 0.1  # sigma of gain, in units of the data's noise; 1: as accurate as they are
     floor: Positive = 1e-5  # eps of norm
 
     def init(self, spec: Spec) -> tuple[()]:

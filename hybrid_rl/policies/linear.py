@@ -1,8 +1,8 @@
 """u = hold - F (x - goal): a linear policy with feed-forward, whose gain a learner solves.
 
 `hold` keeps x at the goal: the least-squares solution of goal' = f(goal, hold) in the weighted
-entries of x, in one step from a known action. Source: thesis eq. (7.4); the thesis and its author's
-code have no feed-forward, which leaves a constant error.
+entries of x, in one step from a known action. Source: thesis section 7.1.1; the thesis and its
+author's code have no feed-forward, which leaves a constant error.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,6 @@
 """p(s) ~ H(y | s): how much entropy a measurement at s is expected to remove from a belief.
 
-A controller that goes to its maximum reduces the expected entropy (thesis section 5.3.3).
+A controller that goes to its maximum reduces the expected entropy (thesis section 5.3.1).
 """
 
 from typing import Annotated

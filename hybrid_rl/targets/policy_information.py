@@ -8,7 +8,7 @@
 
 `gain` is twice the information that the answer adds, with a diagonal prior `floor`. Behind tanh
 the derivatives vanish where an action is saturated, so they are taken before it. Source: thesis
-eq. (4.5)-(4.6) (`inverse`) and (6.28) (`trace`), with sigma^-2 where the thesis has sigma; `gain`
+eq. (4.5)-(4.6) (`inverse`) and (6.28) (`trace`), with sigma^-2 where (6.28) has sigma^-1; `gain`
 is ours.
 """
 

@@ -17,6 +17,12 @@ from scripts import docs
 
 ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+SECTIONS = {  # of the thesis: section -> its subsections
+    "2.1": 2, "2.2": 3, "2.3": 1, "3.1": 2, "3.2": 2, "3.3": 0, "4.1": 1, "4.2": 1, "4.3": 0,
+    "5.1": 0, "5.2": 0, "5.3": 1, "5.4": 0, "5.5": 0, "6.1": 1, "6.2": 5, "6.3": 4, "6.4": 0,
+    "7.1": 1, "7.2": 1, "7.3": 3, "7.4": 1, "7.5": 2, "7.6": 0,
+}  # fmt: skip
+LAST = {"2": 11, "3": 8, "4": 6, "5": 4, "6": 28, "7": 13}  # chapter of the thesis -> its last eq.
 
 
 def test_every_method_has_one_section():
@@ -26,6 +32,25 @@ def test_every_method_has_one_section():
         name for line in re.findall(r"^### (.+)$", page, re.MULTILINE) for name in line.split(", ")
     ]
     assert sorted(names) == options("algo")
+
+
+def test_cited_sections_and_equations_of_the_thesis_exist():
+    """Next to the word `thesis` in sources, and everywhere on the page of methods."""
+    pages = [ROOT / "docs" / "methods.md"]
+    for folder in ("hybrid_rl", "envs", "conf", "thesis/conf", "thesis/studies"):
+        pages += [p for p in (ROOT / folder).rglob("*.*") if p.suffix in (".py", ".yaml")]
+    wrong, count = [], 0
+    for page in pages:
+        text = " ".join(page.read_text(encoding="utf-8").split())
+        near = [text] if page.suffix == ".md" else re.findall(r"thesis.{60}", text)
+        for line in near:
+            sections = re.findall(r"sections? (\d\.\d)(?:\.(\d))?", line)
+            equations = re.findall(r"eq\. \(?(\d)\.(\d+)", line)
+            wrong += [(page.name, s) for s in sections if int(s[1] or 0) > SECTIONS.get(s[0], -1)]
+            wrong += [(page.name, e) for e in equations if int(e[1]) > LAST.get(e[0], 0)]
+            count += len(sections) + len(equations)
+    assert not wrong
+    assert count > 50
 
 
 def test_the_parts_of_a_method_stand_outer_ones_first():

@@ -15,7 +15,7 @@ See `rejuvenation`. A measurement at s informs by
     det     the determinant of E [dp/dtheta dp/dtheta' / (p (1 - p))]
     mutual  h(E p) - E h(p),  h the entropy of a binary variable
 
-Source: thesis eq. (5.1) and section 5.3.2, with the information at s~ instead of s.
+Source: thesis eq. (5.1) and section 5.3, with the information at s~ instead of s.
 """
 
 from typing import Literal, NamedTuple, Protocol

@@ -9,7 +9,7 @@
               the others are jittered
 
 The last one is the manifold particle filter (Koval, Pollard and Srinivasa 2015), which the thesis
-uses in section 5.3.2, for an object at rest. The sizes of e and the share of a quarter are our
+uses in section 5.3, for an object at rest. The sizes of e and the share of a quarter are our
 choice; H is Scott's rule plus the variance of e.
 """
 
