@@ -112,8 +112,8 @@ class Session:
             return
         plan, random = self.schedule, self.loop.agent.random_steps
         if plan.total_steps <= random:
-            decisions = f"all {plan.total_steps:,} decisions are random"
-            self.progress.note(f"{decisions}: random_steps={random}")
+            decisions = f"all {plan.total_steps:,} decisions are random, random_steps={random}"
+            self.progress.note(f"{decisions}: set it lower, or total_steps higher")
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle_note}")
         with self.progress.doing("compiling"):
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
