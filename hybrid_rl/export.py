@@ -40,7 +40,7 @@ from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, who
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
-from hybrid_rl.errors import UsageError, install
+from hybrid_rl.errors import UsageError, install, printable
 from hybrid_rl.networks import Perceptron, precision
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import load_named
@@ -186,6 +186,9 @@ def main() -> None:
     spec = trained.episode.spec
     if out.suffix == ".npz":
         _check_script(out)
+    if parts := getattr(trained.episode.env, "parts", ""):
+        flat = "gymnasium.spaces.flatten(env.observation_space, obs)"
+        print(f"obs [{spec.obs}]: {printable(parts)}; {flat} makes it")
     if out.suffix != ".stablehlo":
         net = layers(spec, controller, params)._replace(span=trained.span)
         print(_saved(out, trained.task, spec, net))

@@ -66,7 +66,8 @@ class Trained:
         Raises:
             UsageError: for a seed or a mode that the run does not have.
         """
-        return TrainedPolicy(self.episode.spec, *self.learner(seed, mode), key, self.span)
+        flat = getattr(self.episode.env, "flat", None)
+        return TrainedPolicy(self.episode.spec, *self.learner(seed, mode), key, self.span, flat)
 
     @property
     def span(self) -> tuple[np.ndarray, np.ndarray] | None:

@@ -76,6 +76,14 @@ def test_the_page_runs(tmp_path, monkeypatch):
     np.testing.assert_allclose(names["ends"], [[1, 0], [1, 0]], atol=0.1)
     assert (tmp_path / "runs/rail/summary.json").exists()
     assert names["result"]["seeds"] == [0, 1, 2, 3, 4]
+    mass = np.asarray(names["paths"])[..., :2]
+    near = [np.linalg.norm(mass - hill, axis=-1) < 0.2 for hill in (0.3, 0.7)]  # hills
+    assert [share.mean() > 0.3 for share in near] == [True, True]  # without the gradient 0.02
+    least = np.linalg.lstsq(names["s"], names["after"])[0].T
+    np.testing.assert_allclose(names["K"], least, atol=1e-3)
+    rates = np.asarray(names["path"].x[:-1, 1])
+    np.testing.assert_allclose(names["F"][:, 1, 1], -0.05 * rates, rtol=1e-4)
+    assert names["value"] > 0
 
 
 def run(folder, *more, **options):
@@ -238,6 +246,10 @@ def test_both_plans_agree_under_vmap():
         assert actions.shape == (2, 4, 1)
         assert (actions[0, 0] > 0.2).all()
         assert (actions[1, 0] < -0.2).all()
+        with pytest.raises(ValueError, match=r"x is \[2, 1\] .* \[n\] and \[T, m\]: jax\.vmap"):
+            plan(step, reward, states, before, *more)
+        with pytest.raises(ValueError, match=r"reward returns \[1\]; it must return one number"):
+            plan(step, lambda x, u, after: after, states[0], before, *(each[0] for each in more))
 
 
 def curve():

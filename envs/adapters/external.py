@@ -20,7 +20,7 @@ from typing import Any, NamedTuple, NoReturn
 
 import gymnasium
 import numpy as np
-from gymnasium.spaces import Box
+from gymnasium.spaces import Box, Dict, Space, flatdim, flatten
 from gymnasium.wrappers import FlattenObservation
 from jax import Array
 
@@ -87,6 +87,17 @@ class External(Made):
         space = self.known.space
         return space.low.ravel(), space.high.ravel()
 
+    @property
+    def parts(self) -> str:
+        """The entries of an observation in their order, if it is a Dict: gear [3], goal [2]."""
+        space = self.known.seen
+        parts = space.items() if isinstance(space, Dict) else ()
+        return ", ".join(f"{name} [{flatdim(each)}]" for name, each in parts)
+
+    def flat(self, obs: Any) -> np.ndarray:
+        """What a policy sees, [o], of an observation as the environment returns it."""
+        return np.asarray(flatten(self.known.seen, obs))
+
     def step(self, state: EnvState, action: Array) -> NoReturn:
         """No JAX function.
 
@@ -146,6 +157,7 @@ class Known(NamedTuple):
     spec: Spec
     steps: int | None  # the time limit [steps of the environment]
     space: Box  # of actions
+    seen: Space  # of observations, as the environment returns them
     notes: tuple[str, ...]  # what is allowed and seldom meant
 
 
@@ -181,7 +193,8 @@ def _known(env: External) -> Known:
     if sizes[0] >= WIDE:
         line = f"an observation has {sizes[0]:,} numbers; those of an image are learned as others"
         notes += (f"{env.name}: {line}, without convolutions",)
-    return Known(Spec(*sizes, float(dt)), limit, space, notes)
+    seen = one.env.observation_space if isinstance(one, Flat) else obs
+    return Known(Spec(*sizes, float(dt)), limit, space, seen, notes)
 
 
 def check_world(env: Any) -> tuple[str, ...]:

@@ -54,6 +54,14 @@ class PhysicsState:
     sensors: Array | None  # [nsensordata] of this state; of accelerations: of the last step
     asset: str = struct.field(pytree_node=False)  # the model whose state it is
 
+    def __getattr__(self, name: str) -> Any:
+        """No field of MjData but these is kept: say how such a one is read."""
+        line = f"a state of the physics keeps no {name}"
+        if hasattr(mujoco.MjData, name):
+            line += f': a sensor measures it, or Physics(..., reads=("{name}",)) keeps it for '
+            line += f'physics.read(data, "{name}")'
+        raise AttributeError(line)
+
 
 def check(implementation: str) -> None:
     """Raise ValueError if `implementation` is unknown or cannot run on this machine."""
@@ -132,6 +140,8 @@ class Physics:
 
     def read(self, state: PhysicsState, name: str) -> Array:
         """The field `name` of MjData, one of `reads`, at `state`."""
+        if name not in self.reads:
+            raise ValueError(f'reads={self.reads} of Physics lacks "{name}"')
         shapes = [mjcf.shape(self.asset, each) for each in self.reads]
         ends = self.model.nsensordata + np.cumsum([prod(shape) for shape in shapes])
         index = self.reads.index(name)

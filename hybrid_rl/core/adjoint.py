@@ -15,6 +15,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core import returns
 from hybrid_rl.types import Path, Return, Reward, Step
 
 
@@ -162,13 +163,17 @@ def plan(
         for _ in range(60):
             a = plan(step, reward, x, a)
             x, a = step(x, a[0]), sampling.shift(a)
+
+    Raises:
+        ValueError: for shapes that are not those.
     """
+    returns.check_start(x, before)
 
     def policy(x: Array) -> Array:
         return jnp.zeros_like(before[0])
 
     def objective(path: Path) -> Array:
-        return jax.vmap(reward)(path.x[:-1], path.u, path.x[1:]).sum()
+        return returns.rewards(reward, path).sum()
 
     def improve(a: Array, gain: Array) -> tuple[Array, None]:
         g = adjoint(step, policy, objective, roll(step, policy, x, a)).gradient

@@ -7,6 +7,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.types import Path, Reward
+
 
 def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> Array:
     """S [T+1] for rewards [T], discounts c = goes_on [T] and the value `last` [] at the end."""
@@ -18,3 +20,22 @@ def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> 
 
     S = jax.lax.scan(back, last, (rewards, goes_on), reverse=True, unroll=unroll)[1]
     return jnp.append(S, last)
+
+
+def rewards(reward: Reward, path: Path) -> Array:
+    """r [T] along path, x [T+1, n] and u [T, m].
+
+    Raises:
+        ValueError: if `reward` returns more than one number.
+    """
+    r = jax.vmap(reward)(path.x[:-1], path.u, path.x[1:])
+    if r.ndim != 1:
+        raise ValueError(f"reward returns {list(r.shape[1:])}; it must return one number, []")
+    return r
+
+
+def check_start(x: Array, before: Array) -> None:
+    """Raise ValueError unless they are a state [n] and a plan [T, m]."""
+    if (jnp.ndim(x), jnp.ndim(before)) != (1, 2):
+        given = f"x is {list(jnp.shape(x))} and before {list(jnp.shape(before))}"
+        raise ValueError(f"{given}; they must be [n] and [T, m]: jax.vmap plans for many states")

@@ -122,13 +122,17 @@ def plan(
         for key in jax.random.split(jax.random.key(0), 60):
             a = plan(step, reward, x, a, key)
             x, a = step(x, a[0]), shift(a)
+
+    Raises:
+        ValueError: for shapes that are not those.
     """
+    returns.check_start(x, before)
 
     def propose(carry: Array, x: Array, a: Array, noise: Array) -> tuple[Array, Array, Array]:
         return jnp.clip(a + std * noise, -1, 1), jnp.zeros(()), carry
 
     def to_go(path: Path) -> Array:
-        rewards = jax.vmap(reward)(path.x[:-1], path.u, path.x[1:])
+        rewards = returns.rewards(reward, path)
         return returns.to_go(rewards, jnp.ones_like(rewards), jnp.zeros_like(rewards[0]))
 
     noise = jax.random.normal(key, (samples, *before.shape))

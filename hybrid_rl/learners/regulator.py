@@ -6,7 +6,7 @@
 The horizon is finite: a lift that does not close under the dynamics has modes that no action
 reaches, and with an infinite horizon their cost has no bound. The model can be any with
 derivatives; for a Koopman operator A and B are K itself. A solution that is not finite is rejected
-and the last one kept. Source: thesis eq. (7.4) and Algorithm 7, line 5; `thompson` explores by
+and the last one kept. Source: thesis section 7.1.1, Algorithm 7, line 3; `thompson` explores by
 draws of the model (Thompson sampling; Abeille and Lazaric 2017).
 """
 

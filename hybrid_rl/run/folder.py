@@ -12,6 +12,7 @@ import shlex
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
+from glob import glob
 from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -264,7 +265,11 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
             each = ", ".join(f"{run} ({words(values)})" for run, values in runs.items())
             raise UsageError(f"{key}={folder}: holds a sweep; give one of its runs: {each}")
         named = "" if folder == Path() else folder  # of an empty variable, too
-        raise UsageError(f"{key}={named}: no run folder there (no config.yaml in it)")
+        line = f"{key}={named}: no run folder there (no config.yaml in it)"
+        below = ("", "/*", "/*/*") if named else ()  # also of a pattern
+        found = [file for tail in below for file in glob(f"{folder}{tail}/config.yaml")]
+        newest = max(found, key=lambda file: Path(file).stat().st_mtime, default="")
+        raise UsageError(f"{line}; the newest is {key}={Path(newest).parent}" if newest else line)
     config = yaml_file(path, lambda text: OmegaConf.load(io.StringIO(text)))
     if not isinstance(config, DictConfig):
         raise UsageError(f"{path}: holds no keys")

@@ -1,5 +1,6 @@
 """A trained controller as a function from observations to actions."""
 
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -18,8 +19,9 @@ class TrainedPolicy:
     """action = policy(obs): a trained controller without exploration, for one world or N.
 
     obs is [o], or [N, o] of N worlds side by side; the action is [m] or [N, m], in [-1, 1] or, with
-    `span` = (middle [m], half the width [m]), within these bounds. A planner keeps its plan from
-    one call to the next, so call `reset` when an episode begins.
+    `span` = (middle [m], half the width [m]), within these bounds. `flat` makes [o] of the
+    dictionary that a Gymnasium environment may return. A planner keeps its plan from one call to
+    the next, so call `reset` when an episode begins.
     """
 
     def __init__(
@@ -29,8 +31,9 @@ class TrainedPolicy:
         params: Params,
         key: int = 0,
         span: tuple[np.ndarray, np.ndarray] | None = None,
+        flat: Callable[[Mapping[str, Any]], np.ndarray] | None = None,
     ) -> None:
-        self.spec, self._key, self._span = spec, jax.random.key(key), span
+        self.spec, self._key, self._span, self._flat = spec, jax.random.key(key), span, flat
         self._begin = partial(controller.init, spec)
         self._state: Any = None  # [N, ...]; None: an episode begins
         self._worlds = 0  # N
@@ -52,13 +55,15 @@ class TrainedPolicy:
             each = jax.vmap(lambda new, now: jax.tree.map(partial(jnp.where, new), first, now))
             self._state = each(jnp.asarray(where), self._state)
 
-    def __call__(self, obs: np.ndarray) -> np.ndarray:
+    def __call__(self, obs: np.ndarray | Mapping[str, Any]) -> np.ndarray:
         """The action [m] at obs [o], or actions [N, m] at [N, o].
 
         Raises:
             ValueError: for observations of another size or that are not finite, or another N than
                 since the reset.
         """
+        if self._flat is not None and isinstance(obs, Mapping):
+            obs = self._flat(obs)
         obs = np.asarray(obs, np.float32)
         o = self.spec.obs
         if obs.ndim not in (1, 2) or obs.shape[-1] != o:

@@ -1,10 +1,12 @@
 """Learning curves: what is averaged over which seeds, at which steps."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hybrid_rl.analysis import long_table
 from hybrid_rl.analysis.curves import area, curves, improvement, iqm, steps_to
 from hybrid_rl.analysis.results import find
 from hybrid_rl.errors import UsageError
@@ -251,3 +253,16 @@ def test_runs_are_found_by_glob_by_folder_and_by_list(tmp_path):
     odd = run(tmp_path / "a[1]" / "hidden=[8,8]", [1.0])  # exists, so it is no pattern
     assert find(odd) == find(str(odd.parent)) == [odd]
     assert find([folders[2], tmp_path / "a1"]) == [folders[0], folders[2]]
+
+
+def test_the_page_makes_a_table_of_what_stable_baselines_saves(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for seed in (3, 4):
+        (tmp_path / "logs" / str(seed)).mkdir(parents=True)
+        saved = {"timesteps": [100, 200], "results": [[1.0, 2.0], [seed, seed]]}
+        np.savez(tmp_path / f"logs/{seed}/evaluations.npz", **saved)
+    page = (Path(__file__).parents[2] / "docs" / "faq.md").read_text(encoding="utf-8")
+    exec(page.split("EvalCallback")[1].split("```python\n")[1].split("```")[0], {})
+    (got,) = long_table.read("sb3.csv", "eval/return", ["halfcheetah"])
+    assert (got.label, sorted(got.seeds)) == ("SAC of SB3 (sb3.csv)", [3, 4])
+    np.testing.assert_allclose(sorted(got.each.tolist()), [[1.5, 3], [1.5, 4]])

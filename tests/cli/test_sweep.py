@@ -10,7 +10,7 @@ import time
 
 import pytest
 from hydra.errors import MissingConfigException
-from tiny import TINY, call_train, summary_of
+from tiny import CONF, TINY, call_train, summary_of
 
 from hybrid_rl import composition, train
 
@@ -109,6 +109,14 @@ def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):
     capfd.readouterr()
     assert call_train(*line) == 2
     assert "run_dir=it's/0: holds a run already" in capfd.readouterr().err
+
+
+def test_jobs_in_one_of_many_worlds_have_folders_of_its_name(tmp_path, monkeypatch):
+    given = []
+    monkeypatch.setattr(train, "_job", lambda config: given.append(config.run_dir))
+    line = ["task=gymnasium", "env.id=Pendulum-v1", "algo=sac", "seed=0,1"]
+    assert call_train("-m", CONF, *line) == 0
+    assert [folder.split("/")[:3] for folder in given] == 2 * [["runs", "Pendulum-v1", "sac"]]
 
 
 def test_jobs_in_other_processes_are_shown_as_they_go(tmp_path):

@@ -31,6 +31,19 @@ SIMULATED = [  # the same of a world in MuJoCo; None: of its model
         r"""w\.py:26: W\.reset: KeyError: "Invalid name 'hand'\. Valid names: \[\]\"""",
     ),
     (
+        "a field of MjData that no state keeps",
+        "data.qpos, data.qvel",
+        "data.qpos, data.site_xpos[0]",
+        r"w\.py:\d+: W\.reset: AttributeError: a state of the physics keeps no site_xpos: a "
+        r'sensor measures it, or .* reads=\("site_xpos",\)\) keeps it for physics\.read.*',
+    ),
+    (
+        "a field that was not asked for",
+        "-x[0] ** 2",
+        'Physics(ASSET).read(data, "cvel")[0, 0]',
+        r'w\.py:\d+: W\.reset: ValueError: reads=\(\) of Physics lacks "cvel"',
+    ),
+    (
         "a motor of a joint that is not there",
         None,
         ('<motor joint="', '<motor joint="un'),

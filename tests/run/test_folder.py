@@ -2,8 +2,10 @@
 
 import errno
 import json
+import os
 import re
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -119,6 +121,20 @@ def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
     for line in lines:
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
     assert contents(copied) == before
+
+
+@pytest.mark.parametrize("given", ["runs/pendulum/sac", "runs/pendulum", "runs/*/sac/*"])
+def test_a_folder_of_runs_names_the_newest(tmp_path, monkeypatch, given):
+    monkeypatch.chdir(tmp_path)
+    for age, name in ((9, "b"), (1, "a"), (5, "c")):
+        file = tmp_path / "runs/pendulum/sac" / name / "config.yaml"
+        file.parent.mkdir(parents=True)
+        file.touch()
+        os.utime(file, (1e9 - age, 1e9 - age))
+    with pytest.raises(UsageError, match=r"; the newest is run=runs/pendulum/sac/a$"):
+        run_folder.read(Path(given), "run")
+    with pytest.raises(UsageError, match=r"run=: no run folder there \(no config.yaml in it\)$"):
+        run_folder.read(Path(), "run")
 
 
 def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):

@@ -57,7 +57,10 @@ class Odd(gymnasium.Env):
 
 
 def test_spaces_of_any_form_are_flattened():
-    assert External(make=Odd).spec == Spec(obs=7, act=2, dt=0.02)
+    odd = External(make=Odd)
+    assert (odd.spec, odd.parts) == (Spec(obs=7, act=2, dt=0.02), "a [4], b [3]")
+    np.testing.assert_array_equal(odd.flat({"b": 1, "a": np.ones((2, 2))}), [1, 1, 1, 1, 0, 1, 0])
+    assert counting().parts == ""
     with pytest.raises(UsageError, match="its spaces must be numbers"):
         External(make=Odd, kwargs={"obs": Box(-1, 1, (0,))})
 

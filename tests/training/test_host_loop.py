@@ -10,15 +10,17 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import small
+from gymnasium.spaces import Dict, Discrete
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
-from hosted import counting
+from hosted import Count, counting
+from tiny import call
 
-from hybrid_rl import config
+from hybrid_rl import config, export
+from hybrid_rl.cli import command
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.gymnasium import GymnasiumEnv
-from hybrid_rl.export import program
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.host_loop import HostEvaluator, HostLoop, seed_of
@@ -147,9 +149,41 @@ def test_a_trained_policy_acts_in_the_units_of_its_environment():
     copies = episode.env.copies([0], STEPS)
     copies.reset()
     assert action == copies.step(np.float32([[0.5]])).reward == 2.5  # it pays the action
-    made = program(episode.spec, modes["full"], Params(), span=trained.span)
+    made = export.program(episode.spec, modes["full"], Params(), span=trained.span)
     state, key = np.zeros(made.in_avals[1].shape, np.uint32), np.zeros(2, np.uint32)
     assert made.call(np.ones(2, np.float32), state, key)[0] == 2.5
+
+
+class Parts(Count):
+    """Count, whose observation is a dictionary."""
+
+    observation_space = Dict({"y": Count.observation_space, "x": Discrete(3)})
+
+    def _seen(self) -> Any:
+        return {"y": super()._seen(), "x": 1}
+
+
+@dataclass(frozen=True)
+class LastEntries:
+    """The mean of the last two entries."""
+
+    def init(self, spec: Spec) -> tuple:
+        return ()
+
+    def act(self, params: Params, state: tuple, obs: jax.Array, key: jax.Array) -> tuple:
+        return obs[-2:].mean()[None], state, {}
+
+
+def test_a_policy_takes_dictionaries_and_export_says_how_they_are_flattened(
+    tmp_path, monkeypatch, capsys
+):
+    episode, modes = Episode(External(make=Parts), STEPS), {"full": LastEntries()}
+    trained = Trained("parts", episode, modes, Params(), (0,), 0, ())
+    assert trained.policy()({"y": np.ones(2) / 2, "x": 2}) == 2.5  # within -2 and 4
+    monkeypatch.setattr(export, "load_named", lambda given: trained)
+    given = "run=x", "mode=full", f"out={tmp_path / 'p.stablehlo'}"
+    assert call(lambda: command.run(export.main), *given) == 0
+    assert "obs [5]: x [3], y [2]; gymnasium.spaces.flatten(env." in capsys.readouterr().out
 
 
 def test_evaluations_have_environments_and_seeds_of_their_own():
