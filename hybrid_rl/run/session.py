@@ -110,13 +110,9 @@ class Session:
         """
         if self.finished:
             return
-        plan, random = self.schedule, self.loop.agent.random_steps
-        if plan.total_steps <= random:
-            decisions = f"all {plan.total_steps:,} decisions are random, random_steps={random}"
-            self.progress.note(f"{decisions}: set it lower, or total_steps higher")
-        elif plan.total_steps <= 2 * random:
-            words = f"the first {random:,} of {plan.total_steps:,} decisions are random"
-            self.progress.note(f"{words}: random_steps={random}")
+        plan = self.schedule
+        if note := plan.mostly_random(self.loop.agent.random_steps):
+            self.progress.note(note)
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle_note}")
         with self.progress.doing("compiling"):
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal

@@ -47,7 +47,7 @@ def test_a_run_says_what_to_expect(tmp_path, capsys):
     line = "all 40 decisions are random, random_steps=50: set it lower, or total_steps higher"
     assert line in capsys.readouterr().out
     run(tmp_path / "c", "algo=sac", "total_steps=40")
-    assert "the first 20 of 40 decisions are random: random_steps=20" in capsys.readouterr().out
+    assert "the first 20 of 40 decisions are random, random_steps=20" in capsys.readouterr().out
     result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
     printed = capsys.readouterr().out
     assert "random:" not in printed
