@@ -162,7 +162,7 @@ def restore(
     like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
     others = {field.name: None for field in fields(like) if field.name != part}
     path = folder / "checkpoints"
-    step, state, _, notes = checkpoint.restore(path, like.replace(**others), part=True)
+    step, state, _, notes = checkpoint.restore(path, like.replace(**others))
     return step, state, tuple(notes)
 
 

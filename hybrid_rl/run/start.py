@@ -134,7 +134,7 @@ def _learners(
     """
     like = _like(run.agent, then).replace(env=None, control=None, memory=None, key=None)
     try:
-        step, state, _, notes = checkpoint.restore(source / "checkpoints", like, part=True)
+        step, state, _, notes = checkpoint.restore(source / "checkpoints", like)
     except MisfitError as error:
         lines = changes(_values(then), _values(config))
         world = ("env.", "episode.", "reward.")
@@ -170,7 +170,7 @@ def _memory(
     capacity = checkpoint.meta(source / "checkpoints")["capacity"]
     sized = replace(agent, replay=replace(agent.replay, capacity=capacity))
     like = _like(sized, then).replace(env=None, control=None, learners=None, key=None)
-    _, state, *_ = checkpoint.restore(source / "checkpoints", like, step, part=True)
+    _, state, *_ = checkpoint.restore(source / "checkpoints", like, step)
     return state.memory, "" if same else RELABELLED
 
 

@@ -81,7 +81,7 @@ class Store:
         """
         self.known = set(checkpoint.steps(self.folder))
         like = self._like().replace(memory=None)
-        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step, part=True)
+        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step)
         memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
         gathered, packed = Gathered(), meta.get("gathered", {})
         if packed.get("names"):
@@ -108,7 +108,7 @@ class Store:
 
     def _read(self, like: Any) -> Any:
         """A part of the newest checkpoint."""
-        return checkpoint.restore(self.folder, like, self.newest, part=True)[1]
+        return checkpoint.restore(self.folder, like, self.newest)[1]
 
     def _memory(self, capacity: int) -> Any:
         """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
