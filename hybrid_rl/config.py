@@ -135,7 +135,7 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds, kept = -(-config.total_steps // config.num_envs), config.get("begun", {})
     remembered = kept.get("remembered", 0)  # decisions of each environment
-    whole(config.replay, "capacity", "replay.")
+    whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
         episode, notes, controllers = _acting(parts)
