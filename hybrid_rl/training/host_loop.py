@@ -44,6 +44,7 @@ RESUMED += "decisions after this one differ from those of a run without the inte
 class HostLoop(Loop):
     """Trains one learner per seed; all environments of all learners step side by side."""
 
+    notes = (RESUMED,)
     early: bool = field(init=False)  # learning without the outcome of the newest decision
     closing: Any = field(default=None, init=False)  # the trace of the second program
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
@@ -51,11 +52,6 @@ class HostLoop(Loop):
     def __post_init__(self) -> None:
         """Find out whether all learners can learn early."""
         self.early = all(each.data == "uniform" for each in self.agent.learners.values())
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a resumed run says about its environments."""
-        return (RESUMED,)
 
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that decides; that of the other one is kept."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -43,11 +43,7 @@ class Loop:
     stride: int
     compile_s: float = 0.0  # [s] spent compiling so far
     axis: Axis = field(default_factory=Axis)  # numbers of "agent"
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Lines for a run that is resumed; none: it continues bit for bit."""
-        return ()
+    notes: ClassVar[tuple[str, ...]] = ()  # on a run that is resumed; none: it goes on bit for bit
 
     def cut_short(self) -> None:
         """A signal came: a call that waits for its environment ends early."""

@@ -39,6 +39,7 @@ POLL_S = 5e-4  # [s]
 class RobotLoop(Loop):
     """Trains one learner on one robot, whose files are in `folder`."""
 
+    notes = (RESUMED,)
     folder: Path = field(default_factory=Path)
     cut: bool = False  # whether a call ends early
     observing: Any = field(default=None, init=False)  # the trace of the first program
@@ -47,11 +48,6 @@ class RobotLoop(Loop):
     def __post_init__(self) -> None:
         """Check the counts."""
         check_one(self.agent, self.seeds)
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a resumed run says about its robot."""
-        return (RESUMED,)
 
     def trace(self, state: AgentState) -> Any:
         """The trace of the program that learns; that of the other one is kept."""
