@@ -46,15 +46,14 @@ class HostLoop(Loop):
 
     notes = (RESUMED,)
     early: bool = field(init=False)  # learning without the outcome of the newest decision
-    closing: Any = field(default=None, init=False)  # the trace of the second program
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     def __post_init__(self) -> None:
         """Find out whether all learners can learn early."""
         self.early = all(each.data == "uniform" for each in self.agent.learners.values())
 
-    def trace(self, state: AgentState) -> Any:
-        """The trace of the program that decides; that of the other one is kept."""
+    def trace(self, state: AgentState) -> list[Any]:
+        """The traces of the program that decides, and of the one that ends a decision."""
         began, at, agent = perf_counter(), jnp.zeros(4, jnp.int32), self.agent
         got = outcome_like(state.env)
         u, _, planned = jax.eval_shape(jax.vmap(agent.decide, (0, None)), state, at[0])
@@ -62,17 +61,16 @@ class HostLoop(Loop):
         learned = jax.eval_shape(jax.vmap(agent.learn, (0, None)), state, at[0])[1]
         self.rows = self.rows_of({**planned, **learned, **led})
         parts = (SEEDS, METRICS, SEEDS, SEEDS, REPLICATED), (SEEDS, METRICS)
-        traced, self.closing = (
+        traced = [
             self.shard(each, *parts, donate_argnums=(0, 1)).trace(state, self.rows, u, got, at)
             for each in (self._act, self._close)
-        )
+        ]
         self.compile_s += perf_counter() - began
         return traced
 
-    def compile(self, state: AgentState, traced: Any = None) -> "HostProgram":
+    def compile(self, state: AgentState) -> "HostProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
-        act = super().compile(state, self.trace(state) if traced is None else traced)
-        return HostProgram(self, act, super().compile(state, self.closing))
+        return HostProgram(self, *map(self.compile_trace, self.trace(state)))
 
     def copies(self) -> Copies:
         """The environments [S * E] of training, each with a seed of its own."""

@@ -118,7 +118,7 @@ class Loop:
         return self.axis.put(self.agent, "agent", numbers)
 
     def trace(self, state: AgentState) -> Any:
-        """The trace of the program, for `compile`."""
+        """The trace of the program."""
         began = perf_counter()
         parts = (SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         program = self.shard(self._advance, *parts, donate_argnums=0)
@@ -127,9 +127,12 @@ class Loop:
         self.compile_s += perf_counter() - began
         return traced
 
-    def compile(self, state: AgentState, traced: Any = None) -> Any:
+    def compile(self, state: AgentState) -> Any:
         """The compiled program (state, first step, rounds) -> (state, metrics)."""
-        traced = self.trace(state) if traced is None else traced
+        return self.compile_trace(self.trace(state))
+
+    def compile_trace(self, traced: Any) -> Any:
+        """The compiled program of a trace."""
         began = perf_counter()
         lowered = traced.lower()
         try:
