@@ -24,13 +24,6 @@ WIDE = ("settings", "experiment")  # they would set what DIR has set
 OWN = {"random_steps": 0, "pretrain": 0, "run_dir": None, "freeze": [], "distributed": False}
 
 
-def load(texts: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
-    """The resolved configuration of these overrides, also of run=DIR; errors as `config.load`."""
-    if isinstance(texts, str) or not any(text.startswith("run=") for text in texts):
-        return configuration.load(texts, config_dir)
-    return resolve_config(configuration.compose_raw(add_choices(texts), config_dir), texts)
-
-
 def add_choices(texts: Sequence[str]) -> list[str]:
     """The words of a command, with the task and the method of DIR before run=DIR.
 
