@@ -53,7 +53,7 @@ def check(config: DictConfig) -> None:
     if "_target_" not in config.env:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
     _check_parts(config)
-    check_names(config)
+    parts.check(OmegaConf.to_container(config))
     for key in ("task", "algo"):
         if not NAME.fullmatch(str(config[key])):
             line = "must be letters, digits, _, . and -"
@@ -156,14 +156,6 @@ def check_kinds(node: DictConfig, where: str = "") -> None:
         if kind not in wanted and not (kind is int and float in wanted):
             called = " or ".join(KINDS[each] for each in KINDS if each in wanted)
             raise UsageError(f"{where}{key}={value}: must be {called}")
-
-
-def check_names(config: DictConfig) -> None:
-    """Raise UsageError for a `_target_` that names no part; nothing is imported."""
-    try:
-        parts.check(OmegaConf.to_container(config))
-    except ValueError as error:
-        raise UsageError(str(error)) from error
 
 
 def check_fields(node: DictConfig, part: Any, where: str) -> None:
