@@ -127,7 +127,7 @@ def _of(values: dict[str, Any], read: Mapping[str, Any], where: str = "") -> dic
 
 
 def build(config: DictConfig) -> Run:
-    """The parts that `config` names. `begun`: what another run gave, as its config.yaml says.
+    """The parts that `config` names, with room in the memory for what another run gave (`begun`).
 
     Raises:
         UsageError: if a value is out of range.
