@@ -89,12 +89,10 @@ def curves(
     folders = [RunFolder(path) for path in find(runs)]
     groups: dict[Key, list[Learner]] = {}
     notes: dict[Key, list[str]] = {}
-    time = x if x in TIMES else "step"
     for key, (members, settings) in _grouped(folders, x, group).items():
-        every = [each for run in members for each in learners(run, metric, time)]
+        every = [each for run in members for each in learners(run, metric, _time(x))]
         groups[key] = [each for each in every if each.counts]
-        cut = [f"the last row of {run.path} is incomplete; left out" for run in members if run.cut]
-        notes[key] = [*settings, *_without_metric(metric, every), *cut]
+        notes[key] = [*settings, *_without_metric(metric, every), *_truncated(members)]
     if not any(np.isfinite(each.y).any() for members in groups.values() for each in members):
         raise _no_metric(folders, metric)
     for task in {task for (task, _), members in groups.items() if members}:
@@ -190,6 +188,10 @@ def _lines(notes: dict[Key, list[str]], drawn: list[Key]) -> dict[Key, list[str]
     return lines
 
 
+def _time(x: str) -> str:
+    return x if x in TIMES else "step"
+
+
 def _grouped(
     runs: Sequence[RunFolder], x: str, group: str
 ) -> dict[Key, tuple[list[RunFolder], list[str]]]:
@@ -216,6 +218,11 @@ def _without_metric(metric: str, every: list[Learner]) -> list[str]:
     if len(without) == len(every):
         return [f"no {metric}"]
     return [f"seed {one.seed} of {one.run} has no {metric} yet; left out" for one in without]
+
+
+def _truncated(members: list[RunFolder]) -> list[str]:
+    """A note for each run whose last row is incomplete."""
+    return [f"the last row of {run.path} is incomplete; left out" for run in members if run.cut]
 
 
 def _no_metric(folders: list[RunFolder], metric: str) -> UsageError:
