@@ -4,6 +4,7 @@ import inspect
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import fields, is_dataclass
+from numbers import Integral
 from types import NoneType
 from typing import Any, get_origin
 
@@ -52,7 +53,7 @@ def check(config: DictConfig) -> None:
     if "_target_" not in config.env:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
     _check_parts(config)
-    check_names(config)
+    parts.check(OmegaConf.to_container(config))
     for key in ("task", "algo"):
         if not NAME.fullmatch(str(config[key])):
             line = "must be letters, digits, _, . and -"
@@ -60,12 +61,11 @@ def check(config: DictConfig) -> None:
     check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
     _check_planned(config)
     for key in COUNTS:
-        whole(config, key)
+        whole(key, config[key])
     countable(config)
     if config.get("run_dir") == "":
         raise UsageError("run_dir=: is empty; give a folder, or leave it out")
-    if type(config.seed) is not int or config.seed < 0:
-        raise UsageError(f"seed={config.seed}: must be a whole number, 0 or more")
+    whole("seed", config.seed, 0)
     if config.seed + config.num_seeds > SEEDS:
         raise UsageError(
             f"seed={config.seed}: must be at most {SEEDS - config.num_seeds} with "
@@ -169,14 +169,6 @@ def check_kinds(node: DictConfig, where: str = "") -> None:
             raise UsageError(f"{where}{key}={value}: must be {called}")
 
 
-def check_names(config: DictConfig) -> None:
-    """Raise UsageError for a `_target_` that names no part; nothing is imported."""
-    try:
-        parts.check(OmegaConf.to_container(config))
-    except ValueError as error:
-        raise UsageError(str(error)) from error
-
-
 def check_fields(node: DictConfig, part: Any, where: str) -> None:
     """Raise UsageError for a key of `node` that is no argument of `part`, a class or function."""
     try:
@@ -217,13 +209,12 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
     return kinds
 
 
-def whole(config: Any, key: str, where: str = "") -> int:
-    """The value at `key`, a whole number, 1 or more.
+def whole(key: str, value: Any, least: int = 1) -> int:
+    """The value at `key`, a whole number, which may be one of NumPy's.
 
     Raises:
-        UsageError: if it is anything else.
+        UsageError: if it is anything else, or less than `least`.
     """
-    value = config[key]
-    if not isinstance(value, int) or isinstance(value, bool) or value < 1:
-        raise UsageError(f"{where}{key}={value}: must be a whole number, 1 or more")
-    return value
+    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
+        raise UsageError(f"{key}={value}: must be a whole number, {least} or more")
+    return int(value)

@@ -127,7 +127,7 @@ def _of(values: dict[str, Any], read: Mapping[str, Any], where: str = "") -> dic
 
 
 def build(config: DictConfig) -> Run:
-    """The parts that `config` names. `begun`: what another run gave, as its config.yaml says.
+    """The parts that `config` names, with room in the memory for what another run gave (`begun`).
 
     Raises:
         UsageError: if a value is out of range.
@@ -135,7 +135,7 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds, kept = -(-config.total_steps // config.num_envs), config.get("begun", {})
     remembered = kept.get("remembered", 0)  # decisions of each environment
-    whole(config.replay, "capacity", "replay.")
+    whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
         episode, notes, controllers = _acting(parts)

@@ -19,7 +19,6 @@ import ast
 import difflib
 import inspect
 import json
-import math
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -37,6 +36,7 @@ from hybrid_rl.config import load
 from hybrid_rl.errors import UsageError, user_line
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.reading import json_file
+from hybrid_rl.run.records import json_value
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -144,20 +144,9 @@ def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
     with matplotlib.rc_context(STYLE):
         dpi = min(DPI, MOST_PIXELS / figure.get_figwidth())
         figure.savefig(out, dpi=dpi, metadata=undated)
-    file, values = out.with_suffix(".json"), _plain(numbers)
+    file, values = out.with_suffix(".json"), json_value(numbers)
     if not (file.exists() and _content(file) == values):
         file.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
-
-
-def _plain(value: Any) -> Any:
-    """A value as JSON holds it: arrays are lists, numbers that are not finite are null."""
-    if isinstance(value, dict):
-        return {str(name): _plain(each) for name, each in value.items()}
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _content(file: Path) -> Any:

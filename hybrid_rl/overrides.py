@@ -203,18 +203,6 @@ def value_of(text: str) -> Any:
         return text
 
 
-def new(texts: Sequence[str], known: DictConfig) -> list[str]:
-    """Keys of `+key=value` that the configuration `known`, composed without them, does not have."""
-    groups = GlobalHydra.instance().config_loader()
-    added = [text.lstrip("+").partition("=")[0] for text in texts if text.startswith("+")]
-    return [
-        each
-        for each in added
-        if OmegaConf.select(known, each, default=LACKING) is LACKING
-        and not groups.get_group_options(each.partition("@")[0])
-    ]
-
-
 def search_path(config_dir: str | Path) -> str:
     """The override by which Hydra finds the groups in a folder of the user.
 
@@ -234,13 +222,17 @@ def refuse_new_keys(overrides: Sequence[str], more: Sequence[str]) -> None:
     """
     more = [text for text in more if text.startswith("hydra.searchpath=")]
     overrides = [text for text in overrides if not is_swept(text)]
-    if not any(text.startswith("+") for text in overrides):
+    added = [text.lstrip("+").partition("=")[0] for text in overrides if text.startswith("+")]
+    if not added:
         return
     known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
     if known.run is not None:  # it may have keys of parts that are chosen there
         return
-    for each in new(overrides, known):
-        raise UsageError(unknown(known, each))
+    groups = GlobalHydra.instance().config_loader()
+    for each in added:
+        is_group = groups.get_group_options(each.partition("@")[0])
+        if not is_group and OmegaConf.select(known, each, default=LACKING) is LACKING:
+            raise UsageError(unknown(known, each))
 
 
 def refuse_unused(

@@ -21,7 +21,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.errors import FAULTS, GYMNASIUM, printable, relative, user_line
+from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, printable, relative, user_line
 from hybrid_rl.fields import FieldError
 
 TARGET, OURS = "_target_", "hybrid_rl."
@@ -41,10 +41,10 @@ def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
     """Every `_target_` in a tree of dicts and lists, with its full key; outer ones first.
 
     Raises:
-        ValueError: for a tree that is nested too deeply.
+        UsageError: for a tree that is nested too deeply.
     """
     if where.count(".") > DEEPEST:
-        raise ValueError(f"{printable(where)[:SHOWN]}...: is nested too deeply")
+        raise UsageError(f"{printable(where)[:SHOWN]}...: is nested too deeply")
     if isinstance(node, dict) and TARGET in node:
         yield f"{where}{TARGET}", node[TARGET]
     for name, value in node.items() if isinstance(node, dict) else enumerate(node):
@@ -58,13 +58,13 @@ def check(node: Any, near: Path | None = None) -> None:
     near: the run folder or the file that the tree comes from; None: from the user.
 
     Raises:
-        ValueError: for a name that is no part's; the line begins with KEY=NAME.
+        UsageError: for a name that is no part's; the line begins with KEY=NAME; or too deep a tree.
     """
     for key, target in targets(node):
         try:
             part_class(target) if str(target).startswith(OURS) else _source(target, near)
         except ValueError as error:
-            raise ValueError(f"{printable(key)}={printable(target)[:SHOWN]}: {error}") from error
+            raise UsageError(f"{printable(key)}={printable(target)[:SHOWN]}: {error}") from error
 
 
 def part_class(target: Any, near: Path | None = None) -> Any:

@@ -25,7 +25,6 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -143,11 +142,11 @@ def _episode_of(
 
         other = {"expert": given["expert"]} if given["expert"] else {}
         world, controller, params = scripted_expert(given["task"], {**other, **changes})
-        _check(check_drawable, world.env)
+        check_drawable(world.env)
         begun = replace(world, steps=_steps(world, asked, out))
         key = evaluation_keys(seed or 0, number + 1)[-1]
         return world, "scripted expert", film(begun, controller, params, key)
-    _check(check_drawable, trained.episode.env)
+    check_drawable(trained.episode.env)
     steps = _steps(trained.episode, asked, out)
     shown = episode(trained, given["mode"], seed, steps, number)
     return trained.episode, f"step {trained.step:,}", shown
@@ -182,14 +181,6 @@ def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
     print(f"{out}: {len(pictures)} pictures, return {total:,.1f}, step {trained.step:,}")
 
 
-def _check(check: Callable[..., None], *values: Any) -> None:
-    """Call `check`; its ValueError becomes the user's."""
-    try:
-        check(*values)
-    except ValueError as error:
-        raise UsageError(str(error)) from error
-
-
 def _training(
     folder: Path, seed: int | None, steps: int, out: Path, width: int, height: int
 ) -> None:
@@ -199,7 +190,7 @@ def _training(
     from hybrid_rl.envs.mujoco.scenery import check_drawable, scene_of
 
     shown = film(folder, seed, steps, height, MOST[out.suffix])
-    _check(check_drawable, shown.world)
+    check_drawable(shown.world)
     draw(scene_of(shown.world), shown.poses, out, shown.fps, width, height, shown.panel)
     speed = "" if out.suffix == ".png" else f", {shown.speed:.2g} times real time"
     print(f"{out}: {shown.decisions} decisions, return {shown.total:,.1f}, of training{speed}")
@@ -225,7 +216,7 @@ def main() -> None:
         raise UsageError(f"at={','.join(map(str, given['at']))}: needs out=FILE.png")
     width, height = given["width"], given["height"]
     offscreen.backend()  # raises before minutes of work
-    _check(offscreen.check_size, width, height)
+    offscreen.check_size(width, height)
 
     if given["mode"] == "training" and given["run"]:
         _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)

@@ -10,7 +10,7 @@ the policy as in config.yaml of the run, and with the command, the seed and the 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,10 +32,10 @@ from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
 from hybrid_rl.run.reading import from_json
+from hybrid_rl.run.store import read_part
 from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
 PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
@@ -160,10 +160,7 @@ def restore(
         CheckpointError: if none is sound.
         MisfitError: if it is of another run.
     """
-    like = jax.eval_shape(Loop(run.agent, run.seeds, 1).init)
-    others = {field.name: None for field in fields(like) if field.name != part}
-    path = folder / "checkpoints"
-    step, state, _, notes = checkpoint.restore(path, like.replace(**others), part=True)
+    step, state, notes = read_part(folder / "checkpoints", run.agent, run.seeds, part)
     return step, state, tuple(notes)
 
 

@@ -75,7 +75,8 @@ def methods(only: list[str]) -> Iterator[tuple[str, str, Agent]]:
     """(task, name, agent) of each method as it trains."""
     for task in only or TASKS:
         for name, words in METHODS.items():
-            yield task, name, _agent([f"task={task}", *words])
+            config = configuration.load([f"task={task}", *words])
+            yield task, name, configuration.build(config).agent
 
 
 def goals(only: list[str], who: list[str]) -> Iterator[tuple[str, str, Agent]]:
@@ -93,10 +94,6 @@ def goals(only: list[str], who: list[str]) -> Iterator[tuple[str, str, Agent]]:
             if name not in known:
                 raise UsageError(f"who={name}: choose from {'; '.join(WHO)}")
             yield robot, name, replace(agent, controller=known[name])
-
-
-def _agent(words: list[str]) -> Agent:
-    return configuration.build(configuration.load(words)).agent
 
 
 def main() -> None:

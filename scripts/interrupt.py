@@ -31,7 +31,7 @@ import numpy as np
 from omegaconf import OmegaConf
 
 from hybrid_rl import config as configuration
-from hybrid_rl.run import checkpoint
+from hybrid_rl.run import checkpoint, leaves
 from hybrid_rl.training.loop import Loop
 
 EARLY = 0.2  # share of the faults that come before the run trains, perhaps
@@ -145,11 +145,11 @@ def newest(run: Path) -> int | None:
 
 def difference(run: Path, other: Path) -> str:
     """What sets two finished runs apart first; "" where they are the same, but for clocks."""
-    (step, leaves), (other_step, other_leaves) = _state(run), _state(other)
+    (step, arrays), (other_step, other_arrays) = _state(run), _state(other)
     if step != other_step:
         return f"checkpoint {step} and {other_step}"
-    for name, leaf in leaves.items():
-        if leaf.tobytes() != other_leaves[name].tobytes():
+    for name, array in arrays.items():
+        if array.tobytes() != other_arrays[name].tobytes():
             return f"{name} at step {step}"
     ours, theirs = rows(run), rows(other)
     for one, two in zip(ours, theirs, strict=False):
@@ -173,11 +173,7 @@ def _state(run: Path) -> tuple[int, dict[str, np.ndarray]]:
     built = configuration.build(config)
     like = jax.eval_shape(Loop(built.agent, built.seeds, 1).init)
     step, state, *_ = checkpoint.restore(run / "checkpoints", like)
-    arrays = {}
-    for path, leaf in jax.tree_util.tree_leaves_with_path(state):
-        key = jax.numpy.issubdtype(leaf.dtype, jax.dtypes.prng_key)
-        arrays[jax.tree_util.keystr(path)] = np.asarray(jax.random.key_data(leaf) if key else leaf)
-    return step, arrays
+    return step, leaves.flatten(state)[0]
 
 
 def trial(

@@ -29,15 +29,14 @@ def kept(make: Callable[[], Any], *of: Any) -> Any:
 @contextmanager
 def shared() -> Iterator[None]:
     """Within it, runs take the programs of equal runs before them."""
-    trace, compiled, evaluator = Loop.trace, Loop.compile, Evaluator.__init__
+    trace, compiled, evaluator = Loop.trace, Loop.compile_trace, Evaluator.__init__
 
     def traced(self: Loop, state: Any) -> Any:
         of = self.agent, self.axis, len(self.seeds), self.stride, precision.current()
         return kept(lambda: trace(self, state), "trace", *of)
 
-    def program(self: Loop, state: Any, given: Any = None) -> Any:
-        given = self.trace(state) if given is None else given
-        return kept(lambda: compiled(self, state, given), "program", given)
+    def program(self: Loop, given: Any) -> Any:
+        return kept(lambda: compiled(self, given), "program", given)
 
     def evaluation(
         self: Evaluator, loop: Loop, controller: Any, params: Any, keys: Any, mode: str
@@ -51,6 +50,6 @@ def shared() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Loop, "trace", traced)
-        patch.setattr(Loop, "compile", program)
+        patch.setattr(Loop, "compile_trace", program)
         patch.setattr(Evaluator, "__init__", evaluation)
         yield

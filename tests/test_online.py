@@ -139,7 +139,7 @@ def test_mistakes_are_one_line(call, line):
 def test_wrong_arguments_are_refused(tmp_path):
     with pytest.raises(UsageError, match="learn=later: choose one of"):
         made("later")
-    with pytest.raises(UsageError, match=r"obs=0: must be above 0"):
+    with pytest.raises(UsageError, match=r"obs=0: must be a whole number, 1 or more"):
         OnlineLearner(METHOD, act=1)
     with pytest.raises(UsageError, match="folder="):
         OnlineLearner.load(tmp_path)

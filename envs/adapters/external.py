@@ -14,7 +14,6 @@ Source: Gymnasium's documentation, "Env", "AutoresetMode".
 import random
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple, NoReturn
 
@@ -28,6 +27,7 @@ from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, import_named
 from hybrid_rl.envs.contract import check
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
+from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
 KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
@@ -39,7 +39,7 @@ HUGE = 100_000  # entries; an image has as many
 WIDE = 1_000  # of a small image
 
 
-@dataclass(frozen=True)
+@part
 class External(Made):
     """An environment that Gymnasium makes; one copy is made to read its spaces and makes a step.
 
@@ -49,20 +49,16 @@ class External(Made):
     """
 
     id: str = ""  # in place of `make`
-    dt: float | None = None  # [s] between decisions; None: what the environment says
+    dt: Positive | None = None  # [s] between decisions; None: what the environment says
     processes: bool = False  # one for each copy; pays where a step takes 1 ms or more
-    timeout_s: float | None = None  # [s] for a step, with processes; then the run ends
+    timeout_s: Positive | None = None  # [s] for a step, with processes; then the run ends
 
     def __post_init__(self) -> None:
         """Check the fields, and the spaces."""
         if not (self.id or self.make):
             raise UsageError("env.id: give an id of Gymnasium, or env.make=MODULE:CLASS")
-        if self.timeout_s is not None and not (self.timeout_s > 0 and self.processes):
-            raise UsageError(
-                f"env.timeout_s={self.timeout_s}: must be above 0, with env.processes=true"
-            )
-        if self.dt is not None and not self.dt > 0:
-            raise UsageError(f"env.dt={self.dt}: must be above 0")
+        if self.timeout_s is not None and not self.processes:
+            raise UsageError(f"env.timeout_s={self.timeout_s}: goes with env.processes=true")
         super().__post_init__()
         _ = self.known
 

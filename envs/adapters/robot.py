@@ -17,7 +17,6 @@ A process of its own calls these methods, one at a time, but for `stop`, which i
 a second thread when another method does not return.
 """
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -25,24 +24,19 @@ import numpy as np
 
 from hybrid_rl.envs.adapters.unstepped import Made, Unstepped, import_named
 from hybrid_rl.errors import FAULTS, UsageError, blame
+from hybrid_rl.fields import Count, Natural, Positive, part
 from hybrid_rl.types import Spec
 
 METHODS = ("reset", "observe", "apply", "reward", "stop")
 
 
-@dataclass(frozen=True)
+@part
 class Outside(Unstepped):
     """A world that the caller steps: an observation of `obs` numbers, `act` of an action."""
 
-    obs: int = 1
-    act: int = 1
-    dt: float = 0.05  # [s] between decisions
-
-    def __post_init__(self) -> None:
-        """Check the sizes."""
-        for name in ("obs", "act", "dt"):
-            if not getattr(self, name) > 0:
-                raise UsageError(f"{name}={getattr(self, name)}: must be above 0")
+    obs: Count = 1
+    act: Count = 1
+    dt: Positive = 0.05  # [s] between decisions
 
     @property
     def spec(self) -> Spec:
@@ -50,7 +44,7 @@ class Outside(Unstepped):
         return Spec(self.obs, self.act, self.dt)
 
 
-@dataclass(frozen=True)
+@part
 class Robot(Made):
     """A robot that learns while it moves. Its sizes are read from its class, without making one.
 
@@ -58,23 +52,15 @@ class Robot(Made):
         UsageError: if the class cannot be imported, or lacks something.
     """
 
-    past_actions: int = 0  # that the observation ends with, where actions take a period to act
-    rate: float | None = None  # greatest change of an action from one decision to the next, of 2
-    stale: float = 2.0  # periods after which an observation is too old to act on
-    silence_s: float = 1.0  # [s] without an observation, or in a method, until motion is ended
-    alone_s: float = 30.0  # [s] that the robot goes on without its learner
-    handover_s: float = 0.2  # [s] between two sets of parameters that the robot gets
+    past_actions: Natural = 0  # that the observation ends with, where actions take a period to act
+    rate: Positive | None = None  # greatest change of an action from one decision to the next, of 2
+    stale: Positive = 2.0  # periods after which an observation is too old to act on
+    silence_s: Positive = 1.0  # [s] without an observation, or in a method, until motion is ended
+    alone_s: Positive = 30.0  # [s] that the robot goes on without its learner
+    handover_s: Positive = 0.2  # [s] between two sets of parameters that the robot gets
 
     def __post_init__(self) -> None:
-        """Check the fields, and the class."""
-        for name in ("stale", "silence_s", "alone_s", "handover_s"):
-            if not getattr(self, name) > 0:
-                raise UsageError(f"env.{name}={getattr(self, name)}: must be above 0")
-        if not isinstance(self.past_actions, int) or self.past_actions < 0:
-            line = "must be a whole number, 0 or more"
-            raise UsageError(f"env.past_actions={self.past_actions}: {line}")
-        if self.rate is not None and not self.rate > 0:
-            raise UsageError(f"env.rate={self.rate}: must be above 0")
+        """Check the class."""
         super().__post_init__()
         _ = self.spec
 

@@ -21,6 +21,7 @@ import mujoco
 import numpy as np
 
 from hybrid_rl.envs.mujoco import scenery
+from hybrid_rl.errors import UsageError
 
 BACKENDS = ("egl", "osmesa")
 SHADOWS = 1024  # [pixels] of the shadow map; 4096 takes three times as long in software
@@ -85,7 +86,7 @@ def chosen() -> tuple[str, str]:
 
 
 def check_size(width: int, height: int) -> None:
-    """Raise ValueError for an image larger than the backend's largest framebuffer.
+    """Raise UsageError for an image larger than the backend's largest framebuffer.
 
     width, height: [pixels].
     """
@@ -97,7 +98,7 @@ def check_size(width: int, height: int) -> None:
     most = int(done.stdout.split()[0]) if done.stdout else max(width, height)
     for name, value in (("width", width), ("height", height)):
         if value > most:
-            raise ValueError(f"{name}={value}: must be at most {most}, the limit of OpenGL here")
+            raise UsageError(f"{name}={value}: must be at most {most}, the limit of OpenGL here")
     raise ValueError(f"width={width}, height={height}: too large for OpenGL here")
 
 

@@ -15,6 +15,7 @@ from jax import Array
 
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.physics import PhysicsState
+from hybrid_rl.errors import UsageError
 from hybrid_rl.types import EnvState
 
 CAMERA = "track"  # used if the scene has a camera of this name
@@ -49,9 +50,12 @@ def pose_of(env: Any) -> Callable[[EnvState], Array]:
 
 
 def check_drawable(env: Any) -> None:
-    """Raise ValueError for an environment that cannot be drawn."""
-    scene_of(env)
-    pose_of(env)
+    """Raise UsageError for an environment that cannot be drawn."""
+    try:
+        scene_of(env)
+        pose_of(env)
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
 def _first(env: Any) -> PhysicsState:

@@ -119,10 +119,10 @@ def iqm(values: np.ndarray) -> np.ndarray:
     return np.tensordot(np.diff(edges) / (n / 2), np.sort(values, axis=0), axes=1)
 
 
-def band(values: np.ndarray, resamples: int = RESAMPLES) -> tuple[np.ndarray, np.ndarray]:
+def band(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """95% bootstrap band of the IQM over the first axis: [n, ...] -> two of [...]."""
     n = len(values)
-    draws = np.random.default_rng(0).integers(n, size=(resamples, n))
+    draws = np.random.default_rng(0).integers(n, size=(RESAMPLES, n))
     low, high = np.percentile([iqm(values[draw]) for draw in draws], [2.5, 97.5], axis=0)
     return low, high
 

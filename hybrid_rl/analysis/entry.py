@@ -44,14 +44,13 @@ def _row(curve: Curve, runs: Sequence[RunFolder]) -> dict[str, Any]:
         raise UsageError(f"{curve.task}, {curve.label}: no evaluation that all its seeds have")
     speeds = [run.summary.get("env_steps_per_s") for run in runs if str(run.path) in curve.runs]
     known = [speed for speed in speeds if speed]
-    values = (
-        curve.task,
-        int(curve.x[at[-1]]),
-        list(curve.seeds),
-        [round(float(value), 1) for value in curve.each[:, at[-1]]],
-        round(float(np.median(known)), 1) if known else None,
-    )
-    return dict(zip(ROW, values, strict=True))
+    return {
+        "task": curve.task,
+        "steps": int(curve.x[at[-1]]),
+        "seeds": list(curve.seeds),
+        "returns": [round(float(value), 1) for value in curve.each[:, at[-1]]],
+        "decisions_per_s": round(float(np.median(known)), 1) if known else None,
+    }
 
 
 def _one(what: str, names: Sequence[str]) -> str:

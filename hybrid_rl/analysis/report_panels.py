@@ -56,10 +56,9 @@ def panels(runs: Sequence[Path], metric: str) -> list[tuple[list[Curve], str]]:
         return []
     tasks = dict.fromkeys(curve.task for curve in drawn)
     each = [[curve for curve in drawn if curve.task == task] for task in tasks]
-    bare = [[replace(curve, notes=()) for curve in some] for some in each]
     return [
-        (some, svg(plot(plain), f"{metric} {some[0].task}"))
-        for some, plain in zip(each, bare, strict=True)
+        (some, svg(plot([replace(curve, notes=()) for curve in some]), f"{metric} {some[0].task}"))
+        for some in each
     ]
 
 

@@ -85,9 +85,7 @@ class RunFolder:
     def summary(self) -> dict[str, Any]:
         """What summary.json holds; {} before there is one."""
         file = self.path / "summary.json"
-        if not file.exists():
-            return {}
-        return summary_of(file)
+        return summary_of(file) if file.exists() else {}
 
     def word(self, key: str) -> str:
         """The value at `key` as a word, of a part its class; "null" for null.

@@ -268,7 +268,9 @@ def _report(
         rows.append({"job": number, "overrides": labels[number], "run_dir": run_dir, **result})
     (folder / "jobs.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
     cells = [("job", "overrides", "run folder", "result")]
-    cells += [(str(r["job"]), r["overrides"], r["run_dir"], _outcome_text(r)) for r in rows]
+    for row in rows:
+        line = f"failed ({row['code']}): {row['line']}" if row["code"] else row["line"]
+        cells.append((str(row["job"]), row["overrides"], row["run_dir"], line))
     show(cells)
     failed = [str(row["job"]) for row in rows if row["code"] != 0]
     which = f"; not {', '.join(failed)}" if failed else ""
@@ -282,8 +284,3 @@ def show(cells: Sequence[Sequence[str]]) -> None:
     for row in cells:
         columns = [f"{text:{width}}" for text, width in zip(row, widths, strict=True)]
         print("  ".join(columns).rstrip())
-
-
-def _outcome_text(row: dict[str, Any]) -> str:
-    """The result of a job in the table."""
-    return row["line"] if not row["code"] else f"failed ({row['code']}): {row['line']}"

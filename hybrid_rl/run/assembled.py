@@ -7,13 +7,12 @@ and `resume=` refuse it, and figures draw it.
 
 import re
 from dataclasses import replace
-from numbers import Integral
 from pathlib import Path
 from typing import Any
 
 from omegaconf import OmegaConf
 
-from hybrid_rl.checks import SECTIONS
+from hybrid_rl.checks import SECTIONS, whole
 from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.envs.adapters.external import check_world
@@ -55,8 +54,8 @@ def run_of(
     counts["log_every"] = defaults.log_every if log_every is None else log_every
     every = {"eval_every": eval_every, "checkpoint_every": checkpoint_every}
     counts |= {key: total_steps if value is None else value for key, value in every.items()}
-    counts = {key: _whole(key, value) for key, value in counts.items()}
-    counts["seed"] = _whole("seed", seed, 0)
+    counts = {key: whole(key, value) for key, value in counts.items()}
+    counts["seed"] = whole("seed", seed, 0)
     config = OmegaConf.create(
         _described(agent, name)
         | counts
@@ -74,13 +73,6 @@ def run_of(
         notes += _check_same(run, Path(run_dir))
         config.resume = str(run_dir)
     return replace(run, notes=notes)
-
-
-def _whole(key: str, value: Any, least: int = 1) -> int:
-    """A count, of NumPy's numbers too."""
-    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
-        raise UsageError(f"{key}={value}: must be a whole number, {least} or more")
-    return int(value)
 
 
 def _described(agent: Agent, name: str | None) -> dict[str, Any]:

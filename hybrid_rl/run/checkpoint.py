@@ -110,18 +110,18 @@ def save(
 
 
 def restore(
-    folder: Path, like: PyTree, step: int | None = None, part: bool = False
+    folder: Path, like: PyTree, step: int | None = None
 ) -> tuple[int, PyTree, dict, list[str]]:
     """The newest sound checkpoint, or the one at `step`: (step, state, meta, notes).
 
     `like` gives the structure, shapes and dtypes (arrays, or what `jax.eval_shape`
-    returns); the leaves are arrays on the default device. part: `like` may lack leaves that the
-    checkpoint has. notes: one line for each checkpoint that was skipped. Another process may write
-    checkpoints to `folder` and delete older ones meanwhile.
+    returns), of all leaves or of some; they are arrays on the default device. notes: one line for
+    each checkpoint that was skipped. Another process may write checkpoints to `folder` and delete
+    older ones meanwhile.
 
     Raises:
         CheckpointError: if none is sound.
-        MisfitError: if the checkpoint has other leaves than `like`.
+        MisfitError: if the checkpoint lacks a leaf of `like`, or has it in another shape.
     """
     for _ in range(ATTEMPTS):
         checkpoints = _finished(folder)
@@ -132,7 +132,7 @@ def restore(
         for candidate in sorted(checkpoints, reverse=True) if step is None else [step]:
             path = checkpoints[candidate]
             before = _identity(path)
-            read, flaw = _attempt(path, like, part)
+            read, flaw = _attempt(path, like)
             if before is None or _identity(path) != before:
                 break  # deleted or replaced while it was read
             if read is not None:
@@ -154,13 +154,13 @@ def _identity(path: Path) -> tuple[int, int, int] | None:
     return status.st_dev, status.st_ino, status.st_mtime_ns
 
 
-def _attempt(path: Path, like: PyTree, part: bool) -> tuple[tuple[PyTree, dict] | None, str]:
+def _attempt(path: Path, like: PyTree) -> tuple[tuple[PyTree, dict] | None, str]:
     """State and meta of the checkpoint at `path`, or None and why it has none."""
     flaw = integrity.verify(path)
     if flaw is not None:
         return None, flaw
     try:
-        return leaves.read(path, like, part), ""
+        return leaves.read(path, like), ""
     except CheckpointError:
         raise
     except (OSError, ValueError) as problem:  # TensorStore raises ValueError

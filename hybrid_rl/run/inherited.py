@@ -24,13 +24,6 @@ WIDE = ("settings", "experiment")  # they would set what DIR has set
 OWN = {"random_steps": 0, "pretrain": 0, "run_dir": None, "freeze": [], "distributed": False}
 
 
-def load(texts: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
-    """The resolved configuration of these overrides, also of run=DIR; errors as `config.load`."""
-    if isinstance(texts, str) or not any(text.startswith("run=") for text in texts):
-        return configuration.load(texts, config_dir)
-    return resolve_config(configuration.compose_raw(add_choices(texts), config_dir), texts)
-
-
 def add_choices(texts: Sequence[str]) -> list[str]:
     """The words of a command, with the task and the method of DIR before run=DIR.
 
@@ -74,21 +67,15 @@ def _choices(config: DictConfig) -> dict[str, str]:
     """The groups that make the parts of a run."""
     words = {"task": config.task, "algo": config.algo}
     if config.task not in options("task"):  # such as an environment of Gymnasium, by its id
-        files: dict[str, Any] = {
-            name: OmegaConf.load(file("task", name)) for name in options("task")
-        }
-        same = [
-            n for n, c in files.items() if select(raw_values(c), "env._target_") == _kind(config)
-        ]
-        words["task"] = same[0] if same else config.task
+        for name in options("task"):
+            task: Any = OmegaConf.load(file("task", name))
+            if select(raw_values(task), "env._target_") == config.env.get("_target_"):
+                words["task"] = name
+                break
     method = file("algo", config.algo).read_text() if config.algo in options("algo") else ""
     if "policy_learning" in config and "override /learning:" in method:
         words["learning"] = config.policy_learning
     return words
-
-
-def _kind(config: DictConfig) -> str:
-    return str(config.env.get("_target_"))
 
 
 def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
@@ -133,8 +120,8 @@ def _linked(stored: dict[str, Any], raw: dict[str, Any]) -> dict[str, Any]:
         key = source(raw, path)
         return key if key != path and select(stored, key) == node else ""
 
-    named = {key: part for key, part in stored.items() if _is_part(part)}
-    named = {key: part for key, part in named.items() if not referred(part, key)}
+    groups = {key: part for key, part in stored.items() if isinstance(part, dict)}
+    named = {k: p for k, p in groups.items() if "_target_" in p and not referred(p, k)}
 
     def link(node: Any, path: str) -> Any:
         same = [k for k, part in named.items() if part == node] if path not in named else []
@@ -147,10 +134,6 @@ def _linked(stored: dict[str, Any], raw: dict[str, Any]) -> dict[str, Any]:
         return node
 
     return {key: link(node, key) for key, node in stored.items()}
-
-
-def _is_part(node: Any) -> bool:
-    return isinstance(node, dict) and "_target_" in node
 
 
 def _put(values: dict[str, Any], path: str, value: Any) -> None:

@@ -66,7 +66,7 @@ class Job:
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             settings: Any = OmegaConf.to_container(run.config)
             names = loggers.check(run.config.get("logger"))
-            copies = loggers.create(names, run_dir, run.seeds, settings)
+            copies = [loggers.KINDS[name](run_dir, run.seeds, settings) for name in names]
             if output.on_row is not None:
                 more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
                 copies.append(output.on_row.of(more))

@@ -204,9 +204,9 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
         has = "" if before is UNKNOWN else f"; the run in resume={run_dir} has {before}"
         raise UsageError(f"{key}={given[key]}: {ONLY}{has}")
     if "total_steps" in given:
-        steps = whole(config, "total_steps")
+        steps = whole("total_steps", config.total_steps)
         with folder.blame_config(run_dir):
-            before = whole(old, "total_steps")
+            before = whole("total_steps", old.total_steps)
         if steps < before:
             raise UsageError(
                 f"total_steps={steps}: the run in resume={run_dir} has {before}; it can be "

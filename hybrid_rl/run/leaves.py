@@ -97,14 +97,14 @@ def write(path: Path, leaves: dict[str, np.ndarray]) -> None:
         raise OSError(f"Orbax left no state/{WRITTEN}")
 
 
-def read(path: Path, like: PyTree, part: bool) -> tuple[PyTree, dict]:
-    """State and meta of a sound checkpoint."""
+def read(path: Path, like: PyTree) -> tuple[PyTree, dict]:
+    """The leaves of `like` in a sound checkpoint, and its meta."""
     import orbax.checkpoint as ocp  # 1 s
 
     meta = from_json((path / "meta.json").read_text(encoding="utf-8"))
     kinds = from_json((path / "leaves.json").read_text(encoding="utf-8"))
     wanted = dict(_named(like))
-    _match(path, kinds, wanted, part)
+    _match(path, kinds, wanted)
     filled = {name: 0 for name in wanted if 0 not in kinds[name]["shape"]}
     host = dict.fromkeys(filled, ocp.RestoreArgs(restore_type=np.ndarray))
     args = ocp.args.PyTreeRestore(item=filled, restore_args=host, partial_restore=True)
@@ -126,14 +126,11 @@ def _empty(leaf: jax.Array) -> dict:
     return {"shape": data.shape, "dtype": data.dtype}
 
 
-def _match(path: Path, kinds: dict[str, dict], wanted: dict, part: bool) -> None:
-    """Raise MisfitError if a sound checkpoint belongs to another run than `wanted`."""
+def _match(path: Path, kinds: dict[str, dict], wanted: dict) -> None:
+    """Raise MisfitError unless a sound checkpoint has the leaves `wanted`."""
     for name, leaf in wanted.items():
         here = f"{leaf.dtype}{list(leaf.shape)}"
         there = f"{kinds[name]['dtype']}{kinds[name]['shape']}" if name in kinds else "absent"
         if here != there:
             line = f"{path} does not fit this run: {name} is {here} here and {there} there"
             raise MisfitError(line)
-    surplus = sorted(set(kinds) - set(wanted))
-    if surplus and not part:
-        raise MisfitError(f"{path} does not fit this run: {surplus[0]} is there and not here")

@@ -5,7 +5,6 @@ that length, so that it has every row exactly once.
 """
 
 import json
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Self
@@ -14,6 +13,7 @@ import numpy as np
 
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.loggers import Lines, Logger
+from hybrid_rl.run.records import json_value
 
 
 class RunLog:
@@ -74,7 +74,7 @@ class RunLog:
     def summary(self, fields: dict[str, Any]) -> Path:
         """Replace summary.json; NaN and infinity become null."""
         path = self.run_dir / "summary.json"
-        write_text(path, json.dumps(_finite(fields), indent=2, allow_nan=False) + "\n")
+        write_text(path, json.dumps(json_value(fields), indent=2, allow_nan=False) + "\n")
         return path
 
 
@@ -85,18 +85,3 @@ def number(value: Any) -> int | float | None:
         return int(scalar)
     single = np.float32(scalar)
     return float(str(single)) if np.isfinite(single) else None
-
-
-def _finite(value: Any) -> Any:
-    """`value` with None for NaN and infinity."""
-    match value:
-        case dict():
-            return {name: _finite(entry) for name, entry in value.items()}
-        case list() | tuple():
-            return [_finite(entry) for entry in value]
-        case float() | np.floating():
-            return float(value) if math.isfinite(value) else None
-        case np.integer():
-            return int(value)
-        case _:
-            return value

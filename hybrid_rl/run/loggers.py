@@ -25,8 +25,7 @@ from hybrid_rl.run.reading import lines, open_to_append, text
 from hybrid_rl.run.records import COORDINATES, Row, row_of
 
 HEADER = (*COORDINATES, "metric", "value")
-NAMES = ("csv", "wandb", "trackio")
-PACKAGES = NAMES[1:]  # extras of the same name
+PACKAGES = ("wandb", "trackio")  # extras of the same name
 TRACKIO = ("TRACKIO_DIR", "runs/trackio")  # read by Trackio when it is imported
 
 
@@ -267,6 +266,13 @@ class _Named(Logger):
         self._logger.write(row | self._more)
 
 
+KINDS: dict[str, Callable[[Path, Sequence[int], dict[str, Any]], Logger]] = {
+    "csv": lambda folder, *_: CSV(folder),
+    "wandb": WandB,
+    "trackio": Trackio,
+}
+
+
 def check(given: Any) -> tuple[str, ...]:
     """The loggers that the key `logger` of a configuration names; null: none.
 
@@ -274,8 +280,8 @@ def check(given: Any) -> tuple[str, ...]:
         UsageError: for an unknown name, or one whose package is not installed.
     """
     names = () if given is None else (given,) if isinstance(given, str) else tuple(given)
-    if unknown := [name for name in names if name not in NAMES]:
-        line = f"choose from {', '.join(NAMES)}, or null"
+    if unknown := [name for name in names if name not in KINDS]:
+        line = f"choose from {', '.join(KINDS)}, or null"
         always = "every run writes metrics.jsonl and tensorboard/"
         raise UsageError(f"logger={unknown[0]}: {line}; {always}")
     for name in (each for each in names if each in PACKAGES):
@@ -285,15 +291,3 @@ def check(given: Any) -> tuple[str, ...]:
         except ImportError as error:
             raise UsageError(f"logger={name}: not installed; {install(name)}") from error
     return names
-
-
-def create(
-    names: Iterable[str], folder: Path, seeds: Sequence[int], config: dict[str, Any]
-) -> list[Logger]:
-    """The loggers `names` of the run in `folder`."""
-    kinds: dict[str, Callable[[], Logger]] = {
-        "csv": lambda: CSV(folder),
-        "wandb": lambda: WandB(folder, seeds, config),
-        "trackio": lambda: Trackio(folder, seeds, config),
-    }
-    return [kinds[name]() for name in names]

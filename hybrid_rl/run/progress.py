@@ -7,7 +7,6 @@ import time
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from types import TracebackType
 from typing import Self
 
 from rich.console import Console, Group
@@ -97,12 +96,7 @@ class Progress:
             threading.Thread(target=self._beat, daemon=True).start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        problem: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._ended.set()
         if self._live is not None:
             with ignore_closed_output():
@@ -118,7 +112,8 @@ class Progress:
         """
         now = time.monotonic()
         self.step = step
-        self._drawn += [scalars[name] for name in (DRAWN,) if name in scalars]
+        if DRAWN in scalars:
+            self._drawn.append(scalars[DRAWN])
         self._scalars |= {name: (value, step) for name, value in scalars.items()}
         if step >= self.steady:
             self._clock.append((now, step))

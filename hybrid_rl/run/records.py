@@ -9,6 +9,8 @@ from pathlib import Path
 from types import NoneType
 from typing import Any
 
+import numpy as np
+
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.reading import from_json, json_file
 
@@ -102,3 +104,14 @@ def flatten_keys(node: Mapping[str, Any], where: str = "") -> dict[str, Any]:
         else:
             values[f"{where}{key}"] = value
     return values
+
+
+def json_value(value: Any) -> Any:
+    """A value as JSON holds it: arrays are lists, numbers that are not finite are null."""
+    if isinstance(value, dict):
+        return {str(name): json_value(each) for name, each in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return json_value(value.tolist())
+    if isinstance(value, list | tuple):
+        return [json_value(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -26,17 +26,22 @@ class Gathered:
         selected = {name: m for name, m in metrics.items() if not name.startswith("episode/")}
         self._parts.append(selected)
 
+    def whole(self) -> Metrics:
+        """All of it [rounds, S]; {} if nothing was added."""
+        if len(self._parts) > 1:
+            names = self._parts[0]
+            self._parts = [{n: np.concatenate([part[n] for part in self._parts]) for n in names}]
+        return self._parts[0] if self._parts else {}
+
     def take(self) -> Metrics:
         """Return and remove all of it [rounds, S]."""
-        parts, self._parts = self._parts, []
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        whole, self._parts = self.whole(), []
+        return whole
 
     def pack(self) -> tuple[list[str], np.ndarray | None]:
         """Names [M] and one array [M, rounds, S], for a checkpoint; None if there are none."""
-        if not self._parts:
+        if not (whole := self.whole()):
             return [], None
-        whole = self.take()
-        self._parts = [whole]
         return list(whole), np.stack([np.asarray(m, np.float32) for m in whole.values()])
 
     def unpack(self, names: list[str], array: np.ndarray) -> None:
@@ -48,22 +53,17 @@ class Gathered:
         if count == 1:
             return [self]
         each = [Gathered() for _ in range(count)]
-        if self._parts:
-            whole = self.take()
-            self._parts = [whole]
-            cut = {name: np.split(m, count, axis=1) for name, m in whole.items()}
-            for i, one in enumerate(each):
-                one._parts = [{name: shares[i] for name, shares in cut.items()}]
+        cut = {name: np.split(m, count, axis=1) for name, m in self.whole().items()}
+        for i, one in enumerate(each if cut else ()):
+            one.add({name: shares[i] for name, shares in cut.items()})
         return each
 
     @classmethod
     def joined(cls, each: "Sequence[Gathered]") -> Self:
         """What was `split`."""
-        made = cls()
-        if all(one._parts for one in each):
-            wholes = [one.take() for one in each]
-            names = wholes[0]
-            made._parts = [{n: np.concatenate([w[n] for w in wholes], axis=1) for n in names}]
+        made, wholes = cls(), [one.whole() for one in each]
+        if all(wholes):
+            made.add({n: np.concatenate([w[n] for w in wholes], axis=1) for n in wholes[0]})
         return made
 
 

@@ -6,7 +6,7 @@ where nothing has changed.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +20,10 @@ from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.protocols import Goal
 from hybrid_rl.run import checkpoint, folder
 from hybrid_rl.run.records import changes, flatten_keys
+from hybrid_rl.run.store import read_part, with_capacity
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import forgotten
-from hybrid_rl.training.loop import Loop
 
 WORLD = ("env", "episode", "constraint", "num_envs")  # keys on which what is remembered depends
 PASSING = ("episode.steps", "env.physics")  # but not on these
@@ -132,9 +132,9 @@ def _learners(
     Raises:
         UsageError: if they have other shapes than those of `run`.
     """
-    like = _like(run.agent, then).replace(env=None, control=None, memory=None, key=None)
     try:
-        step, state, _, notes = checkpoint.restore(source / "checkpoints", like, part=True)
+        path, seeds = source / "checkpoints", _seeds(then)
+        step, state, notes = read_part(path, run.agent, seeds, "learners")
     except MisfitError as error:
         lines = changes(_values(then), _values(config))
         world = ("env.", "episode.", "reward.")
@@ -167,17 +167,15 @@ def _memory(
     same = _plain(then.get("reward")) == _plain(config.get("reward"))
     if not same and _goal(agent.episode) is None:
         return None, "reward differs"
-    capacity = checkpoint.meta(source / "checkpoints")["capacity"]
-    sized = replace(agent, replay=replace(agent.replay, capacity=capacity))
-    like = _like(sized, then).replace(env=None, control=None, learners=None, key=None)
-    _, state, *_ = checkpoint.restore(source / "checkpoints", like, step, part=True)
+    path = source / "checkpoints"
+    sized = with_capacity(agent, checkpoint.meta(path)["capacity"])
+    state = read_part(path, sized, _seeds(then), "memory", step)[1]
     return state.memory, "" if same else RELABELLED
 
 
-def _like(agent: Agent, then: DictConfig) -> AgentState:
-    """Shapes of the state [S', ...] of an agent, with as many learners as that run had."""
-    seeds = tuple(range(then.seed, then.seed + then.num_seeds))
-    return jax.eval_shape(Loop(agent, seeds, 1).init)
+def _seeds(config: DictConfig) -> tuple[int, ...]:
+    """The seeds [S'] of the run that has this configuration."""
+    return tuple(range(config.seed, config.seed + config.num_seeds))
 
 
 def _world(config: DictConfig) -> dict[str, Any]:

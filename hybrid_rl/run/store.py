@@ -12,6 +12,7 @@ import numpy as np
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.rows import Gathered
 from hybrid_rl.run.schedule import Speed
+from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop
 
 # {"seed", "step", "quantity"} of a learner that diverged; "world": why it is the world's fault;
@@ -31,6 +32,28 @@ class Record:
     learning: Speed = field(default_factory=Speed)  # over all sessions
     unevaluated: bool = False  # an evaluation is due at `step`
     ends: list[End] = field(default_factory=list)  # of learners that diverged
+
+
+def with_capacity(agent: Agent, capacity: int) -> Agent:
+    """The agent with a replay memory of that capacity."""
+    return replace(agent, replay=replace(agent.replay, capacity=capacity))
+
+
+def read_part(
+    folder: Path, agent: Agent, seeds: tuple[int, ...], part: str, step: int | None = None
+) -> tuple[int, Any, list[str]]:
+    """(step, AgentState [S, ...], notes) of the newest sound checkpoint, or the one at `step`.
+
+    part: the field of the state that is read; the others are None.
+
+    Raises:
+        CheckpointError: if none is sound.
+        MisfitError: if it is of another agent.
+    """
+    like = jax.eval_shape(Loop(agent, seeds, 1).init)
+    others = {field.name: None for field in fields(like) if field.name != part}
+    step, state, _, notes = checkpoint.restore(folder, like.replace(**others), step)
+    return step, state, notes
 
 
 @dataclass
@@ -81,7 +104,7 @@ class Store:
         """
         self.known = set(checkpoint.steps(self.folder))
         like = self._like().replace(memory=None)
-        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step, part=True)
+        self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step)
         memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
         gathered, packed = Gathered(), meta.get("gathered", {})
         if packed.get("names"):
@@ -108,7 +131,7 @@ class Store:
 
     def _read(self, like: Any) -> Any:
         """A part of the newest checkpoint."""
-        return checkpoint.restore(self.folder, like, self.newest, part=True)[1]
+        return checkpoint.restore(self.folder, like, self.newest)[1]
 
     def _memory(self, capacity: int) -> Any:
         """The checkpoint's replay memory, which held `capacity`, in the size that it has now.
@@ -116,10 +139,8 @@ class Store:
         Extending a run may enlarge the memory. One that is bounded by the length of the run has not
         wrapped, so padding suffices.
         """
-        agent = self.loop.agent
-        then = replace(agent, replay=replace(agent.replay, capacity=capacity))
-        like = jax.eval_shape(replace(self.loop, agent=then).init)
-        memory = self._read(like.replace(env=None, control=None, learners=None, key=None)).memory
+        agent = with_capacity(self.loop.agent, capacity)
+        memory = read_part(self.folder, agent, self.loop.seeds, "memory", self.newest)[1].memory
 
         def grown(old: jax.Array, now: Any) -> jax.Array:
             ends = zip(old.shape, now.shape, strict=True)

@@ -49,10 +49,8 @@ def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None
     """The runs of these overrides, or what is resolved; errors of `inherited`, `expand_sweep`."""
     if isinstance(texts, DictConfig):
         return [Member(texts, {})]
-    if isinstance(texts, str) or not any(map(overrides.is_swept, texts)):
-        return [Member(inherited.load(texts, config_dir), {})]
-    config = configuration.compose_raw(inherited.add_choices(texts), config_dir)
-    return expand_sweep(config, texts)
+    words = texts if isinstance(texts, str) else inherited.add_choices(texts)  # text is refused
+    return expand_sweep(configuration.compose_raw(words, config_dir), texts)
 
 
 def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:

@@ -46,36 +46,30 @@ RESUMED += "decisions after this one differ from those of a run without the inte
 class HostLoop(Loop):
     """Trains one learner per seed; all environments of all learners step side by side."""
 
+    notes = (RESUMED,)
     early: bool = field(init=False)  # learning without the outcome of the newest decision
-    closing: Any = field(default=None, init=False)  # the trace of the second program
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     def __post_init__(self) -> None:
         """Find out whether all learners can learn early."""
         self.early = all(each.data == "uniform" for each in self.agent.learners.values())
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a resumed run says about its environments."""
-        return (RESUMED,)
-
-    def trace(self, state: AgentState) -> Any:
-        """The trace of the program that decides; that of the other one is kept."""
+    def trace(self, state: AgentState) -> list[Any]:
+        """The traces of the program that decides, and of the one that ends a decision."""
         began, at, got = perf_counter(), jnp.zeros(4, jnp.int32), outcome_like(state.env)
         u = np.zeros((*got.reward.shape, self.agent.spec.act), np.float32)
         self.rows = self.rows_of(jax.eval_shape(jax.vmap(self.step, (0, None)), state, at[0])[1])
         parts = (SEEDS, METRICS, SEEDS, SEEDS, REPLICATED), (SEEDS, METRICS)
-        traced, self.closing = (
+        traced = [
             self.shard(each, *parts, donate_argnums=(0, 1)).trace(state, self.rows, u, got, at)
             for each in (self._act, self._close)
-        )
+        ]
         self.compile_s += perf_counter() - began
         return traced
 
-    def compile(self, state: AgentState, traced: Any = None) -> "HostProgram":
+    def compile(self, state: AgentState) -> "HostProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
-        act = super().compile(state, self.trace(state) if traced is None else traced)
-        return HostProgram(self, act, super().compile(state, self.closing))
+        return HostProgram(self, *map(self.compile_trace, self.trace(state)))
 
     def step(self, state: AgentState, step: Array) -> tuple[AgentState, dict[str, Array]]:
         """As of `Loop`, in an environment where nothing changes: for the shapes."""

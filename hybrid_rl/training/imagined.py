@@ -11,46 +11,17 @@ from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.members import predict_members
 from hybrid_rl.fields import Count, Natural, NotNegative, part
-from hybrid_rl.protocols import LearnedPolicy, Reward, Trainable
+from hybrid_rl.protocols import LearnedPolicy, Reward, Trainable, UniformLearner
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.types import Batch, Params, Spec
+from hybrid_rl.types import Batch, Params
 
 
-class Continuing(Protocol):
+class Continuing(UniformLearner, Protocol):
     """A learner of policy and critic in a model, which can begin with a policy that has learned."""
 
-    @property
-    def policy(self) -> LearnedPolicy:
-        """The policy."""
-        ...
-
-    @property
-    def model(self) -> Trainable:
-        """The model."""
-        ...
-
-    @property
-    def reward(self) -> Reward:
-        """The reward."""
-        ...
-
-    @property
-    def batch_size(self) -> int:
-        """The start states of an update."""
-        ...
-
-    def init(self, key: Array, spec: Spec) -> Any:
-        """The first state of the learner."""
-
-    def params(self, state: Any) -> dict[str, Any]:
-        """The fields of Params that it learns."""
-        ...
-
-    def update(
-        self, state: Any, params: Params, batch: Batch, key: Array
-    ) -> tuple[Any, dict[str, Array]]:
-        """The next state, and metrics."""
-        ...
+    policy: LearnedPolicy
+    model: Trainable
+    reward: Reward
 
     def having(self, state: Any, policy: Any) -> Any:
         """`state` with these parameters of its policy."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
-from typing import Any
+from typing import Any, ClassVar
 
 import jax
 import jax.numpy as jnp
@@ -43,11 +43,7 @@ class Loop:
     stride: int
     compile_s: float = 0.0  # [s] spent compiling so far
     axis: Axis = field(default_factory=Axis)  # numbers of "agent"
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Lines for a run that is resumed; none: it continues bit for bit."""
-        return ()
+    notes: ClassVar[tuple[str, ...]] = ()  # on a run that is resumed; none: it goes on bit for bit
 
     def cut_short(self) -> None:
         """A signal came: a call that waits for its environment ends early."""
@@ -122,7 +118,7 @@ class Loop:
         return self.axis.put(self.agent, "agent", numbers)
 
     def trace(self, state: AgentState) -> Any:
-        """The trace of the program, for `compile`."""
+        """The trace of the program."""
         began = perf_counter()
         parts = (SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         program = self.shard(self._advance, *parts, donate_argnums=0)
@@ -131,9 +127,12 @@ class Loop:
         self.compile_s += perf_counter() - began
         return traced
 
-    def compile(self, state: AgentState, traced: Any = None) -> Any:
+    def compile(self, state: AgentState) -> Any:
         """The compiled program (state, first step, rounds) -> (state, metrics)."""
-        traced = self.trace(state) if traced is None else traced
+        return self.compile_trace(self.trace(state))
+
+    def compile_trace(self, traced: Any) -> Any:
+        """The compiled program of a trace."""
         began = perf_counter()
         lowered = traced.lower()
         try:

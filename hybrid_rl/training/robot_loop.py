@@ -39,22 +39,17 @@ POLL_S = 5e-4  # [s]
 class RobotLoop(Loop):
     """Trains one learner on one robot, whose files are in `folder`."""
 
+    notes = (RESUMED,)
     folder: Path = field(default_factory=Path)
     cut: bool = False  # whether a call ends early
-    observing: Any = field(default=None, init=False)  # the trace of the first program
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     def __post_init__(self) -> None:
         """Check the counts."""
         check_one(self.agent, self.seeds)
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a resumed run says about its robot."""
-        return (RESUMED,)
-
-    def trace(self, state: AgentState) -> Any:
-        """The trace of the program that learns; that of the other one is kept."""
+    def trace(self, state: AgentState) -> list[Any]:
+        """The traces of the programs that observe and that learn."""
         began, zero, no = time.perf_counter(), np.int32(0), np.bool_(False)
         got = outcome_like(state.env)
         action = jnp.zeros((*got.obs.shape[:-1], self.agent.spec.act))
@@ -63,23 +58,23 @@ class RobotLoop(Loop):
         self.rows = self.rows_of({**now, **learned})
         parts = (SEEDS, METRICS, SEEDS, SEEDS, *[REPLICATED] * 3), (SEEDS, METRICS)
         observe = self.shard(self._observe, *parts, donate_argnums=(0, 1))
-        self.observing = observe.trace(state, self.rows, action, got, no, no, zero)
         parts = (SEEDS, METRICS, REPLICATED, REPLICATED), (SEEDS, METRICS)
-        traced = self.shard(self._learned, *parts, donate_argnums=(0, 1)).trace(
-            state, self.rows, zero, zero
-        )
+        learn = self.shard(self._learned, *parts, donate_argnums=(0, 1))
+        traced = [
+            observe.trace(state, self.rows, action, got, no, no, zero),
+            learn.trace(state, self.rows, zero, zero),
+        ]
         self.compile_s += time.perf_counter() - began
         return traced
 
-    def compile(self, state: AgentState, traced: Any = None) -> "RobotProgram":
+    def compile(self, state: AgentState) -> "RobotProgram":
         """The program (state, first step, rounds) -> (state, metrics)."""
         self.program = RobotProgram(self, *self.halves(state))
         return self.program
 
-    def halves(self, state: AgentState) -> tuple[Any, Any]:
+    def halves(self, state: AgentState) -> list[Any]:
         """The compiled programs that observe and that learn; both donate state and rows."""
-        learn = super().compile(state, self.trace(state))
-        return super().compile(state, self.observing), learn
+        return list(map(self.compile_trace, self.trace(state)))
 
     def empty(self) -> dict[str, np.ndarray]:
         """Rows [stride, S, ...] for the metrics of a call."""

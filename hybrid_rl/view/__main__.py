@@ -74,10 +74,7 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     if trained is not None and isinstance(trained.episode.env, External):
         raise UsageError("a Gymnasium environment draws itself; use render")
     if trained is not None:
-        try:
-            check_drawable(trained.episode.env)
-        except ValueError as error:
-            raise UsageError(str(error)) from error
+        check_drawable(trained.episode.env)
     choice = Choice("expert" if given["task"] else given["mode"], given["reward"])
     seed = given["seed"] or 0 if trained is None else given["seed"] or trained.seeds[0]
     player = Player(source, learner(trained, given["seed"]), choice, seed)

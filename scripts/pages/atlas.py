@@ -77,7 +77,7 @@ def section(page: str) -> str:
         marks, _, title = heading.partition(" ")
         if level and len(marks) <= level:
             break
-        if level or re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") == anchor:
+        if level or _anchor(title) == anchor:
             level = level or len(marks)
             text += heading + body
     if not level:
@@ -116,7 +116,8 @@ def _cell(name: str, entry: dict[str, Any]) -> str:
     shown = f"[![{name}: {entry['title']}]({picture(entry)})]({entry['page']}) <br> "
     verdict = f"**{entry['verdict'].capitalize()}**"
     brief = f": {entry['brief']}" if "brief" in entry else ""
-    text = f"[{name}](#{_anchor(name, entry)}). {entry['claim']} <br> {verdict}{brief}."
+    anchor = _anchor(f"{name}: {entry['title']}")
+    text = f"[{name}](#{anchor}). {entry['claim']} <br> {verdict}{brief}."
     return (shown if picture(entry) else "") + text
 
 
@@ -165,6 +166,6 @@ def page() -> str:
     return text
 
 
-def _anchor(name: str, entry: dict[str, Any]) -> str:
-    heading = f"{name}: {entry['title']}".lower()
-    return re.sub(r"[^\w\- ]", "", heading).replace(" ", "-")
+def _anchor(heading: str) -> str:
+    """What GitHub calls a heading in links."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")

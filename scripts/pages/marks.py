@@ -30,6 +30,8 @@ decimals that stand there.
 """
 
 import re
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import yaml
@@ -40,12 +42,15 @@ from scripts.pages.values import evaluated
 NUMBER = re.compile(r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\.\d)")
 INLINE = re.compile(r"(<!-- = )(.+?)( -->)(.*?)(<!-- / -->)", re.DOTALL)
 TABLE = re.compile(r"(<!-- table\n)((?:.+\n)+?)(-->\n)((?:\|.*\n){3,})")
-MACHINES = re.compile(r"(<!-- machines -->\n)((?:\|.*\n)+)")
-CLAIMS = re.compile(r"(<!-- claims (.+) -->\n)((?:\|.*\n)+)")
-PRINTED = re.compile(r"(<!-- (rows|printed|ours) (.+) -->\n)((?:\|.*\n)+)")
-DOCTOR = re.compile(r"(<!-- doctor (broken|sound) -->\n)((?:\|.*\n)+)")
-LEAVES = re.compile(r"(<!-- leaves -->\n)((?:\|.*\n)+)")
-COMMUNITY = re.compile(r"(<!-- community -->\n)((?:\|.*\n)+)")
+WRITERS: dict[str, Callable[..., str]] = {  # word of a mark -> the table of the words after it
+    "machines": machines.table,
+    "claims": atlas.claims,
+    **{kind: partial(printed.table, kind) for kind in ("rows", "printed", "ours")},
+    "doctor": examined.table,
+    "leaves": leaves.table,
+    "community": community.table,
+}
+WHOLE = re.compile(rf"(<!-- ({'|'.join(WRITERS)})(?: (.+))? -->\n)(?:\|.*\n)+")
 CELL = re.compile(r"(?<=\|)[^|\n]+")
 
 
@@ -62,12 +67,7 @@ def written(page: str) -> str:
     found = page.count("<!-- = "), page.count("<!-- table")
     if found != (len(INLINE.findall(page)), len(TABLE.findall(page))):
         raise ValueError("a mark without its end, <!-- / -->, or without its table below it")
-    page = MACHINES.sub(lambda m: m[1] + machines.table(), page)
-    page = CLAIMS.sub(lambda m: m[1] + atlas.claims(m[2]), page)
-    page = PRINTED.sub(lambda m: m[1] + printed.table(m[2], m[3]), page)
-    page = DOCTOR.sub(lambda m: m[1] + examined.table(m[2]), page)
-    page = LEAVES.sub(lambda m: m[1] + leaves.table(), page)
-    page = COMMUNITY.sub(lambda m: m[1] + community.table(), page)
+    page = WHOLE.sub(lambda m: m[1] + WRITERS[m[2]](*filter(None, [m[3]])), page)
     page = INLINE.sub(lambda m: m[1] + m[2] + m[3] + filled(m[4], m[2]) + m[5], page)
     return TABLE.sub(lambda m: m[1] + m[2] + m[3] + table(m[4], yaml.safe_load(m[2])), page)
 

@@ -82,8 +82,8 @@ def test_a_folder_is_read_while_its_checkpoints_are_deleted(three, monkeypatch):
     """Each time that one was read in part, its writer deletes it; a newer one is there."""
     read, behind = leaves.read, [30, 40, 50]
 
-    def overtaken(path, like, part):
-        got = read(path, like, part)
+    def overtaken(path, like):
+        got = read(path, like)
         if behind:
             checkpoint.save(three, behind.pop(0) + 10, state_at(0), {}, keep=1)
         return got

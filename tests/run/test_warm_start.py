@@ -10,7 +10,7 @@ from tiny import call_train, contents, only_line, rows_of, run, summary_of
 
 from hybrid_rl import config, trained
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import inherited, start
+from hybrid_rl.run import start, together
 from hybrid_rl.run.store import Store
 from hybrid_rl.training.loop import Loop
 from scripts import interrupt
@@ -41,7 +41,7 @@ def warm(source, tmp_path_factory):
 
 def begun(source, *overrides):
     """Configuration, loop and first state of a run that begins with `source`."""
-    made = inherited.load([f"run={source}", *overrides])
+    made = together.load([f"run={source}", *overrides])[0].config
     built, first = start.build_new_run(made)
     loop = Loop(built.agent, built.seeds, 1)
     return made, loop, first.given(loop.init()), first.line
@@ -103,7 +103,7 @@ def test_another_reward_is_that_of_the_memory_too(source):
 
 def test_a_part_that_the_run_did_not_have_gets_its_networks(source):
     """Another planner, of another part of conf/."""
-    made = inherited.load([f"run={source}", "controllers.full=${gradient_planner}"])
+    made = together.load([f"run={source}", "controllers.full=${gradient_planner}"])[0].config
     assert made.controllers.full._target_.endswith("GradientController")
     assert made.controllers.full.policy == made.policy
     assert made.controllers.full.objective.critic == made.critic

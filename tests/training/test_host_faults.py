@@ -14,6 +14,7 @@ from hosted import Count, counting
 
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.fields import FieldError
 from hybrid_rl.types import Spec
 
 STEPS = 5  # decisions of an episode
@@ -94,7 +95,7 @@ def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
         ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
         ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
         ({"id": "Pendulum-v1", "kwargs": 3}, "env.kwargs=3: must be {KEY: VALUE}"),
-        ({"id": "Pendulum-v1", "timeout_s": 1.0}, "with env.processes=true"),
+        ({"id": "Pendulum-v1", "timeout_s": 1.0}, "goes with env.processes=true"),
     ],
 )
 def test_what_is_no_usable_environment_is_one_line(given, line):
@@ -161,7 +162,7 @@ def test_an_environment_without_a_time_step_is_shown_where_to_write_it():
         External(make=type("Timeless", (Count,), {"metadata": {}}))
     with pytest.raises(UsageError, match=r"Fast: does not say its time step; add env.dt=0.05"):
         External(make=type("Fast", (Count,), {"metadata": {"render_fps": "fast"}}))
-    with pytest.raises(UsageError, match=r"env.dt=0: must be above 0"):
+    with pytest.raises(FieldError, match=r"dt=0: must be above 0"):
         External(make=Count, dt=0)
 
 

@@ -16,8 +16,6 @@ flight and to the fewest trials.
     tracking     mean distance to the target over the flight [m]
 """
 
-import glob
-from pathlib import Path
 from time import perf_counter
 from typing import Annotated, Any, NamedTuple
 
@@ -27,11 +25,11 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis.curves import band, iqm, plural
+from hybrid_rl.analysis.recorded import run_folders
 from hybrid_rl.analysis.style import STYLE, legend_outside, line_styles, plain_log
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
-from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies.flights import Flight, cost, equal_size, read_all
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
@@ -52,9 +50,7 @@ def figure(
     steps: Annotated[int, "decisions of each flight to a target", whole()] = 1200,
 ) -> tuple[Any, dict[str, Any]]:
     """Tracking over time and power loss, or the flights themselves if `updates` is 0."""
-    folders = sorted(Path(path) for path in glob.glob(runs))
-    if not folders:
-        raise UsageError(f"runs={runs}: no run folder matches")
+    folders = run_folders(runs)
     flights, dt = equal_size(read_all(folders)), QuadcopterSE3().spec.dt
     results: Results = {flight.label: cost(flight) for flight in flights}
     if updates:
