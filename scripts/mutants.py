@@ -99,6 +99,42 @@ MUTANTS = {
         "",
         "tests/cli tests/test_errors.py",
     ),
+    "violations in the tail count for the chance": Mutant(
+        "hybrid_rl/controllers/gradient.py",
+        "risk[:T].max()",
+        "risk.max()",
+        "tests/controllers/test_constrained.py",
+    ),
+    "an imagined episode has no end": Mutant(
+        "hybrid_rl/training/imagined.py",
+        "goes_on * jax.nn.sigmoid(-end)",
+        "goes_on",
+        "tests/training/test_imagined.py",
+    ),
+    "an evaluation in Gymnasium is paid beyond the end": Mutant(
+        "hybrid_rl/training/host_loop.py",
+        "np.where(done, 0, got.reward)",
+        "got.reward",
+        "tests/training/test_host_loop.py",
+    ),
+    "an action is repeated beyond the end": Mutant(
+        "envs/adapters/copies.py",
+        "            if ended or cut:\n                break\n",
+        "",
+        "tests/training/test_host_loop.py",
+    ),
+    "a broken-off episode leaves its plan": Mutant(
+        "hybrid_rl/online.py",
+        "self._pending, self._first = None, True\n        self._decide.begin()",
+        "self._pending, self._first = None, True",
+        "tests/test_online.py",
+    ),
+    "the critic is its own target": Mutant(
+        "hybrid_rl/learners/model_based.py",
+        "self.critic.value(state.target, paths.x[-1]",
+        "self.critic.value(state.critic, paths.x[-1]",
+        "tests/learners/test_model_based.py",
+    ),
     "a number on a page": Mutant(
         "docs/results/chapter5.md", "| ours | 14 | 17 |", "| ours | 14 | 18 |", "thesis/tests"
     ),
