@@ -3,8 +3,8 @@
     .venv/bin/python scripts/mutants.py            all of them, about ten minutes on two cores
     .venv/bin/python scripts/mutants.py fisher     those whose name contains all words given
 
-Only the folders of tests that should notice a bug are run, with this commit's share of the long
-tests (TURN=N: another). The exit code is 1 if a bug stays unseen, or if a changed sentence fails a
+Only the tests that should notice a bug are run, of folders with this commit's share of the long
+ones (TURN=N: another). The exit code is 1 if a bug stays unseen, or if a changed sentence fails a
 test.
 """
 
@@ -20,6 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 SENTENCE = "sentence"  # changed on a page: no test may fail
+RESULTS = "thesis/tests/test_results.py"
 
 
 @dataclass(frozen=True)
@@ -136,10 +137,10 @@ MUTANTS = {
         "tests/learners/test_model_based.py",
     ),
     "a number on a page": Mutant(
-        "docs/results/chapter5.md", "| ours | 14 | 17 |", "| ours | 14 | 18 |", "thesis/tests"
+        "docs/results/chapter5.md", "| ours | 14 | 17 |", "| ours | 14 | 18 |", RESULTS
     ),
     "a number in a page's JSON": Mutant(
-        "docs/results/fig_5_4_gains.json", '"good": [', '"good": [7, ', "thesis/tests"
+        "docs/results/fig_5_4_gains.json", '"good": [', '"good": [7, ', RESULTS
     ),
     f"a {SENTENCE} on a page": Mutant(
         "docs/results/chapter5.md",
@@ -190,7 +191,7 @@ def main() -> int:
                 raise SystemExit(f"{mutant.file} no longer holds {mutant.old!r}")
             path.write_text(text.replace(mutant.old, mutant.new, 1), encoding="utf-8")
             began = time.monotonic()
-            by = failed(folder, mutant.tests or "thesis/tests/test_results.py tests/test_links.py")
+            by = failed(folder, mutant.tests or f"{RESULTS} tests/test_links.py")
             fine = bool(by) != (SENTENCE in name)
             unseen += not fine
             took = f"{time.monotonic() - began:.0f} s"
