@@ -3,8 +3,8 @@
     .venv/bin/python scripts/mutants.py            all of them, about ten minutes on two cores
     .venv/bin/python scripts/mutants.py fisher     those whose name contains all words given
 
-Only the folders of tests that should notice a bug are run, with this commit's share of the long
-tests (TURN=N: another). The exit code is 1 if a bug stays unseen, or if a changed sentence fails a
+Only the tests that should notice a bug are run, of folders with this commit's share of the long
+ones (TURN=N: another). The exit code is 1 if a bug stays unseen, or if a changed sentence fails a
 test.
 """
 
@@ -20,6 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 SENTENCE = "sentence"  # changed on a page: no test may fail
+RESULTS = "thesis/tests/test_results.py"
 
 
 @dataclass(frozen=True)
@@ -99,11 +100,47 @@ MUTANTS = {
         "",
         "tests/cli tests/test_errors.py",
     ),
+    "violations in the tail count for the chance": Mutant(
+        "hybrid_rl/controllers/gradient.py",
+        "risk[:T].max()",
+        "risk.max()",
+        "tests/controllers/test_constrained.py",
+    ),
+    "an imagined episode has no end": Mutant(
+        "hybrid_rl/training/imagined.py",
+        "goes_on * jax.nn.sigmoid(-end)",
+        "goes_on",
+        "tests/training/test_imagined.py",
+    ),
+    "an evaluation in Gymnasium is paid beyond the end": Mutant(
+        "hybrid_rl/training/host_loop.py",
+        "np.where(done, 0, got.reward)",
+        "got.reward",
+        "tests/training/test_host_loop.py",
+    ),
+    "an action is repeated beyond the end": Mutant(
+        "envs/adapters/copies.py",
+        "            if ended or cut:\n                break\n",
+        "",
+        "tests/training/test_host_loop.py",
+    ),
+    "a broken-off episode leaves its plan": Mutant(
+        "hybrid_rl/online.py",
+        "self._pending, self._first = None, True\n        self._decide.begin()",
+        "self._pending, self._first = None, True",
+        "tests/test_online.py",
+    ),
+    "the critic is its own target": Mutant(
+        "hybrid_rl/learners/model_based.py",
+        "self.critic.value(state.target, paths.x[-1]",
+        "self.critic.value(state.critic, paths.x[-1]",
+        "tests/learners/test_model_based.py",
+    ),
     "a number on a page": Mutant(
-        "docs/results/chapter5.md", "| ours | 14 | 17 |", "| ours | 14 | 18 |", "thesis/tests"
+        "docs/results/chapter5.md", "| ours | 14 | 17 |", "| ours | 14 | 18 |", RESULTS
     ),
     "a number in a page's JSON": Mutant(
-        "docs/results/fig_5_4_gains.json", '"good": [', '"good": [7, ', "thesis/tests"
+        "docs/results/fig_5_4_gains.json", '"good": [', '"good": [7, ', RESULTS
     ),
     f"a {SENTENCE} on a page": Mutant(
         "docs/results/chapter5.md",
@@ -154,7 +191,7 @@ def main() -> int:
                 raise SystemExit(f"{mutant.file} no longer holds {mutant.old!r}")
             path.write_text(text.replace(mutant.old, mutant.new, 1), encoding="utf-8")
             began = time.monotonic()
-            by = failed(folder, mutant.tests or "thesis/tests/test_results.py tests/test_links.py")
+            by = failed(folder, mutant.tests or f"{RESULTS} tests/test_links.py")
             fine = bool(by) != (SENTENCE in name)
             unseen += not fine
             took = f"{time.monotonic() - began:.0f} s"

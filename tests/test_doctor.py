@@ -153,11 +153,31 @@ def test_a_policy_that_is_paid_after_the_limit_is_cut():
     """In 32 episodes of four limits, of 20 decisions each."""
     paid = np.random.default_rng(0).normal(size=(32, 80))
     agent = SimpleNamespace(episode=SimpleNamespace(steps=20))
-    for later, line in ((0.0, None), (-9.0, None), (9.0, "episode.steps=80")):
+    for later, last, line in (
+        (0.0, 80, None),
+        (-9.0, 80, None),
+        (9.0, 80, "episode.steps=80"),
+        (9.0, 79, None),  # all have ended by then, and repeat their last reward
+    ):
         reward = paid + later * (np.arange(80) >= 40)
-        tried = Tried(None, None, reward, np.ones_like(reward, bool), None)
+        lives = np.broadcast_to(np.arange(80) < last, paid.shape)
+        tried = Tried(None, None, reward, lives, None)
         found = task._cut(SimpleNamespace(by_policy=tried, run=SimpleNamespace(agent=agent)))
         assert found is None if line is None else found.endswith(line)
+
+
+def test_a_reward_that_is_lower_where_the_task_succeeds_is_noticed():
+    """In 32 episodes of random actions, by 3 a decision."""
+    rng = np.random.default_rng(0)
+    paid, success = rng.normal(size=(32, 50)), rng.random((32, 50)) < 0.3
+    folder = SimpleNamespace(rows=[{"world/success": 0.3}])
+    lines = []
+    for more in (0.0, 3.0, -3.0):
+        tried = Tried(None, None, paid + more * success, np.ones_like(success), success)
+        lines.append(task.sign(SimpleNamespace(by_chance=tried, folder=folder)))
+    assert lines[:2] == [None, None]
+    assert "is the sign of the reward wrong?" in lines[2]
+    assert float(lines[2].split()[4]) == pytest.approx(3, abs=0.2)
 
 
 def test_a_model_is_judged_beside_no_change_and_collisions_count_once():
@@ -192,6 +212,10 @@ def test_the_command_reads_a_run(folder, capsys):
     assert "random_steps=3" in lines["random decisions"]
     assert set(lines) <= set(doctor.CHECKS)
     assert doctor.examine(folder).keys() == lines.keys()
+    given = read(folder)
+    for number in (0, 1000):  # none are a choice
+        agent = replace(given.run.agent, random_steps=number)
+        assert learned.random(replace(given, run=replace(given.run, agent=agent))) is None
 
 
 def test_learners_that_diverged_come_first(folder):

@@ -1,4 +1,4 @@
-"""The how-tos of CONTRIBUTING.md, run as they are printed, from a folder outside the repository."""
+"""The how-tos of the pages, run as they are printed, from a folder outside the repository."""
 
 import os
 import re
@@ -6,6 +6,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+import jax
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -15,15 +16,21 @@ from tiny import TINY, call, call_train, only_line, summary_of
 import hybrid_rl
 from hybrid_rl import config, evaluate, render
 from hybrid_rl.cli import command
+from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs import check
+from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
+from hybrid_rl.training.actor import Actor
 
 pytestmark = pytest.mark.turns(3)
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 HOWTO = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
+WHICH = (ROOT / "docs" / "which_method.md").read_text(encoding="utf-8")
+OWN = ("ring", "reward_average", "kettle", "crane", "swing", "reach", "upright", "refit")
+OWN += ("my_robot", "stacked")  # modules
 
 
 def section(title: str, page: str = PAGE) -> str:
@@ -45,7 +52,7 @@ def conf(tmp_path, monkeypatch):
     for group in ("algo", "target", "task"):
         (tmp_path / "my_conf" / group).mkdir(parents=True)
     yield tmp_path / "my_conf"
-    for name in ("ring", "reward_average", "kettle", "crane", "swing", "reach", "upright", "refit"):
+    for name in OWN:
         if name not in modules:
             sys.modules.pop(name, None)
 
@@ -210,6 +217,33 @@ def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
     )
     assert (composed.task, composed.episode.steps) == ("reach_Reach", 4)
     assert evaluate.evaluate(evaluate.load(run), episodes=2)["return"].shape == (1, 2)
+
+
+def test_a_stack_of_observations_is_one_class(conf, tmp_path):
+    """Each is that of the last three decisions of Gymnasium's pendulum."""
+    (code,) = re.findall(r"```python\n(.*?)```", WHICH, re.S)
+    (tmp_path / "stacked.py").write_text(code)
+    copies = External(make="stacked:Stacked").copies([0], 200)
+    first, after = copies.reset()[0], copies.step(np.zeros((1, 1))).obs[0]
+    assert first.shape == after.shape == (9,)
+    np.testing.assert_array_equal(after[:6], first[3:])
+    assert (after[6:] != after[3:6]).any()
+
+
+def test_a_robot_is_one_class(conf, tmp_path):
+    """It begins where `reset` leads, is paid by its own rule, and is at rest in the end."""
+    (code,) = blocks("A robot in real time", HOWTO)
+    (tmp_path / "my_robot.py").write_text(code)
+    small = ["policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4"]
+    line = ["task=robot", "env.make=my_robot:Arm", "algo=sac", "random_steps=0", "total_steps=100"]
+    agent = config.build(config.load([*line, *small])).agent
+    actor = Actor(agent, tmp_path, params=agent.params(agent.init(jax.random.key(0))))
+    actor.run(seconds=1.0)
+    row = RowLog(tmp_path / "rows", agent.spec).read(0)
+    assert abs(row["obs"][0] - 3) < 0.5
+    angle, rate = row["next_obs"]
+    assert row["reward"] == pytest.approx(np.cos(angle) - 0.01 * rate**2, abs=1e-5)
+    assert actor.robot.torque == 0
 
 
 CALLBACK = """from dataclasses import dataclass

@@ -55,11 +55,23 @@ def test_what_acted_is_remembered_and_a_break_ends_the_decision_before():
     learner.act([1, 1])
     learner.interrupt()  # without an outcome
     learner.act([5, 5])
-    learner.observe(2.0, [6, 6], terminated=True)
+    learner.observe(2.0, [6, 6], terminated=True, truncated=True)  # as an end by the task alone
     rows = memory(learner, 2)
     assert rows[0, 2] == 0.25
     assert rows[:, 5].tolist() == [1, 0]
     assert rows[:, 4].tolist() == [0, 1]
+
+
+@pytest.mark.parametrize(
+    "ends", [OnlineLearner.interrupt, lambda each: each.observe(0.0, [0, 0], terminated=True)]
+)
+def test_an_episode_begins_with_a_controller_that_remembers_nothing(ends):
+    learner = _shared()
+    learner.interrupt()
+    learner.act([0, 0])
+    learner._decide._control = "a plan"  # sac itself remembers nothing
+    ends(learner)
+    assert learner._decide._control == ()
 
 
 def test_it_learns_with_debug_nans_though_rows_have_nan():

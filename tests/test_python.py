@@ -27,7 +27,10 @@ from hybrid_rl.train import Result
 
 pytestmark = pytest.mark.turns(3)
 
-PAGE = (Path(__file__).resolve().parents[1] / "docs" / "python.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).resolve().parents[1]
+README, PAGE = (
+    (ROOT / page).read_text(encoding="utf-8") for page in ("README.md", "docs/python.md")
+)
 SIZES = {"total_steps": 200, "random_steps": 20, "eval_every": 100}
 
 
@@ -62,10 +65,10 @@ def test_train_is_a_module_that_can_be_called():
     assert signature(train) == signature(train.train)
 
 
-def test_the_page_runs(tmp_path, monkeypatch):
-    """With its sizes reduced. The planners reach their goal; the function ends the first run."""
+def test_the_page_and_the_readme_run(tmp_path, monkeypatch):
+    """With their sizes reduced. The planners reach their goal; the function ends the first run."""
     monkeypatch.chdir(tmp_path)
-    code = "\n".join(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL))
+    code = "\n".join(re.findall(r"```python\n(.*?)```", README + PAGE, re.DOTALL))
     for key, size in SIZES.items():
         code = re.sub(rf"({key}=)\d+", rf"\g<1>{size}", code)
     code = code.replace("< 2000", "< 100").replace("(64, 64)", "(8, 8)").replace("print(x)", "end")

@@ -50,6 +50,7 @@ class Copies:
     @cached_property
     def _vector(self) -> Any:
         one = partial(self.env.one, self.render_mode)
+        one = one if self.repeat == 1 else partial(Repeated, one, self.repeat)
         if not self.env.processes:
             return InTurn([one() for _ in self.seeds])
         makers = [partial(Located, one) for _ in self.seeds]
@@ -79,13 +80,8 @@ class Copies:
         low, width, shape, kind = self._bounds
         share = (np.maximum(np.minimum(np.asarray(u, np.float32), 1), -1) + 1) / 2
         actions = (low + share * width).reshape(-1, *shape).astype(kind)
-        reward = np.zeros(len(u), np.float32)
-        for i in range(self.repeat):
-            obs, now, ended, cut, _ = self._call("step", lambda: self._stepped(actions))
-            reward += np.asarray(now, np.float32)
-            if i + 1 < self.repeat and (ended | cut).any():
-                break
-        obs = self._observed("step", obs)
+        obs, paid, ended, cut, _ = self._call("step", lambda: self._stepped(actions))
+        obs, reward = self._observed("step", obs), np.asarray(paid, np.float32)
         if not np.isfinite(reward).all():
             raise WorldError(f"{self.env.name}: step: gives a reward that is not finite")
         self.decisions += 1
@@ -125,7 +121,8 @@ class Copies:
         if not self.env.processes:
             return self._vector.step(actions)
         self._vector.step_async(actions)
-        return self._vector.step_wait(self.env.timeout_s)
+        limit = self.env.timeout_s
+        return self._vector.step_wait(None if limit is None else limit * self.repeat)
 
     def _call(self, method: str, call: Callable[[], Any]) -> Any:
         """The result of a method of the environments; an error names the user's line."""
@@ -218,6 +215,24 @@ class InTurn:
         """End them."""
         for env in self.envs:
             env.close()
+
+
+class Repeated(gymnasium.Wrapper):
+    """Takes each action for several steps, or until its episode ends; their rewards are added."""
+
+    def __init__(self, make: Callable[[], gymnasium.Env], repeat: int) -> None:
+        super().__init__(make())
+        self.repeat = repeat
+
+    def step(self, action: Any) -> Any:
+        """The last step, with the reward of all."""
+        paid = 0.0
+        for _ in range(self.repeat):
+            obs, reward, ended, cut, info = self.env.step(action)
+            paid += float(reward)
+            if ended or cut:
+                break
+        return obs, paid, ended, cut, info
 
 
 class Located(gymnasium.Wrapper):

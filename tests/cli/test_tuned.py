@@ -165,6 +165,7 @@ def test_three_real_trials_their_table_and_their_picture(tmp_path, monkeypatch, 
     numbers = json.loads((tmp_path / "study" / "trials.json").read_text())
     states = [row["state"] for row in numbers["trials"]]
     assert len(states) == 3
+    assert "complete" in states
     assert code == (1 if "fail" in states else 0), err
     assert f"3 of 3 trials: {states.count('complete')} done" in out
     for row in numbers["trials"]:

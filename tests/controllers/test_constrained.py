@@ -11,7 +11,7 @@ from jax import Array
 
 from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.constraints.limit import Limit
-from hybrid_rl.controllers.gradient import GradientController, Scored
+from hybrid_rl.controllers.gradient import Candidate, GradientController, Scored
 from hybrid_rl.core.members import predict_members
 from hybrid_rl.models.ensemble import Ensemble
 from hybrid_rl.models.exact import Exact
@@ -110,6 +110,25 @@ def test_the_order_of_candidates() -> None:
     assert np.argsort(by_chance._rank(found)).tolist() == [4, 1, 2, 0, 3]
     for none in (PLANNER, replace(PLANNER, constraint=LIMIT)):
         np.testing.assert_array_equal(none._rank(found), score)
+
+
+def test_violations_in_the_tail_have_their_price_and_no_chance() -> None:
+    """A policy that accelerates is beyond 0.9 from the fifth of ten decisions on."""
+
+    @dataclass(frozen=True)
+    class Onward:
+        def mean(self, params: Any, x: Array) -> Array:
+            """Full power."""
+            return jnp.ones(1)
+
+    limit = replace(LIMIT, most=0.9)
+    planner = replace(PLANNER, policy=Onward(), horizon=2, tail=8, constraint=limit)
+    x, u, key = jnp.zeros(1), jnp.zeros(1), jax.random.key(0)
+    value, _ = planner.objective.prepare(Params(), planner.objective.init(WORLD.spec), x, u, key)
+    found = planner._scored(Params(), value, x, Candidate(jnp.ones(()), jnp.zeros((2, 1))))
+    p = 1 / (1 + np.exp(-(0.2 * np.arange(1, 11) - 0.9) / 0.02))
+    assert float(found.value - found.score) == pytest.approx(100 * p.sum(), rel=1e-4)
+    assert max(float(found.risk), float(found.beyond)) < 1e-6
 
 
 def test_the_probability_is_the_mean_over_the_members() -> None:

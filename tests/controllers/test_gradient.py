@@ -135,6 +135,15 @@ def test_a_plan_acts_where_the_members_agree_that_it_beats_the_policy(
     assert (float(u[0]) > 0.2) == pushes
 
 
+def test_noise_is_as_large_at_each_decision_and_correlated_with_that_before() -> None:
+    """Covariance noise^2 c^|i - j| over the candidates."""
+    given: dict[str, Any] = {"horizon": 4, "samples": 4000, "noise": 0.2, "correlation": 0.8}
+    planner = GradientController(Cart(), Speed(), **given)
+    v = planner._drawn(planner.init(SPEC), jax.random.key(0)).v[..., 0]
+    apart = np.abs(np.subtract.outer(np.arange(4), np.arange(4)))
+    np.testing.assert_allclose(np.cov(np.asarray(v).T), 0.04 * 0.8**apart, atol=0.004)
+
+
 def test_the_tail_sees_what_comes_after_the_plan() -> None:
     """One decision ahead, speed pays; for ten more the policy has to brake at J's expense."""
 

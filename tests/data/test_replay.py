@@ -51,6 +51,20 @@ def test_the_size_in_bytes_is_known_before_allocation() -> None:
     assert replay.init(SPEC, 4).rows.nbytes == replay.nbytes(SPEC)
 
 
+def test_another_goal_pays_for_what_is_kept_by_actions_as_the_world_clips_them() -> None:
+    class Goal:
+        """r = 1 + u + x' - x, of the first entries."""
+
+        def reward_of(self, x: jax.Array, u: jax.Array, after: jax.Array) -> jax.Array:
+            """The reward []."""
+            return 1 + u[0] + after[0] - x[0]
+
+    replay, memory = filled(8, 2, 3)  # one row of four is empty; actions 0.5, 1.5, 100.5, ...
+    rows = replay.relabelled(memory, SPEC, Goal()).rows
+    np.testing.assert_array_equal(rows[:, :, 3], [[101.5, 102], [102, 102], [102, 102], [0, 0]])
+    np.testing.assert_array_equal(jnp.delete(rows, 3, -1), jnp.delete(memory.rows, 3, -1))
+
+
 @pytest.mark.parametrize("times", [3, 9])
 def test_decisions_are_recent_as_far_back_as_the_memory_reaches(times: int) -> None:
     """The newest was made 0 rounds ago; there is none before the oldest that is kept."""

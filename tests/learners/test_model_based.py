@@ -134,6 +134,31 @@ def test_how_likely_a_decision_is_reached() -> None:
     np.testing.assert_allclose(soft_return.reached(paths), [[1, 1], [0.5, 1], [0.1, 0]], atol=1e-6)
 
 
+def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_target_s() -> None:
+    """0.5 sum_i mean w (Q_i - y)^2 at two of three decisions, by loops."""
+    policy, critic, spec = TanhGaussian((8,)), EnsembleQ((8,)), Spec(obs=2, act=1, dt=1.0)
+    given = {"steps": 3, "value_steps": 2, "discount": DISCOUNT}
+    learner = ModelBased(policy, critic, PART, PART, **given)
+    first = learner.init(jax.random.key(3), spec).learner
+    first = first.replace(target=critic.init(jax.random.key(4), spec))
+
+    @jax.jit
+    def made(state: Any) -> tuple:
+        paths = learner.imagine(PARAMS._replace(policy=state.policy), START, KEY)
+        loss = learner._expanded(state, jnp.float32(ALPHA), paths, 1.0)[1][0]
+        last = critic.value(state.target, paths.x[-1], paths.u[-1])
+        return paths, loss, last, jax.vmap(critic.all, (None, 0, 0))(state.critic, *paths[:2])
+
+    paths, loss, value, q = jax.tree.map(np.asarray, made(first))
+    value, goals = value - ALPHA * paths.log_prob[3], {}
+    for t in (2, 1, 0):
+        goals[t] = paths.reward[t] + DISCOUNT * paths.continues[t] * value
+        value = goals[t] - ALPHA * paths.log_prob[t]
+    errors = [(q[0] - goals[0]) ** 2, paths.continues[0] * (q[1] - goals[1]) ** 2]
+    assert paths.continues[0].min() < 0.95
+    assert float(loss) == pytest.approx(0.5 * np.mean(errors, (0, 2)).sum(), rel=1e-4)
+
+
 @dataclass(frozen=True)
 class Staying:
     """One state, in which each decision pays 1 and the episode continues with a chance."""

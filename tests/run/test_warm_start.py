@@ -1,6 +1,7 @@
 """train run=DIR: a new run begins with what another one knows, as far as it is true there."""
 
 import shutil
+from types import SimpleNamespace
 
 import jax
 import numpy as np
@@ -9,9 +10,11 @@ from omegaconf import OmegaConf
 from tiny import call_train, contents, only_line, rows_of, run, summary_of
 
 from hybrid_rl import config, trained
+from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import start, together
 from hybrid_rl.run.store import Store
+from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from scripts import interrupt
 
@@ -156,6 +159,26 @@ def test_one_learner_begins_several(source):
         assert len(leaf) == 3
         assert np.array_equal(leaf[0], leaf[2])
     assert not np.array_equal(state.env.obs[0], state.env.obs[1])
+
+
+def test_learners_that_are_too_few_or_diverged_begin_nothing(source, monkeypatch):
+    two, three = (SimpleNamespace(num_seeds=number) for number in (2, 3))
+    assert start._numbers(two, two, source).tolist() == [0, 1]
+    with pytest.raises(UsageError, match=r"num_seeds=3: the run in run=.* has 2 learners"):
+        start._numbers(three, two, source)
+    meta = {"record": {"ends": [{"seed": 4}]}}
+    monkeypatch.setattr(start.checkpoint, "meta", lambda folder: meta)
+    with pytest.raises(UsageError, match="its learner of seed 4 diverged"):
+        begun(source)
+
+
+@pytest.mark.parametrize(
+    "given", [{"action_repeat": 2}, {"delay": 1}, {"action_noise": 0.1}, {"sensor_noise": 0.1}]
+)
+def test_another_reward_follows_only_from_what_the_world_itself_saw(given):
+    world = Pendulum()
+    assert start._goal(Episode(world)) is world
+    assert start._goal(Episode(world, **given)) is None
 
 
 def test_what_is_frozen_stays(source, warm):

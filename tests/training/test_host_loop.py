@@ -141,17 +141,68 @@ def test_copies_step_as_in_gymnasiums_vector():
         np.testing.assert_array_equal(got.following, obs)
 
 
+class Rising:
+    """u = 0.5, then 1.5, which is beyond the bounds."""
+
+    def init(self, spec: Spec) -> jax.Array:
+        return jnp.full(1, 0.5)
+
+    def act(self, params: Params, state: jax.Array, obs: jax.Array, key: jax.Array) -> tuple:
+        return state, state + 1, {}
+
+    def greedy(self) -> "Rising":
+        return self
+
+
 def test_a_trained_policy_acts_in_the_units_of_its_environment():
     """What `step` of the user's loop gets from it, or from its program, is what a run gave it."""
-    episode, modes = Episode(counting(), STEPS), {"full": ConstantController(0.5)}
+    episode, modes = Episode(counting(), STEPS), {"full": Rising()}
     trained = Trained("count", episode, modes, Params(), (0,), 0, ())
-    action = trained.policy()(np.ones(2))
-    copies = episode.env.copies([0], STEPS)
+    policy, copies = trained.policy(), episode.env.copies([0], STEPS)
     copies.reset()
-    assert action == copies.step(np.float32([[0.5]])).reward == 2.5  # it pays the action
     made = export.program(episode.spec, modes["full"], Params(), span=trained.span)
     state, key = np.zeros(made.in_avals[1].shape, np.uint32), np.zeros(2, np.uint32)
-    assert made.call(np.ones(2, np.float32), state, key)[0] == 2.5
+    for u, physical in ((0.5, 2.5), (1.5, 4.0)):
+        assert policy(np.ones(2)) == physical
+        assert copies.step(np.float32([[u]])).reward == physical  # it pays the action
+        action, state = made.call(np.ones(2, np.float32), state, key)
+        assert action == physical
+
+
+class Drawn(Count):
+    """The lengths of its episodes follow from the seed."""
+
+    def reset(self, seed: int | None = None, options: dict | None = None) -> tuple:
+        super().reset(seed=seed)
+        self.episode = int(self.np_random.integers(1, 4))
+        return self._seen(), {}
+
+
+def test_an_evaluation_pays_each_episode_until_its_own_end():
+    """Also where the others of the call go on."""
+    episode, keys = Episode(External(make=Drawn), 9), jax.random.split(jax.random.key(0), (2, 4))
+    evaluator = HostEvaluator(episode, ConstantController(0.5), Params(), keys)
+    seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
+    lengths = [1 + Drawn().reset(seed=seed)[0][0] for seed in seeds]
+    assert len(set(lengths)) > 1
+    np.testing.assert_allclose(
+        evaluator(Params(), keys)["return"].ravel(), np.float32(lengths) * 2.5
+    )
+
+
+@pytest.mark.parametrize("processes", [False, True])
+def test_repeats_of_an_action_end_with_the_episode_of_their_own_copy(processes):
+    """A copy beside others, whose episodes end between its repeats, makes all of its own."""
+    env, seeds, u = External(make=Drawn, processes=processes), [1, 2, 3, 4], np.zeros((4, 1))
+    whole, each = env.copies(seeds, 9, 3), [External(make=Drawn).copies([s], 9, 3) for s in seeds]
+    np.testing.assert_array_equal(whole.reset(), np.concatenate([one.reset() for one in each]))
+    rewards = []
+    for _ in range(3):
+        got, apart = whole.step(u), [one.step(u[:1]) for one in each]
+        jax.tree.map(lambda a, *b: np.testing.assert_array_equal(a, np.concatenate(b)), got, *apart)
+        rewards.append(got.reward)
+    whole.close()
+    assert set(np.ravel(rewards)) == {1, 2, 3}
 
 
 class Parts(Count):

@@ -1,6 +1,6 @@
 """A policy that goes on learning in the models alone; the model of a point is its world."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
@@ -89,9 +89,22 @@ def test_it_gains_in_the_world() -> None:
     assert now > before / 2
 
 
-def test_returns_in_the_model_are_those_of_the_world() -> None:
-    """The model is the world, and it has one member."""
-    part = Imagination(LEARNER, decisions=30, episodes=4)
+@dataclass(frozen=True)
+class Ending:
+    """Episodes that go on with a chance."""
+
+    chance: float
+
+    def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, Array]:
+        """No reward, and the logit of the end."""
+        return jnp.zeros(()), jnp.log(jnp.float32(1 / self.chance - 1))
+
+
+@pytest.mark.parametrize("chance", [1.0, 0.9])
+def test_returns_in_the_model_are_those_of_the_world(chance: float) -> None:
+    """The model is the world, and it has one member; what comes after an end pays nothing."""
+    reward = KnownReward(WORLD, Corner(), Ending(chance))
+    part = Imagination(replace(LEARNER, reward=reward), decisions=30, episodes=4)
     starts = jax.vmap(EPISODE.reset)(jax.random.split(jax.random.key(2), 4))
     rewards = []
     state = starts
@@ -99,8 +112,26 @@ def test_returns_in_the_model_are_those_of_the_world() -> None:
         u = jax.vmap(POLICY.mean, (None, 0))(PARAMS.policy, state.obs)
         state = jax.vmap(EPISODE.step)(state, u)
         rewards.append(state.reward)
-    wanted = np.sum(rewards, 0).mean()
+    wanted = (chance ** np.arange(30) @ np.array(rewards)).mean()
     np.testing.assert_allclose(part.returns(PARAMS, starts.obs), [wanted], rtol=1e-5)
+
+
+def test_a_walk_stays_where_the_model_knows_no_next_state() -> None:
+    """Learners get no start that is not finite."""
+
+    @dataclass(frozen=True)
+    class Lost(Drawn):
+        def draw(self, params: Any, x: Array, u: Array, noise: Array, key: Array) -> Array:
+            """NaN right of the middle."""
+            return jnp.where(x[:, :1] > 0, jnp.nan, super().draw(params, x, u, noise, key))
+
+    model: Any = Lost()
+    x = jnp.array([[0.5, 0.0, 0.0, 0.0], [-9.0, 0.0, 0.0, 0.0]])
+    part = Imagination(replace(LEARNER, model=model), walk=5)
+    states = np.asarray(part.walked(PARAMS, x, jax.random.key(0))).reshape(5, 2, -1)
+    np.testing.assert_array_equal(states[:, 0], np.tile(x[0], (5, 1)))
+    assert np.isfinite(states).all()
+    assert (states[1:, 1] != states[:-1, 1]).any(1).all()
 
 
 def test_at_first_the_critic_learns_alone() -> None:

@@ -1,6 +1,7 @@
 """The live window: its programs, its pushes; the page itself in Chromium."""
 
 import threading
+from dataclasses import replace
 from importlib.util import find_spec
 
 import jax
@@ -110,6 +111,8 @@ def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
     assert not one.compiling  # it is not asked for again
     assert one.cast.world.episode.delay == 2
     one.advance()
+    one._enter(replace(one.cast, actor=replace(one.cast.actor, begin=lambda: "no plan")))
+    assert one._control == "no plan"  # another one acts, who has a state of its own
 
 
 def test_a_quick_planner_has_a_quarter_of_the_candidates():
