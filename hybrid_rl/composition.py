@@ -268,11 +268,10 @@ def _refuse_idle(config: DictConfig, hydra: Any, roots: Sequence[str]) -> None:
         if file is None or group in config or hydra.mode == RunMode.MULTIRUN:  # of another job
             continue
         sets: Any = OmegaConf.to_container(OmegaConf.load(file), resolve=False)
-        listed = sets.pop("defaults", ())
-        if any(isinstance(each, str) and each != "_self_" for each in listed):
-            continue  # it begins with another file
-        named = [key for each in listed if isinstance(each, dict) for key in each]
-        keys = {*sets, *(re.split("[/@ ]", key)[-1] for key in named)}
+        listed = [each for each in sets.pop("defaults", ()) if each != "_self_"]
+        if any(isinstance(each, str) for each in listed):  # it begins with another file
+            continue
+        keys = {*sets, *(re.split("[/@ ]", key)[-1] for each in listed for key in each)}
         if keys.isdisjoint(key.partition(".")[0] for key in read):
             raise UsageError(f"{text}: {config.algo} uses nothing of what it sets")
 
