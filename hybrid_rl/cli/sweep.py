@@ -233,7 +233,7 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             complete.append(list(overrides))
             continue
         if config.run_dir is None:
-            folder = new_folder(configuration.resolved(config), f"_{number}")
+            folder = new_folder(configuration.resolve(config, overrides), f"_{number}")
         else:
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")
