@@ -257,7 +257,7 @@ def test_an_error_in_the_code_of_a_user_is_one_line_that_names_it(tmp_path, monk
 
 def test_a_fault_of_ours_is_a_traceback_without_frames_of_hydra(tmp_path, monkeypatch, capfd):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(config, "resolved", lambda _: None)
+    monkeypatch.setattr(config, "resolve", lambda *_: None)
     assert call_train("task=pendulum", "algo=sac") == 1
     printed = capfd.readouterr().err
     assert printed.startswith("Traceback (most recent call last):")
