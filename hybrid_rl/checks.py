@@ -12,6 +12,8 @@ import jax
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
+from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, printable, relative
@@ -30,6 +32,7 @@ COUNTS = (
     "log_every",
 )
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
+PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 STEPS = 2**31  # decisions, fewer of which are counted
 SEEDS = 2**32  # distinct seeds of JAX's generator
 OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
@@ -106,6 +109,24 @@ def _check_planned(config: DictConfig) -> None:
     if isinstance(kind, type) and issubclass(kind, Unstepped) and planned in str(config):
         line = "plans on the true dynamics, and this task steps outside JAX; choose a method that"
         raise UsageError(f"task={config.task}: {config.algo} {line} learns its model, or sac")
+
+
+def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
+    """The time limit of an environment on the host [decisions], if `given` has none.
+
+    Raises:
+        UsageError: if it has none, or for a disturbance, which only a wrapper can add there.
+    """
+    for key in ("delay", "sensor_noise", "action_noise", *PAID):
+        if given.get(key):
+            line = "is for the environments in JAX; put a Gymnasium wrapper around this one"
+            where = key if key in PAID else f"episode.{key}={given[key]}"
+            raise UsageError(f"{where}: {line}")
+    if given.get("steps") is not None:
+        return {}
+    if isinstance(env, Robot) or env.known.steps is None:
+        raise UsageError(f"episode.steps: {env.name} has no time limit; give one, in decisions")
+    return {"steps": -(-env.known.steps // given.get("action_repeat", 1))}
 
 
 def check_owners(parts: Any, owned: Collection[str], spec: Spec) -> None:

@@ -3,7 +3,7 @@
 import re
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import checks, renamed
 from hybrid_rl import overrides as overriding
-from hybrid_rl.checks import COUNTS, SECTIONS, check, check_fields, check_kinds, check_owners, whole
+from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds, check_owners
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
 from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
@@ -30,7 +30,6 @@ from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 
-PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 READ = (  # the keys that a run reads, and with them all keys that they refer to
     *(*COUNTS, *SECTIONS, *PAID, "expert", "task", "algo", "seed", "random_steps", "pretrain"),
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
@@ -79,9 +78,8 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
     more = [] if config_dir is None else [overriding.search_path(config_dir)]
     overrides = overriding.allow_sweep_keys(overrides)
     try:
-        if GlobalHydra.instance().is_initialized():
-            return _composed(overrides, more)
-        with initialize_config_dir(str(CONF), version_base="1.3"):
+        initialised = GlobalHydra.instance().is_initialized()
+        with nullcontext() if initialised else initialize_config_dir(str(CONF), version_base="1.3"):
             return _composed(overrides, more)
     except (HydraException, OmegaConfBaseException, yaml.YAMLError) as error:
         raise UsageError(explain(error)) from error
@@ -89,15 +87,29 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
 
 def _composed(overrides: Sequence[str], more: list[str]) -> DictConfig:
     """The configuration with its interpolations; more: overrides of Hydra's own keys."""
-    overriding.refuse_new_keys(overrides, more)
     config = compose("train", [*more, *overrides], return_hydra_config=True)
-    hydra = config.hydra
-    with open_dict(config):
-        del config["hydra"]
-    if note := check_task(config, hydra, READ):
+    for note in check_overrides([(config, take_hydra(config))]):
         warnings.warn(note, stacklevel=4)
-    overriding.refuse_unused([config], overrides, READ)
     return config
+
+
+def take_hydra(config: DictConfig) -> DictConfig:
+    """Hydra's own part of what it composed, which `config` then lacks."""
+    with open_dict(config):
+        return config.pop("hydra")
+
+
+def check_overrides(jobs: Sequence[tuple[DictConfig, Any]]) -> list[str]:
+    """Check what is composed for each job, with Hydra's own part, by what the user typed; notes.
+
+    Raises:
+        UsageError: for a key that is not there or not used, and as `check_task`.
+    """
+    overriding.refuse_new_keys(jobs[0][1])
+    notes = [check_task(config, hydra, READ) for config, hydra in jobs]
+    typed = [text for _, hydra in jobs for text in overriding.of_job(hydra)]
+    overriding.refuse_unused([config for config, _ in jobs], typed, READ)
+    return [note for note in notes if note]
 
 
 def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
@@ -135,7 +147,7 @@ def build(config: DictConfig) -> Run:
     check(config)
     rounds, kept = -(-config.total_steps // config.num_envs), config.get("begun", {})
     remembered = kept.get("remembered", 0)  # decisions of each environment
-    whole("replay.capacity", config.replay.capacity)
+    checks.whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
         episode, notes, controllers = _acting(parts)
@@ -198,26 +210,8 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     given = _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}
     if isinstance(env, External | Robot):
-        given |= _on_host(env, given)
+        given |= checks.time_limit(env, given)
     return Episode(env, **given), notes
-
-
-def _on_host(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
-    """The time limit of an environment on the host [decisions], if `given` has none.
-
-    Raises:
-        UsageError: if it has none, or for a disturbance, which only a wrapper can add there.
-    """
-    for key in ("delay", "sensor_noise", "action_noise", *PAID):
-        if given.get(key):
-            line = "is for the environments in JAX; put a Gymnasium wrapper around this one"
-            where = key if key in PAID else f"episode.{key}={given[key]}"
-            raise UsageError(f"{where}: {line}")
-    if given.get("steps") is not None:
-        return {}
-    if isinstance(env, Robot) or env.known.steps is None:
-        raise UsageError(f"episode.steps: {env.name} has no time limit; give one, in decisions")
-    return {"steps": -(-env.known.steps // given.get("action_repeat", 1))}
 
 
 def expert(config: DictConfig) -> Controller:

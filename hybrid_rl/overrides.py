@@ -215,13 +215,10 @@ def search_path(config_dir: str | Path) -> str:
     return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
 
 
-def refuse_new_keys(overrides: Sequence[str], more: Sequence[str]) -> None:
-    """Raise UsageError for `+key=value` if conf/ has no such key, as nothing would read it.
-
-    more: overrides of Hydra's own keys, of which the search path matters here.
-    """
-    more = [text for text in more if text.startswith("hydra.searchpath=")]
-    overrides = [text for text in overrides if not is_swept(text)]
+def refuse_new_keys(hydra: Any) -> None:
+    """Raise UsageError for `+key=value` if conf/ has no such key, as nothing would read it."""
+    more = [text for text in hydra.overrides.hydra if text.startswith("hydra.searchpath=")]
+    overrides = [text for text in of_job(hydra) if not is_swept(text)]
     added = [text.lstrip("+").partition("=")[0] for text in overrides if text.startswith("+")]
     if not added:
         return

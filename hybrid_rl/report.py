@@ -262,14 +262,7 @@ def _machine(runs: Sequence[RunFolder]) -> str:
 def _folders(given: str) -> list[RunFolder]:
     """The run folders that run= names."""
     each = [given] if Path(given).exists() else given.split(",")
-    return [RunFolder(path) for path in dict.fromkeys(p for one in each for p in _found(one))]
-
-
-def _found(given: str) -> list[Path]:
-    try:
-        return find(given)
-    except UsageError as error:
-        raise UsageError(f"run={str(error).removeprefix('runs=')}") from error
+    return [RunFolder(path) for path in dict.fromkeys(p for one in each for p in find(one, "run"))]
 
 
 def main() -> None:

@@ -12,7 +12,6 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-import fcntl
 import math
 import os
 import signal
@@ -30,6 +29,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.lock import lock
 from hybrid_rl.trained import build_run, load
 from hybrid_rl.training.actor import LOST, Actor
 
@@ -84,11 +84,7 @@ def main() -> None:
     files = folder / "robot"
     if not files.is_dir():
         raise UsageError(f"run={folder}: holds no run of task=robot")
-    with open(files / "lock", "w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise UsageError(f"run={folder}: another process moves the robot") from error
+    with lock(files, "run"):
         (files / "stop").unlink(missing_ok=True)
         _move(
             _learning(folder) if given["learning"] else _trained(folder, given["mode"]),

@@ -96,7 +96,7 @@ MUTANTS = {
     ),
     "a misspelt override is ignored": Mutant(
         "hybrid_rl/config.py",
-        "    overriding.refuse_unused([config], overrides, READ)\n",
+        "    overriding.refuse_unused([config for config, _ in jobs], typed, READ)\n",
         "",
         "tests/cli tests/test_errors.py",
     ),

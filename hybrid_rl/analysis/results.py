@@ -145,8 +145,11 @@ def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:
     return {name: value for name, value in settings.items() if name.endswith(ends)}
 
 
-def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
-    """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob."""
+def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Path]:
+    """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob.
+
+    key: the argument that named them.
+    """
     if isinstance(runs, (str, Path)):
         path = Path(runs).expanduser()
         matched = [path] if path.exists() else glob.glob(str(path), recursive=True)
@@ -156,11 +159,11 @@ def find(runs: str | Path | Iterable[str | Path]) -> list[Path]:
     files = sorted({path for match in matches for path in match.glob("**/metrics.jsonl")})
     if not files:
         several = '; several need a pattern: "runs/TASK/*/*"' if "," in str(runs) else ""
-        raise UsageError(f"runs={runs}: no run there (a folder that holds metrics.jsonl){several}")
+        raise UsageError(f"{key}={runs}: no run there (a folder that holds metrics.jsonl){several}")
     if begun := [path.parent for path in files if path.stat().st_size]:
         return begun  # a start that failed leaves an empty file
     more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-    raise UsageError(f"runs={runs}: {files[0]}{more}: no row of metrics yet")
+    raise UsageError(f"{key}={runs}: {files[0]}{more}: no row of metrics yet")
 
 
 def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:

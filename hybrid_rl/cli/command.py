@@ -20,7 +20,7 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.composition import CONF, check_choices, check_task, explain, file, options
+from hybrid_rl.composition import CONF, check_choices, explain, file, options
 from hybrid_rl.errors import UsageError, printable, user_line
 from hybrid_rl.overrides import LACKING, raw_values, select
 from hybrid_rl.run import inherited
@@ -67,10 +67,8 @@ def hydra_main(job: Callable[..., Any]) -> None:
         if (launcher := HydraConfig.get().runtime.choices["hydra/launcher"]) != "basic":
             raise UsageError(f"hydra/launcher={launcher}: sends the jobs of a sweep; add -m")
         with as_typed(typed):
-            if note := check_task(config, HydraConfig.get(), configuration.READ):
+            for note in configuration.check_overrides([(config, HydraConfig.get())]):
                 print(note, flush=True)
-            overrides.refuse_new_keys(typed, HydraConfig.get().overrides.hydra)
-            overrides.refuse_unused([config], typed, configuration.READ)
             job(config)
 
     def alone(config: DictConfig, *more: Any) -> Any:

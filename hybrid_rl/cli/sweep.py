@@ -18,16 +18,16 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
-from omegaconf import DictConfig, OmegaConf, open_dict
+from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.submitted import Result, require_slurm, watch
-from hybrid_rl.composition import check_task, concerns, explain
+from hybrid_rl.composition import concerns, explain
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import of_job, parse, quoted, refuse_new_keys, refuse_unused
+from hybrid_rl.overrides import of_job, parse, quoted
 from hybrid_rl.run import together
 from hybrid_rl.run.folder import new_folder
 from hybrid_rl.run.jax_settings import prepare
@@ -106,7 +106,7 @@ class Sweeper(BasicSweeper):
         fit, notes = self._fitting(jobs)
         jobs, configs = [*fit], [*fit.values()]
         self.task.labels = labels(jobs)
-        jobs = _folders(jobs, self._checked(jobs, configs, arguments))
+        jobs = _folders(jobs, self._checked(jobs, configs))
         print(*notes, sep="", end="", flush=True)
         folder = Path(str(self.config.hydra.sweep.dir))
         folder.mkdir(parents=True, exist_ok=True)
@@ -172,21 +172,16 @@ class Sweeper(BasicSweeper):
             raise UsageError(f"{explain(error)} ({self._called(number)})") from error
 
     def _checked(
-        self, jobs: Sequence[Sequence[str]], configs: list[DictConfig], typed: Sequence[str]
+        self, jobs: Sequence[Sequence[str]], configs: list[DictConfig]
     ) -> list[DictConfig]:
         """The configurations without Hydra's own, after all checks that need no compilation.
 
         Jobs that run elsewhere are built with the physics that needs no GPU here.
         """
         assert self.config is not None
-        refuse_new_keys(jobs[0], self.config.hydra.overrides.hydra)
-        for config in configs:
-            hydra = config.hydra
-            with open_dict(config):
-                del config["hydra"]
-            if note := check_task(config, hydra, configuration.READ):
-                print(note, flush=True)
-        refuse_unused(configs, typed, configuration.READ)
+        composed = [(config, configuration.take_hydra(config)) for config in configs]
+        for note in configuration.check_overrides(composed):
+            print(note, flush=True)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
             if not here(self.config.hydra) and config.physics in ACCELERATED:
                 config = config.copy()

@@ -67,7 +67,7 @@ class Tuner(sweep.Sweeper):
         corners = _corners(fixed, space)
         self.task.labels = sweep.labels(corners)
         composed = [self._composed(*each) for each in enumerate(corners)]
-        config = self._checked(corners, composed, arguments)[0]
+        config = self._checked(corners, composed)[0]
         if not [mode for mode in config.eval_modes if mode in config.controllers]:
             raise UsageError("eval_modes=[]: a study needs evaluations")
         folder = Path(str(config.run_dir or self.config.hydra.sweep.dir))

@@ -26,7 +26,6 @@ from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.overrides import quoted
-from hybrid_rl.renamed import PRECISION
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run.anchors import as_yaml
 from hybrid_rl.run.integrity import write_text
@@ -282,6 +281,4 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
         raise UsageError(f"{path}: {error}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
-    if "matmul_precision" in config:  # of an earlier development version
-        config.precision = PRECISION.get(config.pop("matmul_precision"), "tf32")
     return config

@@ -30,7 +30,7 @@ from hybrid_rl.run.together import Member
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "logger")
-OF_A_SESSION += ("compile_cache", "precision", "matmul_precision")
+OF_A_SESSION += ("compile_cache", "precision")
 
 ONLY = "with resume only total_steps and precision can be changed"
 SLOWER = "precision=bf16: slower than float32 on a CPU (0.5 to 0.7 of its speed); it is for GPUs"
@@ -222,8 +222,8 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
 
 def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
-    now = written(config)  # an older version wrote no settings
-    then = checkpoint.meta(run_dir / "checkpoints").get("settings") or dict(now)
+    now = written(config)
+    then = checkpoint.meta(run_dir / "checkpoints").get("settings", now)  # none may be readable
     for key in OF_A_SESSION:
         now.pop(key, None)
         then.pop(key, None)

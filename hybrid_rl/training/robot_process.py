@@ -28,7 +28,7 @@ class RobotProcess:
         """Whether a process owns the robot: a child of this one, or of a learner before it."""
         if self.child is not None and self.child.poll() is None:
             return True
-        with open(self.folder / "lock", "w") as file:
+        with open(self.folder / "lock", "a") as file:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError:

@@ -1,5 +1,6 @@
 """A run on a stand-in robot in processes of their own: it learns, goes on, and acts."""
 
+import os
 import re
 import socket
 import subprocess
@@ -7,15 +8,18 @@ import sys
 
 import numpy as np
 import pytest
-from tiny import call
+from tiny import call, only_line
 
 import hybrid_rl
-from hybrid_rl import evaluate
+from hybrid_rl import evaluate, robot
 from hybrid_rl.cli import command
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.doctor.__main__ import CHECKS, examine
+from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
+from hybrid_rl.run.lock import lock
+from hybrid_rl.training.robot_process import RobotProcess
 from hybrid_rl.types import Spec
 
 pytestmark = pytest.mark.turns(3)
@@ -68,3 +72,15 @@ def test_a_run_on_a_robot(port, tmp_path, capfd):
     printed = capfd.readouterr()
     assert printed.err == f"hybrid_rl: hybrid_rl.envs.adapters.stand_in_Cartpole: {ALONE}\n"
     assert "compiling" not in printed.out
+
+
+def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):
+    """Another one is refused with its number, also after a learner has looked for it."""
+    monkeypatch.setattr(robot, "_real_time", lambda: None)
+    files = tmp_path / "robot"
+    files.mkdir()
+    with lock(files, "run"):
+        assert RobotProcess(Robot(Cartpole), files).alive()
+        assert call(lambda: command.run(robot.main), f"run={tmp_path}") == 2
+        assert f"is being written by process {os.getpid()} on" in only_line(capfd)
+    assert not RobotProcess(Robot(Cartpole), files).alive()
