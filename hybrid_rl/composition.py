@@ -114,8 +114,7 @@ def explain(error: Exception) -> str:
         problem = problem.partition(" expecting {")[0]  # of kinds of signs
         return f"{error.override}: {problem}; write key=value, text in quotes"
     if inner := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):
-        what = f"is not for this method, which has no {inner[3]} to change"
-        return f"{inner[1]}={inner[2]}: {what}"
+        return f"{inner[1]}={inner[2]}: is not for this method, which has no {inner[3]} to change"
     if several := re.match(r"Ambiguous value for argument '([^']+)'", text):
         return f"{several[1]}: several values are a sweep, which needs -m; a list is key=[a,b]"
     if isinstance(error, InterpolationKeyError):
@@ -282,8 +281,7 @@ def _root_keys(hydra: Any, without: Path) -> set[str]:
     files = {file for source in (*sources, THESIS) for file in source.rglob("*.yaml")} - {without}
     texts = (file.read_text(encoding="utf-8", errors="replace") for file in files)
     root = (CONF / "train.yaml").read_text(encoding="utf-8")
-    spread = (root, *(text for text in texts if GLOBAL in text))
-    return {key for text in spread for key in ROOT_KEY.findall(text)}
+    return set(ROOT_KEY.findall("\n".join([root, *(text for text in texts if GLOBAL in text)])))
 
 
 def _changed(raw: dict[str, Any], own: dict[str, Any], hydra: Any, name: str) -> str | None:
