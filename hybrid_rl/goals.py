@@ -46,7 +46,7 @@ from hybrid_rl.parts import part_class
 from hybrid_rl.trained import Trained, load_named
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
-from hybrid_rl.training.loop import COMPILER_OPTIONS
+from hybrid_rl.training.loop import compile_lowered
 from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
@@ -152,8 +152,7 @@ def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
 def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:
     """What `one` gives for the parameters and the key of each learner: [S, ...]."""
     keys = jnp.stack([jax.random.fold_in(jax.random.key(seed), 0x1DEA) for seed in trained.seeds])
-    options = COMPILER_OPTIONS.get(jax.default_backend())
-    return jax.jit(jax.vmap(one), compiler_options=options)(trained.params, keys)
+    return compile_lowered(jax.jit(jax.vmap(one)).lower(trained.params, keys))(trained.params, keys)
 
 
 def _taught(trained: Trained, before: Imagination) -> Trained:

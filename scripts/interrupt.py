@@ -26,7 +26,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jax
 import numpy as np
 from omegaconf import OmegaConf
 
@@ -171,7 +170,7 @@ def _state(run: Path) -> tuple[int, dict[str, np.ndarray]]:
     """(step, name -> array) of the newest checkpoint."""
     config: Any = OmegaConf.load(run / "config.yaml")
     built = configuration.build(config)
-    like = jax.eval_shape(Loop(built.agent, built.seeds, 1).init)
+    like = Loop(built.agent, built.seeds, 1).shapes()
     step, state, *_ = checkpoint.restore(run / "checkpoints", like)
     return step, leaves.flatten(state)[0]
 

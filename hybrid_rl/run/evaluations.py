@@ -13,7 +13,7 @@ from jax import Array
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.schedule import Pace
 from hybrid_rl.training.host_loop import HostEvaluator, HostLoop
-from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop
+from hybrid_rl.training.loop import REPLICATED, SEEDS, Loop, compile_lowered
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys, scores
 from hybrid_rl.types import Params
 
@@ -63,10 +63,11 @@ class Evaluator:
         self.steps, self.numbers = loop.agent.episode.steps, loop.numbers
         first, more = (partial(_one, f, loop, controller, mode) for f in (begin, advance))
         program = loop.shard(jax.vmap(first), SEEDS, SEEDS)
-        self._begin = program.lower(self.numbers, keys).compile()
+        self._begin = compile_lowered(program.lower(self.numbers, keys))
         takes, carry = (SEEDS, SEEDS, SEEDS, REPLICATED), self._begin(self.numbers, keys)
         program = loop.shard(jax.vmap(more, (0, 0, 0, None)), takes, SEEDS, donate_argnums=2)
-        self._advance = program.lower(self.numbers, params, carry, jnp.int32(0)).compile()
+        lowered = program.lower(self.numbers, params, carry, jnp.int32(0))
+        self._advance = compile_lowered(lowered)
 
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[], bool]

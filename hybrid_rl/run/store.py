@@ -50,7 +50,7 @@ def read_part(
         CheckpointError: if none is sound.
         MisfitError: if it is of another agent.
     """
-    like = jax.eval_shape(Loop(agent, seeds, 1).init)
+    like = Loop(agent, seeds, 1).shapes()
     others = {field.name: None for field in fields(like) if field.name != part}
     step, state, _, notes = checkpoint.restore(folder, like.replace(**others), step)
     return step, state, notes
@@ -127,7 +127,7 @@ class Store:
 
     def _like(self) -> Any:
         """Shapes of the state [S, ...]."""
-        return jax.eval_shape(self.loop.init)
+        return self.loop.shapes()
 
     def _read(self, like: Any) -> Any:
         """A part of the newest checkpoint."""

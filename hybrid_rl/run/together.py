@@ -131,7 +131,7 @@ def _check_traced(axis: Axis, members: Sequence[Member], run: Run) -> None:
 
     def trace(axis: Axis) -> None:
         loop = loop_of(run.agent, run.seeds * axis.count, 1, axis=axis)
-        state = jax.eval_shape(loop.init)
+        state = loop.shapes()
         one = jax.tree.map(lambda leaf: jax.ShapeDtypeStruct(leaf.shape[1:], leaf.dtype), state)
         jax.eval_shape(loop.step, one, jnp.int32(0))
         for mode, controller in run.controllers.items():

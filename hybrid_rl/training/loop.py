@@ -4,6 +4,7 @@ The learners are sharded over the devices of the host and do not communicate. Wi
 of numbers there are those of all seeds for each set, one after another.
 """
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -21,9 +22,14 @@ from hybrid_rl.training.axis import Axis
 from hybrid_rl.types import Params
 
 # On a CPU, YNNPACK, XLA's default, is slower than Eigen in matrix products and than XLA's own loops
-# in the sums of layer norms, so it gets convolutions only, of which there are none.
-_YNNPACK = "LIBRARY_FUSION_TYPE_INDIVIDUAL_CONVOLUTION"
-COMPILER_OPTIONS: dict[str, Any] = {"cpu": {"xla_cpu_experimental_ynn_fusion_type": _YNNPACK}}
+# in the sums of layer norms, so it gets convolutions only, of which there are none. LLVM's higher
+# levels take a quarter to a half longer, for programs that are no faster.
+COMPILER_OPTIONS: dict[str, Any] = {
+    "cpu": {
+        "xla_cpu_experimental_ynn_fusion_type": "LIBRARY_FUSION_TYPE_INDIVIDUAL_CONVOLUTION",
+        "xla_backend_optimization_level": 1,
+    }
+}
 
 SEEDS = PartitionSpec("seeds")
 METRICS = PartitionSpec(None, "seeds")
@@ -98,12 +104,21 @@ class Loop:
 
         They are placed as those of a checkpoint are, so that a resumed run has the same program.
         """
+        program, *given = self._first()
+        return self.on_devices(compile_lowered(program.lower(*given))(*given))
+
+    def shapes(self) -> AgentState:
+        """The shapes of the states [S, ...]."""
+        return jax.eval_shape(*self._first())
+
+    def _first(self) -> tuple[Any, Array, dict[str, Array]]:
+        """The program of `init`, and its arguments."""
         keys = jnp.stack([jax.random.key(seed) for seed in self.seeds])
 
         def first(key: Array, numbers: dict[str, Array]) -> AgentState:
             return self._of(numbers).init(key).replace(numbers=numbers)
 
-        return self.on_devices(self.shard(jax.vmap(first), SEEDS, SEEDS)(keys, self.numbers))
+        return self.shard(jax.vmap(first), SEEDS, SEEDS), keys, self.numbers
 
     def params(self, state: AgentState) -> Params:
         """The parameters [S, ...] of all learners."""
@@ -134,14 +149,7 @@ class Loop:
     def compile_trace(self, traced: Any) -> Any:
         """The compiled program of a trace."""
         began = perf_counter()
-        lowered = traced.lower()
-        try:
-            compiled = lowered.compile(COMPILER_OPTIONS.get(jax.default_backend()))
-        except jax.errors.JaxRuntimeError as error:
-            lacks = "No such compile option", "not a valid enum value"  # of another release of XLA
-            if not any(line in str(error) for line in lacks):
-                raise
-            compiled = lowered.compile()
+        compiled = compile_lowered(traced.lower())
         self.compile_s += perf_counter() - began
         return compiled
 
@@ -174,6 +182,19 @@ class Loop:
             name: jax.ShapeDtypeStruct((self.stride, *metric.shape), metric.dtype)
             for name, metric in metrics.items()
         }
+
+
+def compile_lowered(lowered: Any) -> Any:
+    """The compiled program, with COMPILER_OPTIONS where XLA_FLAGS do not name them."""
+    flags = os.environ.get("XLA_FLAGS", "")
+    options = COMPILER_OPTIONS.get(jax.default_backend(), {})
+    try:
+        return lowered.compile({key: options[key] for key in options if key not in flags})
+    except jax.errors.JaxRuntimeError as error:
+        lacks = "No such compile option", "not a valid enum value"  # of another release of XLA
+        if not any(line in str(error) for line in lacks):
+            raise
+        return lowered.compile()
 
 
 def put(rows: dict[str, Array], metrics: dict[str, Array], i: Array) -> dict[str, Array]:

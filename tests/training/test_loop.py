@@ -5,10 +5,11 @@ import re
 from collections import Counter
 
 import jax
+import pytest
 from tiny import TINY
 
 from hybrid_rl import config
-from hybrid_rl.training.loop import Loop
+from hybrid_rl.training.loop import COMPILER_OPTIONS, Loop, compile_lowered
 
 # An instruction of a compiled program: "%name = f32[2,211,1,10]{3,2,1,0} copy(...".
 INSTRUCTION = re.compile(r"(?m)^\s*(?:ROOT )?%?[\w.-]+ = (\w+)\[([\d,]*)\]\S* ([\w-]+)\(")
@@ -33,7 +34,7 @@ def test_the_replay_memory_is_never_copied():
     capacity = ["total_steps=20011", "replay.capacity=20011"]  # larger than any other array
     run = config.build(config.load([*TINY, "algo=sac", "num_seeds=2", *capacity]))
     loop = Loop(run.agent, run.seeds, stride=10)
-    rows = jax.eval_shape(loop.init).memory.rows
+    rows = loop.shapes().memory.rows
     program = loop.compile(loop.init())
     counts = operations(program.as_text(), "f32", rows.size)
     assert sum(counts[name] for name in WRITES) == 1
@@ -50,3 +51,23 @@ def test_a_state_from_a_checkpoint_has_the_same_program():
     placed = loop.on_devices(host)
     one, other = (loop.trace(state).lower().as_text() for state in (fresh, placed))
     assert one == other
+
+
+@pytest.mark.parametrize("lacks", [False, True])
+def test_xla_flags_and_other_releases_of_xla_come_before_our_options(monkeypatch, lacks):
+    given = []
+
+    class Lowered:
+        def compile(self, options=None):
+            given.append(options)
+            if options and lacks:
+                raise jax.errors.JaxRuntimeError("No such compile option: 'xla_cpu_of_another'")
+            return "compiled"
+
+    ours = COMPILER_OPTIONS["cpu"]
+    monkeypatch.setenv("XLA_FLAGS", "")
+    assert compile_lowered(Lowered()) == "compiled"
+    assert given == ([ours, None] if lacks else [ours])
+    monkeypatch.setenv("XLA_FLAGS", " ".join(f"--{key}=0" for key in ours))
+    assert compile_lowered(Lowered()) == "compiled"
+    assert given[-1] == {}
