@@ -242,7 +242,7 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
     if lost := [key for key in own if key not in read and key not in _root_keys(hydra, file)]:
         close = overrides.closest_hint(lost[0], [*read, *_root_keys(hydra, file)])
         raise UsageError(f"{name}: {lost[0]}: unknown key, which nothing reads{close}")
-    return _changed(raw, own, hydra, name)
+    return _changed(config, own, hydra, name)
 
 
 def _check_experiment(config: DictConfig, hydra: Any) -> None:
@@ -284,15 +284,16 @@ def _root_keys(hydra: Any, without: Path) -> set[str]:
     return set(ROOT_KEY.findall("\n".join([root, *(text for text in texts if GLOBAL in text)])))
 
 
-def _changed(raw: dict[str, Any], own: dict[str, Any], hydra: Any, name: str) -> str | None:
+def _changed(config: DictConfig, own: dict[str, Any], hydra: Any, name: str) -> str | None:
     """The line about values of a task file that `settings` changed; None if there are none."""
-    settings, typed = hydra.runtime.choices.get("settings"), overrides.of_job(hydra)
+    settings, raw = hydra.runtime.choices.get("settings"), overrides.raw_values(config)
+    typed = overrides.typed_values(overrides.of_job(hydra))
     changes = [
-        (key, value, overrides.select(raw, key))
-        for key, value in overrides.reachable_keys(own, own).items()
-        if not isinstance(value, dict) and key not in overrides.typed_values(typed)
+        (key, mine, OmegaConf.select(config, key))
+        for key, mine in overrides.reachable_keys(own, own).items()
+        if not isinstance(mine, dict) and key not in typed
+        if mine not in (overrides.select(raw, key), overrides.LACKING)
     ]
-    changes = [each for each in changes if each[1] not in (each[2], overrides.LACKING)]
     if settings is None or not changes:
         return None
     listed = ", ".join(f"{key} {mine} -> {now}" for key, mine, now in changes)

@@ -143,7 +143,7 @@ def test_settings_do_not_change_a_task_silently(folder, capfd):
     """What is typed is not listed; nothing is, if nothing changes."""
     write(folder)
     line = (
-        "settings=light changes what my_conf/task/broken.yaml says: random_steps 10 -> 5000, "
+        "settings=light changes what my_conf/task/broken.yaml says: random_steps 10 -> 1000, "
         "eval_every 50 -> 3000, eval_episodes 1 -> 5, checkpoint_every 50 -> 10000; to keep that, "
         "add random_steps=10 eval_every=50 eval_episodes=1 checkpoint_every=50"
     )
