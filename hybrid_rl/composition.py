@@ -287,11 +287,10 @@ def _root_keys(hydra: Any, without: Path) -> set[str]:
 def _changed(config: DictConfig, own: dict[str, Any], hydra: Any, name: str) -> str | None:
     """The line about values of a task file that `settings` changed; None if there are none."""
     settings, raw = hydra.runtime.choices.get("settings"), overrides.raw_values(config)
-    typed = overrides.typed_values(overrides.of_job(hydra))
     changes = [
         (key, mine, OmegaConf.select(config, key))
         for key, mine in overrides.reachable_keys(own, own).items()
-        if not isinstance(mine, dict) and key not in typed
+        if not isinstance(mine, dict) and key not in overrides.typed_values(overrides.of_job(hydra))
         if mine not in (overrides.select(raw, key), overrides.LACKING)
     ]
     if settings is None or not changes:
