@@ -145,7 +145,9 @@ class Copies:
         """End all processes after one of them; how that one ended."""
         if (vector := vars(self).pop("_vector", None)) is None:
             return "a process did not begin"
-        wait([process.sentinel for process in vector.processes], timeout=1)
+        ended = wait([process.sentinel for process in vector.processes], timeout=1)
+        for each in (each for each in vector.processes if each.sentinel in ended):
+            each.join(timeout=1)  # the sentinel is closed a moment before there is an exit code
         codes = [each.exitcode for each in vector.processes if each.exitcode is not None]
         for process in vector.processes:
             process.terminate()
