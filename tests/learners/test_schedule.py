@@ -11,7 +11,7 @@ from small import load
 from hybrid_rl.config import build
 from hybrid_rl.schedules.linear import LinearDecay
 
-pytestmark = pytest.mark.turns(1)
+pytestmark = pytest.mark.turns(3)
 
 METHODS = ("sac", "ddpg", "flash_sac", "hybrid_stochastic")  # the last one learns models, too
 
