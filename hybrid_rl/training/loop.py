@@ -23,7 +23,7 @@ from hybrid_rl.types import Params
 
 # On a CPU, YNNPACK, XLA's default, is slower than Eigen in matrix products and than XLA's own loops
 # in the sums of layer norms, so it gets convolutions only, of which there are none. LLVM's higher
-# levels take up to a half longer, for programs that are no faster.
+# levels take up to 60% longer, for programs that are no faster.
 COMPILER_OPTIONS: dict[str, Any] = {
     "cpu": {
         "xla_cpu_experimental_ynn_fusion_type": "LIBRARY_FUSION_TYPE_INDIVIDUAL_CONVOLUTION",
