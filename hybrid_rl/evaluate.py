@@ -65,7 +65,7 @@ ARGUMENTS = (
     POLICY,
     *GOAL,
     CONFIG_DIR,
-    Argument("precision", "", "of networks; empty: that of the training", one_of("", *PRECISIONS)),
+    Argument("precision", "", "of networks; empty: as in training", one_of("", *PRECISIONS)),
     Argument("episodes", 10, "episodes of each seed", whole()),
     Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
 )

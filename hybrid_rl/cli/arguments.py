@@ -105,14 +105,14 @@ class Argument:
 POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file")
 
 GOAL = (  # of commands that show a trained run in another world or on another goal
-    Argument("reward", "", "another reward, of conf/reward; empty: that of the training"),
-    Argument("constraint", "", "a constraint, of conf/constraint; empty: that of the training"),
-    Argument("planner", "", "another, of conf/controller; empty: gradient for those two"),
+    Argument("reward", "", "another reward, of conf/reward; empty: as in training"),
+    Argument("constraint", "", "a constraint, of conf/constraint; empty: as in training"),
+    Argument("planner", "", "of conf/controller; empty: gradient with reward= or constraint=, else as in training"),
     Argument("imagine", "", "policy: it learns the goal in the models, before anything acts"),
 )
 CHANGES = {
-    **{name: f"another value of a key of its {name}" for name in ("env", "episode")},
-    **{each.name: f"a key of the {each.name} that acts" for each in GOAL},
+    **{name: f"another value for a key of the {name}" for name in ("env", "episode")},
+    **{each.name: f"a key of the chosen {each.name}" for each in GOAL},
 }
 CONFIG_DIR = Argument("config_dir", "", "folder with configuration groups of yours")
 ROBOT = (  # of commands that show a trained robot, or a scripted expert

@@ -2,11 +2,11 @@
 
     python -m hybrid_rl.doctor run=runs/hopper/sac/TIME
 
-A line for each fault: what was seen, what it means, what to try. They come in the order in which
-they are to be mended, as the later may follow from the first. It reads metrics.jsonl,
-summary.json, and replay memory and networks of the newest checkpoint, and runs new episodes of the
-policy, of random actions and of none. Nothing is written. The page "My robot does not learn" of the
-documentation has the checks, and how often they were right.
+A line for each fault: what was seen, what it means, what to try. Fix the first one first: later
+ones may follow from it. The command reads metrics.jsonl, summary.json, and the replay memory and
+networks of the newest checkpoint, and runs new episodes with the policy, with random actions and
+with zero actions. It writes nothing. The page "My robot does not learn" of the documentation
+explains the checks, and how often they are right.
 """
 
 if __name__ == "__main__":

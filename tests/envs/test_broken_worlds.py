@@ -117,7 +117,7 @@ CODE = [  # of the world: what is wrong, replaced, by what, the whole line
         "NumPy on a traced value",
         LINE,
         "x = np.sin(state.data)",
-        r"w\.py:20: W\.step: TracerArrayConversionError: .*; write jnp in place of np",
+        r"w\.py:20: W\.step: TracerArrayConversionError: .*; write jnp instead of np",
     ),
     (
         "an attribute that changes",
@@ -159,7 +159,7 @@ CODE = [  # of the world: what is wrong, replaced, by what, the whole line
         "an end of the process",
         LINE,
         'raise SystemExit("no licence")',
-        r"w\.py:20: W\.step: SystemExit: no licence; raise an error in place of sys\.exit\(\)",
+        r"w\.py:20: W\.step: SystemExit: no licence; raise an error instead of sys\.exit\(\)",
     ),
 ]
 

@@ -24,7 +24,7 @@ STEPS = 5  # decisions of an episode
     ("fail", "line"),
     [
         ("error", ": ValueError: motor off"),
-        ("exit", ": SystemExit; raise an error in place of sys.exit()"),
+        ("exit", ": SystemExit; raise an error instead of sys.exit()"),
         ("nan", "Count: step: entry 1 of obs is not finite"),
         ("size", "Count: step: "),
         ("reward", "Count: step: gives a reward that is not finite"),

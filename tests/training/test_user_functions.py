@@ -36,7 +36,7 @@ GIVES = "it must be float32[]: sum it, or take its entry; a whole number is no f
             lambda x, u, after: (x[:, None] - after).sum(),
             "subtract of [3, 1] and [3] gives [3, 3], every one with every other; write x[..",
         ),
-        (lambda x, u, after: sys.exit(), "SystemExit; raise an error in place of sys.exit()"),
+        (lambda x, u, after: sys.exit(), "SystemExit; raise an error instead of sys.exit()"),
     ],
 )
 def test_what_is_paid_is_one_number(name, function, words):
