@@ -107,12 +107,12 @@ POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or
 GOAL = (  # of commands that show a trained run in another world or on another goal
     Argument("reward", "", "another reward, of conf/reward; empty: as in training"),
     Argument("constraint", "", "a constraint, of conf/constraint; empty: as in training"),
-    Argument("planner", "", "of conf/controller; empty: gradient with reward= or constraint=, else as in training"),
+    Argument("planner", "", "of conf/controller; empty: gradient with reward= or constraint="),
     Argument("imagine", "", "policy: it learns the goal in the models, before anything acts"),
 )
 CHANGES = {
     **{name: f"another value for a key of the {name}" for name in ("env", "episode")},
-    **{each.name: f"a key of the chosen {each.name}" for each in GOAL},
+    **{each.name: f"a key of the part that {each.name}= chooses" for each in GOAL},
 }
 CONFIG_DIR = Argument("config_dir", "", "folder with configuration groups of yours")
 ROBOT = (  # of commands that show a trained robot, or a scripted expert
