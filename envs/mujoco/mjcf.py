@@ -108,20 +108,17 @@ def _whole(key: str) -> bool:
 def load(asset: str) -> mujoco.MjModel:
     """The compiled model of `asset`, which is shared: do not modify it.
 
+    A simulation that diverges is never reset silently, whatever the file says.
+
     Raises:
-        ValueError: for a model with automatic resets; that names the file, for one that does not
-            compile.
+        ValueError: that names the file, for one that does not compile.
     """
     given = spec(asset)
     try:
         model = given.compile()
     except ValueError as error:
         raise ValueError(f"{asset}: {error}") from error
-    if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
-        raise ValueError(
-            f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '
-            "silently reset a simulation that diverged"
-        )
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     values = {} if asset.lstrip().startswith("<") else _split(asset)[1]
     if whole := {key: value for key, value in values.items() if _whole(key)}:
         _change(model, whole)
