@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -173,6 +174,25 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
         picture = tmp_path / "crane.gif"
         render.draw_film(trained.episode, film, picture, 64, 48)
         assert picture.stat().st_size > 0
+
+
+def test_each_episode_of_a_crane_can_have_another_body(conf, tmp_path):
+    """By a reset that takes the place of the crane's own."""
+    code, xml, yaml = blocks("A MuJoCo world")
+    (drawn,) = blocks("Another body in each episode", HOWTO)
+    own = re.compile(r"    def reset.*?\n\n", re.S)
+    (tmp_path / "crane.py").write_text(own.sub(lambda _: drawn + "\n", code))
+    (tmp_path / "crane.xml").write_text(xml)
+    (conf / "task" / "crane.yaml").write_text(yaml)
+    train(conf, tmp_path / "run", "task=crane", "algo=sac", "episode.steps=10")
+    episode = evaluate.load(tmp_path / "run").episode
+    keys = jax.random.split(jax.random.key(0), 3)
+    start = jax.vmap(episode.reset)(keys)
+    after = jax.jit(jax.vmap(episode.step))(start, jnp.ones((3, 1)))
+    mass = after.data.fields["body_mass"].sum(1)
+    assert ((mass > 0.7 * 1.5) & (mass < 1.3 * 1.5)).all()
+    assert jnp.ptp(mass) > 0.05
+    np.testing.assert_array_equal(jnp.argsort(after.data.qvel[:, 0]), jnp.argsort(-mass))
 
 
 def test_a_planner_is_one_file(conf, tmp_path):

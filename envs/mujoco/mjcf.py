@@ -10,12 +10,20 @@ Source: the MJCF reference of MuJoCo, "XML Reference".
 
 from collections.abc import Iterable, Mapping
 from functools import cache
+from operator import attrgetter
 from pathlib import Path
 
+import jax.numpy as jnp
 import mujoco
 import numpy as np
+from jax import Array
 
 FOLDER = Path(__file__).parents[1] / "assets"
+FIELDS = (  # of MjModel that an episode may have for itself; MJX takes others as constants
+    *("body_mass", "body_inertia", "body_ipos", "geom_friction", "pair_friction", "dof_damping"),
+    *("dof_armature", "jnt_stiffness", "actuator_gainprm", "actuator_biasprm", "actuator_gear"),
+    "opt.gravity",
+)
 FOR_SENSORS = ("cacc", "cfrc_int", "cfrc_ext")  # fields of MjData, for these sensors:
 DYNAMIC = [
     getattr(mujoco.mjtSensor, f"mjSENS_{name}").value
@@ -100,20 +108,17 @@ def _whole(key: str) -> bool:
 def load(asset: str) -> mujoco.MjModel:
     """The compiled model of `asset`, which is shared: do not modify it.
 
+    A simulation that diverges is never reset silently, whatever the file says.
+
     Raises:
-        ValueError: for a model with automatic resets; that names the file, for one that does not
-            compile.
+        ValueError: that names the file, for one that does not compile.
     """
     given = spec(asset)
     try:
         model = given.compile()
     except ValueError as error:
         raise ValueError(f"{asset}: {error}") from error
-    if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_AUTORESET:
-        raise ValueError(
-            f'{asset}: write <option><flag autoreset="disable"/></option>, or MuJoCo would '
-            "silently reset a simulation that diverged"
-        )
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     values = {} if asset.lstrip().startswith("<") else _split(asset)[1]
     if whole := {key: value for key, value in values.items() if _whole(key)}:
         _change(model, whole)
@@ -131,6 +136,22 @@ def shape(asset: str, name: str) -> tuple[int, ...]:
     if name in FOR_SENSORS and not np.isin(model.sensor_type, DYNAMIC).any():
         raise ValueError(f"{asset}: MuJoCo computes {name} for a <framelinacc> sensor: add one")
     return getattr(mujoco.MjData(model), name).shape
+
+
+def fields(asset: str, values: Mapping[str, Array]) -> dict[str, Array]:
+    """`values` of fields of MjModel of `asset`, by name, in float32.
+
+    Raises:
+        ValueError: for a name that is not in FIELDS, or another shape than the model's.
+    """
+    given = {name: jnp.asarray(x, jnp.float32) for name, x in values.items()}
+    for name, x in given.items():
+        if name not in FIELDS:
+            raise ValueError(f"fields: {name} is none of {', '.join(FIELDS)}")
+        now = attrgetter(name)(load(asset)).shape
+        if x.shape != now:
+            raise ValueError(f"fields: {name} is {list(x.shape)}; the model's is {list(now)}")
+    return given
 
 
 def _set(spec: mujoco.MjSpec, key: str, value: float) -> None:

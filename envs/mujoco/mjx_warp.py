@@ -24,15 +24,19 @@ Fields = dict[str, jax.Array]  # of mjx.Data, by name
 OUTPUTS = ("qpos", "qvel", "act", "qacc_warmstart", "sensordata")  # of a step
 
 
-def step(asset: str, impl: str, n: int, fields: Fields, reads: tuple[str, ...] = ()) -> Fields:
+def step(
+    asset: str, impl: str, n: int, fields: Fields, reads: tuple[str, ...] = (), own: Any = None
+) -> Fields:
     """`OUTPUTS` after `n` steps from `fields` (qpos, qvel, act, qacc_warmstart, ctrl).
 
-    `impl` is jax or warp. To sensordata are appended `reads`: fields of MjData after mj_forward at
-    the new state. All outputs are NaN for a state that is not finite and, with Warp, when
-    contacts or constraints exceed the allocated lists.
+    `impl` is jax or warp. `own`, of jax alone: fields of the model, in place of its own. To
+    sensordata are appended `reads`: fields of MjData after mj_forward at the new state. All outputs
+    are NaN for a state that is not finite and, with Warp, when contacts or constraints exceed the
+    allocated lists.
     """
     if impl == "jax":
-        return _step(asset, impl, n, reads, template(asset, impl), fields)
+        model, data = template(asset, impl)
+        return _step(asset, impl, n, reads, (model.tree_replace(own or {}), data), fields)
     one = _batched_step(asset, n, reads)(jax.tree.map(lambda x: x[None], fields))
     return jax.tree.map(lambda x: x[0], one)
 

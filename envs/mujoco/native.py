@@ -1,11 +1,12 @@
 """MuJoCo C on CPU threads, called from a compiled JAX program.
 
-    x = [qpos, qvel, act, warmstart, ctrl] -> n mj_steps in float64
+    x = [qpos, qvel, act, warmstart, ctrl, fields] -> n mj_steps in float64
       -> y = [qpos, qvel, act, warmstart, sensors, reads]
 
-Stateless: every call passes in and returns everything that a step depends on, so that one pool of
-simulations serves all seeds and environments, and the results are the same bit for bit with any
-number of threads. A state that is not finite gives NaN.
+fields: those of MjModel that a simulation has for itself. Every call passes in and returns
+everything that a step depends on, so that one pool of simulations serves all seeds and
+environments, and the results are the same bit for bit with any number of threads. A state that is
+not finite gives NaN.
 
 Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 """
@@ -23,6 +24,7 @@ from mujoco.batch import Batch
 
 from hybrid_rl.envs.mujoco import mjcf, xla_callback
 
+Names = tuple[str, ...]
 NAME = "hybrid_rl.native:"  # begins the names of the foreign calls
 _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
 _ALL = mujoco.mjtStage.mjSTAGE_ACC.value  # also forces
@@ -33,6 +35,8 @@ class _Pool(NamedTuple):
 
     batch: Batch
     inputs: np.ndarray  # qpos, qvel, act, warmstart, ctrl
+    fields: list[np.ndarray]  # of the model, which follow them in x
+    set: np.ndarray  # [N, k] the fields that it has; NaN before the first call
     moved: np.ndarray  # inputs without ctrl
     outputs: list[np.ndarray]  # what follows them in y: sensors, then reads; none is empty
     late: np.ndarray  # columns of y with sensors of accelerations
@@ -47,12 +51,12 @@ def cores() -> int:
 
 
 @cache
-def _idle(asset: str, worlds: int, threads: int, reads: tuple[str, ...]) -> list[_Pool]:
+def _idle(asset: str, worlds: int, threads: int, reads: Names, fields: Names) -> list[_Pool]:
     """Pools that are not in use; calls of several devices at the same time need one each."""
     return []
 
 
-def _pool(asset: str, worlds: int, threads: int, reads: tuple[str, ...]) -> _Pool:
+def _pool(asset: str, worlds: int, threads: int, reads: Names, fields: Names) -> _Pool:
     """A new pool; with threads=0 the host's devices divide its processors among them.
 
     Raises:
@@ -66,27 +70,46 @@ def _pool(asset: str, worlds: int, threads: int, reads: tuple[str, ...]) -> _Poo
     first, moved = 1, model.nq + 2 * model.nv + model.na  # column 0 is the time
     inputs = batch.state[:, first : first + moved + model.nu]
     late = mjcf.of_acceleration(asset)
-    fields = ("sensordata", *reads) if model.nsensordata else reads
-    outputs = [batch.bind(name).reshape(worlds, -1) for name in fields]
+    outputs = ("sensordata", *reads) if model.nsensordata else reads
+    outputs = [batch.bind(name).reshape(worlds, -1) for name in outputs]
     stage = _ALL if reads else 0 if late.all() else _MOVED
-    return _Pool(batch, inputs, inputs[:, :moved], outputs, moved + np.flatnonzero(late), stage)
+    own = [batch.expand(name) for name in fields]
+    unset = np.full((worlds, sum(field[0].size for field in own)), np.nan, np.float32)
+    late = moved + np.flatnonzero(late)
+    return _Pool(batch, inputs, own, unset, inputs[:, :moved], outputs, late, stage)
+
+
+def _set_fields(pool: _Pool, own: np.ndarray, finite: np.ndarray | None) -> None:
+    """Give the simulations the fields `own` [N, k] of their models, and all that follows."""
+    new = (own != pool.set).any(1)
+    ids = np.flatnonzero(new if finite is None else new & finite)
+    if not len(ids):
+        return
+    pool.set[ids], end = own[ids], 0
+    for field in pool.fields:
+        start, end = end, end + field[0].size
+        field[ids] = own[ids, start:end].reshape(-1, *field.shape[1:])
+    pool.batch.set_const(ids)
 
 
 def _advance(
-    asset: str, threads: int, n: int, reads: tuple[str, ...], x: np.ndarray, y: np.ndarray
+    asset: str, threads: int, n: int, reads: Names, fields: Names, x: np.ndarray, y: np.ndarray
 ) -> None:
     """Write the result of `n` physics steps from x [N, D] into y [N, D'].
 
     A half-cheetah steps in 5 us, so what is the same at every call is prepared in `_pool`.
     """
-    idle = _idle(asset, len(x), threads, reads)
+    idle = _idle(asset, len(x), threads, reads, fields)
     try:
         pool = idle.pop()
     except IndexError:
-        pool = _pool(asset, len(x), threads, reads)
+        pool = _pool(asset, len(x), threads, reads, fields)
     finite = None if isfinite(x.sum()) else np.isfinite(x.sum(1))
     ids = None if finite is None else np.flatnonzero(finite)
-    pool.inputs[:] = x
+    end = pool.inputs.shape[1]
+    pool.inputs[:] = x[:, :end]
+    if pool.fields:
+        _set_fields(pool, x[:, end:], finite)
     if n:
         pool.batch.step(ids, n, pool.stage)
     else:
@@ -105,15 +128,15 @@ def _advance(
 
 @cache
 def _call(
-    asset: str, threads: int, n: int, reads: tuple[str, ...]
+    asset: str, threads: int, n: int, reads: Names, fields: Names
 ) -> Callable[[jax.Array], jax.Array]:
     """The function x [D] -> y [D']: a foreign call on the CPU, a JAX callback on other devices."""
     model = mjcf.load(asset)
     width = model.nq + 2 * model.nv + model.na + model.nsensordata
     width += sum(prod(mjcf.shape(asset, name)) for name in reads)
     out = jax.ShapeDtypeStruct((width,), np.float32)
-    advance = partial(_advance, asset, threads, n, reads)
-    name = f"{NAME}{asset}:{threads}:{n}:{','.join(reads)}"
+    advance = partial(_advance, asset, threads, n, reads, fields)
+    name = f"{NAME}{asset}:{threads}:{n}:{','.join(reads)}:{','.join(fields)}"
     xla_callback.register(name, advance)
 
     def callback(x: jax.Array) -> np.ndarray:
@@ -135,14 +158,17 @@ def steps_of(name: str) -> tuple[str, int] | None:
     """The model and the number of physics steps of a foreign call; None for others' calls."""
     if not name.startswith(NAME):
         return None
-    asset, _, n, _ = name.removeprefix(NAME).rsplit(":", 3)
+    asset, _, n, _, _ = name.removeprefix(NAME).rsplit(":", 4)
     return asset, int(n)
 
 
-def step(asset: str, threads: int, n: int, x: jax.Array, reads: tuple[str, ...] = ()) -> jax.Array:
+def step(
+    asset: str, threads: int, n: int, x: jax.Array, reads: Names = (), fields: Names = ()
+) -> jax.Array:
     """y = [qpos, qvel, act, warmstart, sensors, reads] after `n` steps from x.
 
-    x: [qpos, qvel, act, warmstart, ctrl]. reads: fields of MjData after mj_forward at the new
-    state. n = 0 only evaluates these and the sensors of positions and velocities.
+    x: [qpos, qvel, act, warmstart, ctrl, fields]. reads: fields of MjData after mj_forward at the
+    new state. fields: names of fields of MjModel. n = 0 only evaluates `reads` and the sensors of
+    positions and velocities.
     """
-    return _call(asset, threads, n, reads)(x)
+    return _call(asset, threads, n, reads, fields)(x)

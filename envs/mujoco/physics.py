@@ -18,9 +18,11 @@ run continues bit for bit.
 Source: MuJoCo's documentation, "Computation: the state" (mjSTATE_INTEGRATION).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from math import prod
+from types import MappingProxyType
 from typing import Any
 
 import jax
@@ -53,6 +55,7 @@ class PhysicsState:
     ctrl: Array | None  # [nu] controls of the last step
     sensors: Array | None  # [nsensordata] of this state; of accelerations: of the last step
     asset: str = struct.field(pytree_node=False)  # the model whose state it is
+    fields: dict[str, Array] = struct.field(default_factory=dict)  # of MjModel, this episode's own
 
     def __getattr__(self, name: str) -> Any:
         """No field of MjData but these is kept: say how such a one is read."""
@@ -111,20 +114,27 @@ class Physics:
         """The compiled model, which is shared: do not modify it."""
         return mjcf.load(self.asset)
 
-    def reset(self, qpos: Array, qvel: Array) -> PhysicsState:
+    def reset(
+        self, qpos: Array, qvel: Array, fields: Mapping[str, Array] = MappingProxyType({})
+    ) -> PhysicsState:
         """The state at qpos [nq], qvel [nv]; all else is zero.
 
+        fields: of MjModel (`mjcf.FIELDS`), such as body_mass [nbody], which hold in place of the
+            model's until the next reset. MuJoCo C computes what follows from them; under MJX the
+            softness of contacts stays that of the model's masses.
+
         Raises:
-            ValueError: for another number of them.
+            ValueError: for another number of them, or other fields.
         """
         model = self.model
+        own = mjcf.fields(self.asset, fields)
         for name, q, size in (("qpos", qpos, model.nq), ("qvel", qvel, model.nv)):
             if jnp.shape(q) != (size,):
                 raise ValueError(f"{name} has the shape {jnp.shape(q)}; the model's has ({size},)")
         sizes = (model.na, model.nv, model.nu, model.nsensordata)
         zeros = [_or_none(jnp.zeros(size, jnp.float32)) for size in sizes]
         moved = (jnp.asarray(q, jnp.float32) for q in (qpos, qvel))
-        state = PhysicsState(*moved, *zeros, asset=self.asset)
+        state = PhysicsState(*moved, *zeros, asset=self.asset, fields=own)
         complete = mjcf.of_acceleration(self.asset).all() and not self.reads
         return state if complete else self._advance(state, 0)
 
@@ -157,8 +167,10 @@ class Physics:
     def _native(self, state: PhysicsState, n: int) -> PhysicsState:
         model = self.model
         parts = (state.qpos, state.qvel, state.act, state.warmstart, state.ctrl)
-        x = jnp.concatenate([part for part in parts if part is not None])
-        out = native.step(self.asset, self.threads, n, x, self.reads)
+        names = tuple(sorted(state.fields))
+        own = (state.fields[name].ravel() for name in names)
+        x = jnp.concatenate([*(part for part in parts if part is not None), *own])
+        out = native.step(self.asset, self.threads, n, x, self.reads, names)
         ends = (model.nq, model.nq + model.nv, model.nq + model.nv + model.na)
         qpos, qvel, act, rest = jnp.split(out, ends)
         warmstart, sensors = jnp.split(rest, (model.nv,))
@@ -181,7 +193,10 @@ class Physics:
             "ctrl": state.ctrl,
         }
         fields = {name: x for name, x in fields.items() if x is not None}
-        out = mjx_warp.step(self.asset, impl, n, fields, self.reads)
+        if state.fields and impl == "warp":
+            line = "of the model, which an episode has for itself, are not for MuJoCo Warp"
+            raise ValueError(f"fields {line}: use physics=mjx")
+        out = mjx_warp.step(self.asset, impl, n, fields, self.reads, state.fields)
         qpos, qvel, act, warmstart, sensors = (_or_none(out[name]) for name in mjx_warp.OUTPUTS)
         return state.replace(qpos=qpos, qvel=qvel, act=act, warmstart=warmstart, sensors=sensors)
 

@@ -1,6 +1,7 @@
 """Changed bodies: against models that MuJoCo compiles so, and against laws of motion."""
 
 import re
+from operator import attrgetter
 
 import jax
 import jax.numpy as jnp
@@ -191,3 +192,103 @@ def test_a_policy_is_evaluated_in_another_body(capsys):
     assert ", ".join(body.split()) in outputs[1]
     returns = [re.search(r"│ +\d+ │ +(-?[\d.]+)", output)[1] for output in outputs]
     assert abs(float(returns[1]) - float(returns[0])) > 1
+
+
+RIGS = """
+<mujoco>
+  <option timestep="0.002"><flag autoreset="disable"/></option>
+  <worldbody>
+    <geom name="floor" type="plane" size="0 0 1" friction="0.3"/>
+    <body pos="0 0 0.05">
+      <joint type="slide" axis="1 0 0"/> <joint type="slide" axis="0 0 1"/>
+      <geom type="sphere" size="0.05" mass="1" friction="0.3"/>
+      <body pos="0 0 0.1">
+        <joint name="hinge" axis="0 1 0" stiffness="1" damping="0.1" armature="0.01"/>
+        <geom type="capsule" size="0.02" fromto="0 0 0 0.1 0 0.3" mass="0.5" contype="0"/>
+      </body>
+    </body>
+    <body pos="0 2 0.05">
+      <joint type="slide" axis="1 0 0"/> <joint type="slide" axis="0 0 1"/>
+      <geom name="ball" type="sphere" size="0.05" mass="1" contype="0"/>
+    </body>
+  </worldbody>
+  <contact><pair geom1="floor" geom2="ball" friction="0.3 0.3 0.005 0.0001 0.0001"/></contact>
+  <actuator><position joint="hinge" kp="5" kv="0.2"/></actuator>
+</mujoco>
+"""
+
+
+@pytest.fixture(scope="module")
+def rig(tmp_path_factory):
+    """A file with two sliders, of which one carries a driven pole."""
+    file = tmp_path_factory.mktemp("rig") / "rig.xml"
+    file.write_text(RIGS)
+    return str(file)
+
+
+def pushed(physics, height=0.0):
+    """The function fields -> velocities [nv] after 40 physics steps of sliding, jitted."""
+
+    def after(fields):
+        qpos, speed = jnp.array([0.0, height, 0.0, 0.0, height]), jnp.array([2.0, 0, 0, 2, 0])
+        return physics.step(physics.reset(qpos, speed, fields), jnp.ones(1), 40).qvel
+
+    return jax.jit(after)
+
+
+def of_mujoco(asset, name, factor, height):
+    """What `pushed` should give, from MuJoCo's own loop; a field times a factor."""
+    model = mujoco.MjModel.from_xml_path(asset)
+    attrgetter(name)(model)[:] *= factor
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:], data.ctrl[:] = [0, height, 0, 0, height], [2, 0, 0, 2, 0], 1
+    mujoco.mj_step(model, data, 40)
+    return data.qvel
+
+
+@pytest.mark.parametrize(
+    ("implementation", "height", "names"),
+    [
+        ("native", 0.0, mjcf.FIELDS),
+        ("mjx", 0.0, [name for name in mjcf.FIELDS if name != "body_mass"]),
+        ("mjx", 1.0, ["body_mass"]),  # on the floor its contacts are those of the model's masses
+    ],
+)
+def test_each_field_that_an_episode_has_for_itself_acts_as_in_mujoco(
+    rig, implementation, height, names
+):
+    physics = Physics(rig, implementation)
+    after, plain = pushed(physics, height), of_mujoco(rig, "body_mass", 1.0, height)
+    own = {name: jnp.asarray(attrgetter(name)(physics.model), jnp.float32) for name in names}
+    for name in names:
+        factor = 0.5 if name == "opt.gravity" else 1.5
+        expected = of_mujoco(rig, name, factor, height)
+        assert np.abs(expected - plain).max() > 0.01, name
+        found = after({**own, name: factor * own[name]})
+        np.testing.assert_allclose(found, expected, atol=2e-4, err_msg=name)  # measured: 6e-5
+
+
+def test_environments_side_by_side_keep_their_own_bodies(rig):
+    """Also where the order changes from one call to the next."""
+    physics = Physics(rig, "native")
+    masses = np.array([1.0, 2.0, 3.0], np.float32)[:, None] * physics.model.body_mass
+    together = jax.jit(jax.vmap(lambda mass: pushed(physics)({"body_mass": mass})))
+    alone = [pushed(physics)({"body_mass": mass}) for mass in masses.astype(np.float32)]
+    assert len({float(speed[2]) for speed in alone}) == 3
+    for order in ([0, 1, 2], [2, 1, 0], [2, 0, 0]):
+        found = together(masses[order].astype(np.float32))
+        np.testing.assert_array_equal(found, np.stack([alone[i] for i in order]))
+
+
+def test_a_field_that_cannot_be_changed_is_refused_in_one_line(rig):
+    physics = Physics(rig, "native")
+    for fields, line in (
+        ({"body_mas": jnp.ones(4)}, "fields: body_mas is none of body_mass, body_inertia, "),
+        ({"body_mass": jnp.ones(3)}, "fields: body_mass is [3]; the model's is [4]"),
+    ):
+        with pytest.raises(ValueError, match=rf"^{re.escape(line)}[^\n]*$"):
+            physics.reset(jnp.zeros(5), jnp.zeros(5), fields)
+    heavy = physics.reset(jnp.zeros(5), jnp.zeros(5), {"body_mass": jnp.ones(4)})
+    with pytest.raises(ValueError, match="use physics=mjx"):
+        physics._accelerated(heavy, 1, "warp")

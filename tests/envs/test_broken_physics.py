@@ -50,12 +50,6 @@ SIMULATED = [  # the same of a world in MuJoCo; None: of its model
         r"w\.py:19: W\.reset: ValueError: .*/rail\.xml: Error: unknown transmission target 'un.*",
     ),
     (
-        "a model that resets itself",
-        None,
-        ('<flag autoreset="disable"/>', ""),
-        r"w\.py:19: W\.reset: ValueError: .*/rail\.xml: write <option><flag autoreset=.*",
-    ),
-    (
         "a model that is no MJCF",
         None,
         ('type="slide"', 'kind="slide"'),

@@ -1,10 +1,14 @@
 """The options of a Gaussian model."""
 
+import re
+from pathlib import Path
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.models.gaussian import Gaussian
 from hybrid_rl.types import Spec
 
@@ -90,3 +94,20 @@ def test_a_prediction_that_is_unknown_is_refused() -> None:
     """One line that names the field."""
     with pytest.raises(ValueError, match=r"predict=both: choose one of change, state"):
         Gaussian(predict="both")
+
+
+def test_the_known_physics_of_the_how_to_are_those_of_the_pendulum() -> None:
+    """With networks that add nothing, in normalised units as well."""
+    page = Path(__file__).parents[2] / "docs" / "howto.md"
+    section = page.read_text(encoding="utf-8").split("## A model with known physics\n")[1]
+    found: dict = {"__name__": "prior"}
+    exec(re.findall(r"```python\n(.*?)```", section, re.S)[0], found)
+    model, env, u = found["Prior"](hidden=(8,)), Pendulum(), jnp.array([[0.5]])
+    starts = jax.vmap(env.reset)(jax.random.split(jax.random.key(0), 50))
+    after = jax.vmap(env.step)(starts, jnp.broadcast_to(u, (50, 1))).obs
+    params = model.init(jax.random.key(1), Spec(obs=3, act=1, dt=0.05))
+    params = model.observe(params, starts.obs, after)
+    params["weights"] = jax.tree.map(jnp.zeros_like, params["weights"])
+    error = jax.vmap(lambda x: model.step(params, x, u[0]))(starts.obs) - after
+    assert np.abs(error).max() < 0.05  # of steps of Euler's kind: 0.05^2 s^2 times 17 rad/s^2
+    assert np.abs(after - starts.obs).max() > 0.5
