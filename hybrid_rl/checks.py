@@ -117,10 +117,13 @@ def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int
     Raises:
         UsageError: if it has none, or for a disturbance, which only a wrapper can add there.
     """
-    for key in ("delay", "sensor_noise", "action_noise", *PAID):
-        if given.get(key):
+    for key in ("delay", "sensor_noise", "action_noise", "randomise", *PAID):
+        value = given.get(key)
+        if isinstance(value, dict):  # of names and ranges
+            value = {name: each for name, each in value.items() if each is not None}
+        if value:
             line = "is for the environments in JAX; put a Gymnasium wrapper around this one"
-            where = key if key in PAID else f"episode.{key}={given[key]}"
+            where = key if key in PAID else f"episode.{key}={value}"
             raise UsageError(f"{where}: {line}")
     if given.get("steps") is not None:
         return {}

@@ -243,7 +243,7 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
         part = Episode if section == "episode" else part_class(changed.env._target_)
         hidden = ("env", *configuration.PAID) if section == "episode" else ()
         known = [field.name for field in fields(part) if field.name not in hidden]
-        if name not in known:
+        if name.partition(".")[0] not in known:
             whose = f"the {section} of task {config.task}"
             raise UsageError(f"{key}={value}: {whose} has {', '.join(known) or 'no keys'}")
         try:
@@ -253,5 +253,5 @@ def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
                 f"{key}={value}: is no YAML: {getattr(error, 'problem', '')}"
             ) from error
         with open_dict(changed):
-            changed[section][name] = read
+            OmegaConf.update(changed, key, read)
     return configuration.episodes(changed)

@@ -2,11 +2,13 @@
 
 A controller sees o + sensor_noise N(0, I). Its action u arrives `delay` decisions later, as
 clip(u + action_noise N(0, I)). An expert who is disturbed in this way demonstrates how to return
-(Laskey et al. 2017, "DART: noise injection for robust imitation learning").
+(Laskey et al. 2017, "DART: noise injection for robust imitation learning"). With `randomise` each
+episode has another body (`envs/mujoco/randomised.py`).
 """
 
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import cached_property, partial
 from numbers import Real
 
 import jax
@@ -16,6 +18,9 @@ from jax import Array
 
 from hybrid_rl.core.batching import when_any, where
 from hybrid_rl.envs import sensor_noise
+from hybrid_rl.envs.mujoco.physics import PhysicsState
+from hybrid_rl.envs.mujoco.randomised import Ranges
+from hybrid_rl.fields import FieldError
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.training import user_functions
 from hybrid_rl.types import EnvState, Spec
@@ -50,6 +55,7 @@ class Episode:
     delay: int = 0  # decisions until an action arrives
     sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
     action_noise: float = 0.0  # [u] std of what is added to an action when it arrives
+    randomise: Mapping[str, tuple[float, ...]] | None = None  # of `Ranges`: [low, high]
     reward: Goal | None = None  # what it pays; None: the environment's own reward
     constraint: Constraint | None = None  # what decisions must not violate
 
@@ -64,6 +70,7 @@ class Episode:
             user_functions.check(name, getattr(self, name), self.env.spec)
         if not (isinstance(self.action_noise, Real) and self.action_noise >= 0):
             raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
+        self._check_bodies()
         if not any(self._std):
             return
         sizes = (1, self.env.spec.obs)
@@ -71,6 +78,30 @@ class Episode:
         if len(self._std) not in sizes or not right:
             line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
             raise ValueError(f"episode.sensor_noise={self.sensor_noise}: {line}")
+
+    def _check_bodies(self) -> None:
+        names = [field.name for field in fields(Ranges)]
+        given = {} if self.randomise is None else self.randomise
+        if not isinstance(given, Mapping) or not {*given} <= {*names}:
+            line = f"must be {{NAME: [low, high]}}, with names of {', '.join(names)}"
+            raise ValueError(f"episode.randomise={given}: {line}")
+        try:
+            ranges = self._ranges
+        except FieldError as error:
+            raise error.at("episode.randomise") from error
+        if ranges is None:
+            return
+        state = jax.eval_shape(self.env.reset, jax.random.key(0))
+        if not isinstance(state.data, PhysicsState):
+            raise ValueError(
+                "episode.randomise: only for robots in MuJoCo, whose state.data Physics makes"
+            )
+
+    @cached_property
+    def _ranges(self) -> Ranges | None:
+        """Of the bodies; None if all have the same."""
+        given = {name: pair for name, pair in (self.randomise or {}).items() if pair is not None}
+        return Ranges(**given) if given else None
 
     @property
     def _std(self) -> tuple[float, ...]:
@@ -85,6 +116,9 @@ class Episode:
         """The first state of an episode. The key is consumed."""
         with EXACT():
             state = self.env.reset(key)
+        if self._ranges is not None:
+            own = self._ranges.draw(state.data, self.spec.act, jax.random.fold_in(key, 7))
+            state = state.replace(data=own)
         clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
         if self.delay:
             clock["late"] = jnp.zeros((self.delay, self.spec.act))
