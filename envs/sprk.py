@@ -72,6 +72,8 @@ class Sprk:
     false_contact: Discount = 0.0  # probability for |u - u_before| = 2, besides the sensor's own
     missed: Discount = 0.0  # probability
 
+    spec = Spec(obs=4, act=2, dt=DT)
+
     def __post_init__(self) -> None:
         check(self.physics)
         for name in PLANE:
@@ -80,11 +82,6 @@ class Sprk:
     @cached_property
     def _plane(self) -> ContactPlane:
         return ContactPlane(**{name: getattr(self, name) for name in PLANE})
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=4, act=2, dt=DT)
 
     @cached_property
     def asset(self) -> str:

@@ -71,6 +71,8 @@ class ContactPlane:
     false_contact: Discount = 0.0  # probability for |u - u_before| = 2
     missed: Discount = 0.0  # probability
 
+    spec = Spec(obs=4, act=2, dt=DT)
+
     def __post_init__(self) -> None:
         if not _below(self.low, self.high):
             raise FieldError(self, "low", "needs two numbers below high")
@@ -88,11 +90,6 @@ class ContactPlane:
         each = [arrangements.distance(points, shape) for shape in self.objects]
         gap = self.radius + CLEAR * float(np.min(high - low))
         return float((np.min(each, 0) > gap).mean()) if each else 1.0
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=4, act=2, dt=DT)
 
     @property
     def middle(self) -> Array:
