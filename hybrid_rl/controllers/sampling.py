@@ -12,6 +12,7 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import jax
@@ -88,7 +89,7 @@ class SamplingController:
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
         samples = sampling.imagine(
-            lambda x, u: self.model.step(params.model, x, u),
+            partial(self.model.step, params.model),
             lambda carry, x, *a: self.proposal(params, carry, lifting.policy_input(x), *a),
             state.carries,
             x,
@@ -161,9 +162,7 @@ class SamplingController:
 
     def _comparison(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """The metrics of `_agreement`."""
-
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
+        step = partial(self.model.step, params.model)
 
         def value(path: Path) -> Array:
             return to_go(path)[0]
