@@ -30,6 +30,7 @@ from jax import Array
 from hybrid_rl.envs.analytic import arrangements
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.kinematics import turned
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -171,12 +172,6 @@ class ContactPlane:
     def pose(self, state: EnvState) -> Array:
         """theta and the position of the ball, qpos [5], for rendering."""
         return jnp.concatenate([state.data.pose, state.obs[:2]])
-
-
-def turned(s: Array, angle: Array) -> Array:
-    """s [2] rotated by an angle [] [rad]."""
-    sin, cos = jnp.sin(angle), jnp.cos(angle)
-    return jnp.stack([cos * s[0] - sin * s[1], sin * s[0] + cos * s[1]])
 
 
 def rounded_box(
