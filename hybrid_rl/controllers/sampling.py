@@ -58,7 +58,6 @@ class SamplingController:
     agreement_every: Count = 1  # decisions between comparisons with `policy`
 
     def __post_init__(self) -> None:
-        """Check the proposal."""
         if self.log_density and not getattr(self.proposal, "density", True):
             words = "needs candidates with a density; choose proposal=policy or proposal=noise"
             raise FieldError(self, "log_density", f"{words}, or false")
