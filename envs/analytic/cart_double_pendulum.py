@@ -22,7 +22,7 @@ from jax import Array
 
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import Flat, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
@@ -33,7 +33,7 @@ L1, L2 = 0.5, 0.75  # [m]
 
 
 @part
-class CartDoublePendulum(Flat):
+class CartDoublePendulum(Euclidean):
     """Cart and double pendulum; `reward` is hills or upright."""
 
     reward: Literal["hills", "upright"] = "hills"

@@ -19,7 +19,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import Flat, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -29,7 +29,7 @@ SUBSTEPS = 4  # Runge-Kutta steps of a decision
 
 
 @part
-class CartPendulum(Flat):
+class CartPendulum(Euclidean):
     """A rod on a cart, to be balanced."""
 
     cart_mass: Positive = 10.472  # [kg] M

@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.state import Flat, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -31,7 +31,7 @@ UPRIGHT = 0.9  # least cos th of a success
 
 
 @part
-class CartSwingUp(Flat):
+class CartSwingUp(Euclidean):
     """A rod on a cart, to be swung up."""
 
     length: Positive = 0.6  # [m] l, to the rod's mass

@@ -25,7 +25,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.state import Flat, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import among, part
 from hybrid_rl.types import EnvState, Spec
@@ -38,7 +38,7 @@ LARGEST = 0.9999  # |a| in the cost of u, which is infinite at 1
 
 
 @part
-class Lander(Flat):
+class Lander(Euclidean):
     """A lander with two thrusters."""
 
     task: Literal["hover", "flip"] = "flip"

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.hills import phi
-from hybrid_rl.envs.analytic.state import Flat, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.types import EnvState, Spec
 
@@ -23,7 +23,7 @@ DT = 0.2  # [s] of a decision
 
 
 @dataclass(frozen=True)
-class NoDynamics(Flat):
+class NoDynamics(Euclidean):
     """A point that moves to any position within one decision."""
 
     spec = Spec(obs=1, act=1, dt=DT)

@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.state import Flat, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -24,7 +24,7 @@ MIDDLE = (0.5, 0.5)  # [m]
 
 
 @part
-class PointMass(Flat):
+class PointMass(Euclidean):
     """Double integrator on the plane."""
 
     acceleration: Positive = ACCELERATION  # [m/s^2] a

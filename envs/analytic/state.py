@@ -14,8 +14,8 @@ def fully_observed(x: Array, reward: Array, terminated: Array | bool = False) ->
     return EnvState(x, x, reward, ended, jnp.zeros((), bool), {}, {})
 
 
-class Flat(ABC):
-    """A fully observed environment whose local coordinates are x less its equilibrium."""
+class Euclidean(ABC):
+    """Its states are vectors, so that local coordinates are x less the equilibrium."""
 
     @abstractmethod
     def dynamics(self, x: Array, u: Array) -> Array:

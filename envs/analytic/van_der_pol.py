@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import Flat, fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -26,7 +26,7 @@ FORCE = 20.0  # u at a = 1
 
 
 @part
-class VanDerPol(Flat):
+class VanDerPol(Euclidean):
     """Van der Pol's oscillator, to be stopped at the origin."""
 
     start: Positive = 2.0  # largest initial |x1| and |x2|
