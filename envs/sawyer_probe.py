@@ -73,6 +73,8 @@ class SawyerProbe:
     damping: Positive = 0.02  # of the least squares, for [m] and [rad]
     radius: ClassVar[float] = 0.012  # [m] of the rod
 
+    spec = Spec(obs=4, act=2, dt=DT)
+
     def __post_init__(self) -> None:
         check(self.physics)
         for name in ("objects", "low", "high", "theta"):
@@ -83,11 +85,6 @@ class SawyerProbe:
         return ContactPlane(
             self.objects, self.acceleration, self.drag, self.radius, self.low, self.high, self.theta
         )
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=4, act=2, dt=DT)
 
     @cached_property
     def asset(self) -> str:

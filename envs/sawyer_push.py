@@ -29,7 +29,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco import kinematics, mjcf
 from hybrid_rl.envs.mujoco.kinematics import Chain, damped_inverse, rotate_towards, stay_within
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
@@ -156,12 +156,12 @@ class SawyerPush:
         """
         groups = [self._at(name) for name in ("command", "motion") if name in self.extra]
         for at in (0, 2, *groups):
-            obs = obs.at[at : at + 2].set(_turned(obs[at : at + 2], angle))
+            obs = obs.at[at : at + 2].set(kinematics.turned(obs[at : at + 2], angle))
         return obs
 
     def turned_action(self, action: Array, angle: Array) -> Array:
         """The action [2] turned by `angle` [rad]."""
-        return _turned(action, angle)
+        return kinematics.turned(action, angle)
 
     def _at(self, name: str) -> int:
         """Where the group `name` begins in the observation."""
@@ -216,12 +216,6 @@ class SawyerPush:
         metrics = {"success": success.astype(jnp.float32), "distance": distance}
         no = jnp.zeros((), bool)
         return EnvState(data, obs, reward, success & self.terminate, no, metrics, info)
-
-
-def _turned(v: Array, angle: Array) -> Array:
-    """v [2] turned by `angle` [rad]."""
-    c, s = jnp.cos(angle), jnp.sin(angle)
-    return jnp.stack((c * v[0] - s * v[1], s * v[0] + c * v[1]))
 
 
 def _disc(key: Array) -> Array:

@@ -56,13 +56,10 @@ class SawyerTorque:
     start_spread: NotNegative = 0.05  # [rad] largest distance of each joint from the neutral pose
     sensor_noise: NotNegative = 0.0  # [rad/s] standard deviation, on q'
 
+    spec = Spec(obs=42, act=7, dt=DT)
+
     def __post_init__(self) -> None:
         check(self.physics)
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=42, act=7, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -28,9 +28,10 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane, turned
+from hybrid_rl.envs.analytic.contact_plane import THREE, ContactPlane
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf, rounded_boxes
+from hybrid_rl.envs.mujoco.kinematics import turned
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, check
 from hybrid_rl.fields import Discount, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -72,6 +73,8 @@ class Sprk:
     false_contact: Discount = 0.0  # probability for |u - u_before| = 2, besides the sensor's own
     missed: Discount = 0.0  # probability
 
+    spec = Spec(obs=4, act=2, dt=DT)
+
     def __post_init__(self) -> None:
         check(self.physics)
         for name in PLANE:
@@ -80,11 +83,6 @@ class Sprk:
     @cached_property
     def _plane(self) -> ContactPlane:
         return ContactPlane(**{name: getattr(self, name) for name in PLANE})
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=4, act=2, dt=DT)
 
     @cached_property
     def asset(self) -> str:

@@ -55,7 +55,6 @@ from hybrid_rl.run.folder import members
 from hybrid_rl.run.integrity import write_text
 from hybrid_rl.run.progress import say
 from hybrid_rl.trained import Trained
-from hybrid_rl.trained import load as load  # by its earlier name, evaluate.load
 from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys
 

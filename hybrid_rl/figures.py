@@ -21,6 +21,7 @@ import inspect
 import json
 import sys
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
@@ -56,7 +57,8 @@ FROM = Argument("from", "", "instead of runs: the JSON of a picture, which is dr
 class Study(Protocol):
     """A module with these two functions, in HOMES or anywhere on Python's path.
 
-    The first line of its docstring is its entry in the list; the rest is its help.
+    It draws in the style of all pictures, hybrid_rl.analysis.style.STYLE. The first line of its
+    docstring is its entry in the list; the rest is its help.
     """
 
     figure: Callable[..., "tuple[Figure, dict[str, Any]]"]
@@ -132,16 +134,21 @@ def arguments(study: Study) -> tuple[Argument, ...]:
     return tuple(declared)
 
 
+def _styled() -> AbstractContextManager[None]:
+    """Within, matplotlib draws in the style of all pictures."""
+    import matplotlib
+
+    return matplotlib.rc_context(STYLE)
+
+
 def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
     """Write the picture, and its numbers as JSON next to it.
 
     A JSON file that has these numbers already, such as the one that was redrawn, is left untouched.
     """
-    import matplotlib
-
     out.parent.mkdir(parents=True, exist_ok=True)
     undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
-    with matplotlib.rc_context(STYLE):
+    with _styled():
         dpi = min(DPI, MOST_PIXELS / figure.get_figwidth())
         figure.savefig(out, dpi=dpi, metadata=undated)
     file, values = out.with_suffix(".json"), json_value(numbers)
@@ -165,7 +172,8 @@ def redrawn(study: Study, file: str) -> tuple["Figure", dict[str, Any]]:
     """
     try:
         content = json_file(Path(file))
-        return study.draw(arrays(content)), content
+        with _styled():
+            return study.draw(arrays(content)), content
     except UsageError as error:
         raise UsageError(f"from={error}") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
@@ -217,7 +225,8 @@ def main() -> None:
     out = output("out", values.pop("out"), suffixes, ".json")
     del values["study"]
     prepare(load([]))
-    figure, numbers = study.figure(**values)
+    with _styled():
+        figure, numbers = study.figure(**values)
     if table is not None and out.suffix == TABLE:
         out.write_text(table(numbers), encoding="utf-8")
         print(*study.summary(numbers), out, sep="\n")

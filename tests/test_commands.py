@@ -23,7 +23,7 @@ from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.native import cores
 from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.trained import build_run, restore
+from hybrid_rl.trained import build_run, load, restore
 from hybrid_rl.training.rollout import evaluation_keys
 
 MODES = {"full": "eval/return", "policy": "eval/policy_return", "planner": "eval/planner_return"}
@@ -145,9 +145,9 @@ def test_evaluate_in_another_world(trained, capsys):
     values = json.loads((trained / name).read_text())
     assert values["changes"] == dict(change.split("=") for change in changes)
     made: list[int] = []
-    plain = evaluate.evaluate(evaluate.load(trained), "policy", 3, made.append)["return"]
+    plain = evaluate.evaluate(load(trained), "policy", 3, made.append)["return"]
     assert made == sorted(set(made))
-    assert made[0] == 0 < made[-1] < evaluate.load(trained).episode.steps
+    assert made[0] == 0 < made[-1] < load(trained).episode.steps
     assert not np.isclose(values["returns"], plain, rtol=1e-4).any()
 
 
@@ -164,7 +164,7 @@ def test_a_part_of_a_checkpoint_is_restored_alone(trained):
 
 def test_a_trained_policy_gets_what_the_evaluation_says(trained):
     """Driven from Python, one observation at a time."""
-    result = evaluate.load(str(trained))
+    result = load(str(trained))
     expected = evaluate.evaluate(result, "policy", 1)["return"][0, 0]
     episode, policy = result.episode, result.policy(mode="policy")
     state = episode.reset(jax.random.split(evaluation_keys(0, 1)[0])[0])
@@ -235,7 +235,7 @@ def test_python_does_what_the_commands_do(tmp_path):
     values = run(tmp_path / "run", "algo=sac")
     before = contents(tmp_path)
     assert values == summary_of(tmp_path / "run")
-    trained = evaluate.load(Path(values["run_dir"]))
+    trained = load(Path(values["run_dir"]))
     assert (trained.seeds, trained.step, trained.notes) == ((0,), 600, ())
     got = evaluate.evaluate(trained, "policy", episodes=1)
     assert list(got) == ["return"]

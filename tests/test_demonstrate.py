@@ -14,6 +14,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.sawyer_push import SawyerPush
+from hybrid_rl.trained import load as load_run
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Params
 
@@ -83,9 +84,9 @@ def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
     folder, file = tmp_path / "run", Path(demonstrations.partition("=")[2])
     few = ["total_steps=20", "checkpoint_every=20", "episode.steps=5", "pretrain=2"]
     run(folder, "algo=bc", demonstrations, *few, "random_steps=0")
-    before = evaluate.evaluate(evaluate.load(folder), "policy", 2)["return"]
+    before = evaluate.evaluate(load_run(folder), "policy", 2)["return"]
     file.unlink()
-    after = evaluate.evaluate(evaluate.load(folder), "policy", 2)["return"]
+    after = evaluate.evaluate(load_run(folder), "policy", 2)["return"]
     np.testing.assert_array_equal(after, before)
     assert call_train(f"resume={folder}", "total_steps=40") == 2
     printed = capsys.readouterr().err
@@ -102,7 +103,7 @@ def test_a_regulator_of_recordings_outlives_them(tmp_path):
     few = ["total_steps=4", "checkpoint_every=4", "episode.steps=2", "compile_cache=null"]
     given = [task, "algo=koopman_known", f"demonstrations={file}", f"run_dir={folder}", *few]
     train.train(config.load(given))
-    before = evaluate.evaluate(evaluate.load(folder), "full", 2)["return"]
+    before = evaluate.evaluate(load_run(folder), "full", 2)["return"]
     file.unlink()
     after = evaluate.evaluate(held_out.restored(folder), "full", 2)["return"]
     np.testing.assert_array_equal(after, before)

@@ -22,6 +22,7 @@ from hybrid_rl.envs import check
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import UsageError
+from hybrid_rl.trained import load
 from hybrid_rl.training.actor import Actor
 
 pytestmark = pytest.mark.turns(3)
@@ -86,7 +87,7 @@ def test_a_method_is_one_yaml_and_a_recursive_learner_one_file(conf, tmp_path, c
     written = train(conf, tmp_path / "run", "algo=single_model")
     assert capfd.readouterr().err == ""
     assert list(written.learners) == ["model", "policy", "average"]
-    trained = evaluate.load(tmp_path / "run")
+    trained = load(tmp_path / "run")
     total, count = np.asarray(trained.params.scale[0])
     assert count == 100
     assert total < 0  # rewards of the pendulum
@@ -150,7 +151,7 @@ def test_an_analytic_environment_is_one_file_and_one_yaml(conf, tmp_path, monkey
     assert capfd.readouterr().err == ""
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
-    trained = evaluate.load(folder)
+    trained = load(folder)
     assert trained.episode.env.power == 4
     assert (evaluate.evaluate(trained, episodes=2)["return"] < 0).all()
     monkeypatch.setattr(offscreen, "backend", lambda: "egl")
@@ -166,7 +167,7 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
     (conf / "task" / "crane.yaml").write_text(yaml)
     train(conf, tmp_path / "run", "task=crane", "algo=sac", "episode.steps=10", "env.mass=1.5")
     assert capfd.readouterr().err == ""
-    trained = evaluate.load(tmp_path / "run")
+    trained = load(tmp_path / "run")
     assert (evaluate.evaluate(trained, episodes=1)["return"] < 0).all()
     film = render.episode(trained, steps=3)
     assert film.poses.shape == (4, 2)
@@ -214,7 +215,7 @@ def test_a_reward_is_one_file_that_the_environment_pays(conf, tmp_path, capsys):
     (conf / "reward" / "upright.yaml").write_text(fields)
     words = section("A reward of your own", HOWTO).split("my_conf ")[1].split("\n")[0].split()
     train(conf, tmp_path / "run", *words, "episode.steps=5")
-    trained = evaluate.load(tmp_path / "run")
+    trained = load(tmp_path / "run")
     assert trained.episode.reward.effort == 0.2
     got = evaluate.evaluate(trained, "full", 2)["return"]
     assert (np.abs(got) <= 5 * 1.2).all()
@@ -236,7 +237,7 @@ def test_a_gymnasium_environment_trains_as_it_is(conf, tmp_path, monkeypatch):
         conf, run, "task=gymnasium", "env.make=reach:Reach", "algo=sac", "episode.steps=4"
     )
     assert (composed.task, composed.episode.steps) == ("reach_Reach", 4)
-    assert evaluate.evaluate(evaluate.load(run), episodes=2)["return"].shape == (1, 2)
+    assert evaluate.evaluate(load(run), episodes=2)["return"].shape == (1, 2)
 
 
 def test_a_stack_of_observations_is_one_class(conf, tmp_path):

@@ -22,7 +22,7 @@ from jax import Array
 
 from hybrid_rl.envs.analytic.hills import phi
 from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import part
 from hybrid_rl.types import EnvState, Spec
@@ -33,27 +33,20 @@ L1, L2 = 0.5, 0.75  # [m]
 
 
 @part
-class CartDoublePendulum:
+class CartDoublePendulum(Euclidean):
     """Cart and double pendulum; `reward` is hills or upright."""
 
     reward: Literal["hills", "upright"] = "hills"
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=6, act=1, dt=DT)
+    spec = Spec(obs=6, act=1, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
         x = jax.random.uniform(key, (), jnp.float32, -0.8, 0.8)
         return fully_observed(jnp.zeros(6).at[0].set(x), jnp.float32(0.0))
 
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [1] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
-        fallen = jnp.any(jnp.abs(x[1:3]) > jnp.pi / 2)
-        return fully_observed(x, self.reward_of(state.data, u, x), fallen)
+    def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
+        return fully_observed(x, reward, jnp.any(jnp.abs(x[1:3]) > jnp.pi / 2))
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [6], which led to `after` [6]."""
@@ -68,14 +61,6 @@ class CartDoublePendulum:
     def equilibrium(self) -> tuple[Array, Array]:
         """Both rods upright, the cart in the middle of the rail."""
         return jnp.zeros(6), jnp.zeros(1)
-
-    def to_local(self, x: Array) -> Array:
-        """Local coordinates e [6] of the observation x [6]."""
-        return x
-
-    def from_local(self, e: Array) -> Array:
-        """The observation [6] at local coordinates e [6]."""
-        return e
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

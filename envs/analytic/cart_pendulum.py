@@ -19,7 +19,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -29,7 +29,7 @@ SUBSTEPS = 4  # Runge-Kutta steps of a decision
 
 
 @part
-class CartPendulum:
+class CartPendulum(Euclidean):
     """A rod on a cart, to be balanced."""
 
     cart_mass: Positive = 10.472  # [kg] M
@@ -49,16 +49,14 @@ class CartPendulum:
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
         x = jax.random.uniform(key, (4,), jnp.float32, -self.start, self.start)
-        return self._state(x, jnp.float32(0.0))
+        return self._state(x, jnp.float32(0.0), {})
 
     def step(self, state: EnvState, action: Array) -> EnvState:
         """The state after one decision. action: [1] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
-        after = self._state(x, self.reward_of(state.data, u, x))
+        after = super().step(state, action)
         return after.replace(terminated=after.metrics["success"] == 0)
 
-    def _state(self, x: Array, reward: Array) -> EnvState:
+    def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         inside = (jnp.abs(x[0]) < self.angle_limit) & (jnp.abs(x[1]) < self.position_limit)
         return fully_observed(x, reward).replace(metrics={"success": inside.astype(jnp.float32)})
 
@@ -85,14 +83,6 @@ class CartPendulum:
     def equilibrium(self) -> tuple[Array, Array]:
         """The rod upright, the cart in the middle of the rail."""
         return jnp.zeros(4), jnp.zeros(1)
-
-    def to_local(self, x: Array) -> Array:
-        """Local coordinates e [4] of the observation x [4]."""
-        return x
-
-    def from_local(self, e: Array) -> Array:
-        """The observation [4] at local coordinates e [4]."""
-        return e
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

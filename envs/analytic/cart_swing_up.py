@@ -19,7 +19,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -31,7 +31,7 @@ UPRIGHT = 0.9  # least cos th of a success
 
 
 @part
-class CartSwingUp:
+class CartSwingUp(Euclidean):
     """A rod on a cart, to be swung up."""
 
     length: Positive = 0.6  # [m] l, to the rod's mass
@@ -47,15 +47,9 @@ class CartSwingUp:
     def reset(self, key: Array) -> EnvState:
         """A random initial state: the rod hangs."""
         x = jnp.array([jnp.pi, 0, 0, 0]) + self.start * jax.random.normal(key, (4,))
-        return self._state(x, jnp.float32(0.0))
+        return self._state(x, jnp.float32(0.0), {})
 
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [1] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
-        return self._state(x, self.reward_of(state.data, u, x))
-
-    def _state(self, x: Array, reward: Array) -> EnvState:
+    def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         upright = (jnp.cos(x[0]) > UPRIGHT).astype(jnp.float32)
         ended = jnp.zeros((), bool)
         if self.rail is not None:
@@ -82,14 +76,6 @@ class CartSwingUp:
     def equilibrium(self) -> tuple[Array, Array]:
         """The rod upright, the cart in the middle of the rail."""
         return jnp.zeros(4), jnp.zeros(1)
-
-    def to_local(self, x: Array) -> Array:
-        """Local coordinates e [4] of the observation x [4]."""
-        return x
-
-    def from_local(self, e: Array) -> Array:
-        """The observation [4] at local coordinates e [4]."""
-        return e
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

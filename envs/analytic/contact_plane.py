@@ -30,6 +30,7 @@ from jax import Array
 from hybrid_rl.envs.analytic import arrangements
 from hybrid_rl.envs.analytic.point_mass import DT, move
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.envs.mujoco.kinematics import turned
 from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
 
@@ -71,6 +72,8 @@ class ContactPlane:
     false_contact: Discount = 0.0  # probability for |u - u_before| = 2
     missed: Discount = 0.0  # probability
 
+    spec = Spec(obs=4, act=2, dt=DT)
+
     def __post_init__(self) -> None:
         if not _below(self.low, self.high):
             raise FieldError(self, "low", "needs two numbers below high")
@@ -88,11 +91,6 @@ class ContactPlane:
         each = [arrangements.distance(points, shape) for shape in self.objects]
         gap = self.radius + CLEAR * float(np.min(high - low))
         return float((np.min(each, 0) > gap).mean()) if each else 1.0
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=4, act=2, dt=DT)
 
     @property
     def middle(self) -> Array:
@@ -174,12 +172,6 @@ class ContactPlane:
     def pose(self, state: EnvState) -> Array:
         """theta and the position of the ball, qpos [5], for rendering."""
         return jnp.concatenate([state.data.pose, state.obs[:2]])
-
-
-def turned(s: Array, angle: Array) -> Array:
-    """s [2] rotated by an angle [] [rad]."""
-    sin, cos = jnp.sin(angle), jnp.cos(angle)
-    return jnp.stack([cos * s[0] - sin * s[1], sin * s[0] + cos * s[1]])
 
 
 def rounded_box(

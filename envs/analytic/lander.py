@@ -25,7 +25,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import among, part
 from hybrid_rl.types import EnvState, Spec
@@ -38,16 +38,13 @@ LARGEST = 0.9999  # |a| in the cost of u, which is infinite at 1
 
 
 @part
-class Lander:
+class Lander(Euclidean):
     """A lander with two thrusters."""
 
     task: Literal["hover", "flip"] = "flip"
     turns: Annotated[float, among(0.5, 1.0)] = 0.5  # of a flip
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=6, act=2, dt=DT)
+    spec = Spec(obs=6, act=2, dt=DT)
 
     @property
     def goal(self) -> float:
@@ -60,12 +57,6 @@ class Lander:
         x = x if self.task == "flip" else jnp.zeros(6, jnp.float32)
         none = jnp.zeros((), jnp.int32)
         return self._state(x, jnp.float32(0.0), {"held": none, "turned": none})
-
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [2] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
-        return self._state(x, self.reward_of(state.data, u, x), state.info)
 
     def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
         """At x [6], after the decisions that `info` counts."""
@@ -98,14 +89,6 @@ class Lander:
     def equilibrium(self) -> tuple[Array, Array]:
         """Upright at rest, on half the thrust."""
         return jnp.zeros(6), jnp.full(2, 0.5)
-
-    def to_local(self, x: Array) -> Array:
-        """Local coordinates e [6] of the observation x [6]."""
-        return x
-
-    def from_local(self, e: Array) -> Array:
-        """The observation [6] at local coordinates e [6]."""
-        return e
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.hills import phi
-from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.types import EnvState, Spec
 
@@ -23,24 +23,15 @@ DT = 0.2  # [s] of a decision
 
 
 @dataclass(frozen=True)
-class NoDynamics:
+class NoDynamics(Euclidean):
     """A point that moves to any position within one decision."""
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=1, act=1, dt=DT)
+    spec = Spec(obs=1, act=1, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
         x = jax.random.uniform(key, (1,), jnp.float32, -0.8, 0.8)
         return fully_observed(x, jnp.float32(0.0))
-
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [1] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
-        return fully_observed(x, self.reward_of(state.data, u, x))
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [1], which led to `after` [1]."""
@@ -53,14 +44,6 @@ class NoDynamics:
     def equilibrium(self) -> tuple[Array, Array]:
         """The middle of the rail."""
         return jnp.zeros(1), jnp.zeros(1)
-
-    def to_local(self, x: Array) -> Array:
-        """Local coordinates e [1] of the observation x [1]."""
-        return x
-
-    def from_local(self, e: Array) -> Array:
-        """The observation [1] at local coordinates e [1]."""
-        return e
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

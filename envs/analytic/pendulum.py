@@ -29,10 +29,7 @@ MAX_SPEED = 8.0  # [rad/s]
 class Pendulum:
     """Pendulum swing-up."""
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=3, act=1, dt=DT)
+    spec = Spec(obs=3, act=1, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import NotNegative, Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -24,27 +24,18 @@ MIDDLE = (0.5, 0.5)  # [m]
 
 
 @part
-class PointMass:
+class PointMass(Euclidean):
     """Double integrator on the plane."""
 
     acceleration: Positive = ACCELERATION  # [m/s^2] a
     drag: NotNegative = 0.0  # [1/s] b
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=4, act=2, dt=DT)
+    spec = Spec(obs=4, act=2, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
         p = jax.random.uniform(key, (2,), jnp.float32)
         return fully_observed(jnp.concatenate([p, jnp.zeros(2)]), jnp.float32(0.0))
-
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [2] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
-        return fully_observed(x, self.reward_of(state.data, u, x))
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [2] at x [4], which led to `after` [4]."""
@@ -58,14 +49,6 @@ class PointMass:
     def equilibrium(self) -> tuple[Array, Array]:
         """At rest in the middle of the unit square."""
         return jnp.array([*MIDDLE, 0.0, 0.0]), jnp.zeros(2)
-
-    def to_local(self, x: Array) -> Array:
-        """Local coordinates e [4] of the observation x [4]."""
-        return x - self.equilibrium()[0]
-
-    def from_local(self, e: Array) -> Array:
-        """The observation [4] at local coordinates e [4]."""
-        return self.equilibrium()[0] + e
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering."""

@@ -49,14 +49,11 @@ class QuadcopterSE3:
     rotor_loss: Fraction = 0.0  # share of rotor 1's thrust
     fault_time: NotNegative = 2.0  # [s] of an episode at which wind and loss begin
 
+    spec = Spec(obs=18, act=4, dt=DT)
+
     def __post_init__(self) -> None:
         if len(self.sensor_noise) not in (1, 18):
             raise FieldError(self, "sensor_noise", "must be 1 or 18 numbers")
-
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=18, act=4, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -56,10 +56,7 @@ class SprkSand:
     slip: float = 0.15  # [rad] from the command to the force
     variation: Discount = 0.2  # of k with the position, a share
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=12, act=2, dt=DT)
+    spec = Spec(obs=12, act=2, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""

@@ -1,4 +1,6 @@
-"""The state of a fully observed environment."""
+"""Fully observed environments: their state, and what those near an equilibrium share."""
+
+from abc import ABC, abstractmethod
 
 import jax.numpy as jnp
 from jax import Array
@@ -10,3 +12,37 @@ def fully_observed(x: Array, reward: Array, terminated: Array | bool = False) ->
     """The state of an environment whose observation is its whole state x [o]."""
     ended = jnp.asarray(terminated)
     return EnvState(x, x, reward, ended, jnp.zeros((), bool), {}, {})
+
+
+class Euclidean(ABC):
+    """Its states are vectors, so that local coordinates are x less the equilibrium."""
+
+    @abstractmethod
+    def dynamics(self, x: Array, u: Array) -> Array:
+        """The next observation [o] after action u [m] at x [o]."""
+
+    @abstractmethod
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [] of action u [m] at x [o], which led to `after` [o]."""
+
+    @abstractmethod
+    def equilibrium(self) -> tuple[Array, Array]:
+        """The observation [o] and the action [m] at rest."""
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """The state after one decision. action: [m] in [-1, 1]."""
+        u = jnp.clip(action, -1.0, 1.0)
+        x = self.dynamics(state.data, u)
+        return self._state(x, self.reward_of(state.data, u, x), state.info)
+
+    def _state(self, x: Array, reward: Array, info: dict[str, Array]) -> EnvState:
+        """At x [o]; info: of the state before."""
+        return fully_observed(x, reward)
+
+    def to_local(self, x: Array) -> Array:
+        """Local coordinates e [o] of the observation x [o]."""
+        return x - self.equilibrium()[0]
+
+    def from_local(self, e: Array) -> Array:
+        """The observation [o] at local coordinates e [o]."""
+        return self.equilibrium()[0] + e

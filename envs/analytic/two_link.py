@@ -39,10 +39,7 @@ class TwoLink:
     reach: Positive = 2.6  # [rad] largest target of each joint
     success_distance: Positive = 0.05  # [rad]
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=6, act=2, dt=DT)
+    spec = Spec(obs=6, act=2, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """At rest at q = 0, with a random target."""

@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.analytic.integrate import rk4
-from hybrid_rl.envs.analytic.state import fully_observed
+from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -26,26 +26,17 @@ FORCE = 20.0  # u at a = 1
 
 
 @part
-class VanDerPol:
+class VanDerPol(Euclidean):
     """Van der Pol's oscillator, to be stopped at the origin."""
 
     start: Positive = 2.0  # largest initial |x1| and |x2|
 
-    @property
-    def spec(self) -> Spec:
-        """Observation size, action size and decision interval."""
-        return Spec(obs=2, act=1, dt=DT)
+    spec = Spec(obs=2, act=1, dt=DT)
 
     def reset(self, key: Array) -> EnvState:
         """A random initial state."""
         x = jax.random.uniform(key, (2,), jnp.float32, -self.start, self.start)
         return fully_observed(x, jnp.float32(0.0))
-
-    def step(self, state: EnvState, action: Array) -> EnvState:
-        """The state after one decision. action: [1] in [-1, 1]."""
-        u = jnp.clip(action, -1.0, 1.0)
-        x = self.dynamics(state.data, u)
-        return fully_observed(x, self.reward_of(state.data, u, x))
 
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [] of action u [1] at x [2], which led to `after` [2]."""
@@ -58,14 +49,6 @@ class VanDerPol:
     def equilibrium(self) -> tuple[Array, Array]:
         """At rest at the origin."""
         return jnp.zeros(2), jnp.zeros(1)
-
-    def to_local(self, x: Array) -> Array:
-        """Local coordinates e [2] of the observation x [2]."""
-        return x
-
-    def from_local(self, e: Array) -> Array:
-        """The observation [2] at local coordinates e [2]."""
-        return e
 
     def scene(self) -> str:
         """MJCF text of the scene for rendering: the phase plane."""

@@ -35,7 +35,6 @@ class ComputedTorque:
     integral: NotNegative = 0.0  # [1/s] k
 
     def __post_init__(self) -> None:
-        """Check the world."""
         _check(self.world)
 
     def init(self, spec: Spec) -> Array:
@@ -72,7 +71,6 @@ class JointPD:
     integral: NotNegative = 0.0  # [1/s] k
 
     def __post_init__(self) -> None:
-        """Check the fields."""
         _check(self.world)
         for name in ("stiffness", "damping"):
             if len(getattr(self, name)) != 7:

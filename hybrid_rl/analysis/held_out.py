@@ -20,7 +20,7 @@ from jax import Array
 from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, iqm
 from hybrid_rl.analysis.recorded import labels, run_folders
-from hybrid_rl.analysis.style import STYLE, words
+from hybrid_rl.analysis.style import words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.trained import Trained, load
@@ -134,20 +134,18 @@ def errors(run: Trained, obs: Array, action: Array, after: Array) -> np.ndarray:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """A panel for each kind of decisions, a point with its band for each run; grey: each seed."""
-    import matplotlib
     from matplotlib.figure import Figure
 
     runs = numbers["runs"]
     steps = [f"{int(one['step']):,}" for one in runs.values()]
     names = [run.removesuffix(step).rstrip(" ,:") for run, step in zip(runs, steps, strict=True)]
     entries = [f"{words(name)}, {step} decisions" for name, step in zip(names, steps, strict=True)]
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(8, 1.0 + rows.HEIGHT * len(runs)), layout="constrained")
-        for axes, kind in zip(figure.subplots(1, 2, sharey=True), SETS, strict=True):
-            for row, one in enumerate(runs.values()):
-                each = one[kind]["each"]
-                axes.plot(each, [row] * len(each), ".", color="#BBBBBB")
-            spreads = {run: [[one[kind]["iqm"], *one[kind]["band"]]] for run, one in runs.items()}
-            rows.points(axes, spreads, entries=entries)
-            axes.set(title=f"on {kind}", xlabel="held-out error")
+    figure = Figure(figsize=(8, 1.0 + rows.HEIGHT * len(runs)), layout="constrained")
+    for axes, kind in zip(figure.subplots(1, 2, sharey=True), SETS, strict=True):
+        for row, one in enumerate(runs.values()):
+            each = one[kind]["each"]
+            axes.plot(each, [row] * len(each), ".", color="#BBBBBB")
+        spreads = {run: [[one[kind]["iqm"], *one[kind]["band"]]] for run, one in runs.items()}
+        rows.points(axes, spreads, entries=entries)
+        axes.set(title=f"on {kind}", xlabel="held-out error")
     return figure

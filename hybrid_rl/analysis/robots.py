@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from hybrid_rl.analysis.recorded import run_folders
-from hybrid_rl.analysis.style import STYLE, legend_below, line_styles, words
+from hybrid_rl.analysis.style import legend_below, line_styles, words
 from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
@@ -80,25 +80,23 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """The picture."""
-    import matplotlib
     from matplotlib.figure import Figure
 
     robots = numbers["robots"]
-    with matplotlib.rc_context(STYLE):
-        picture = Figure(figsize=(4.4 * len(robots), 4.2), layout="constrained")
-        for axes, (robot, rows) in zip(
-            np.atleast_1d(picture.subplots(1, len(robots))), robots.items(), strict=True
-        ):
-            style = line_styles(rows)
-            for label, each in rows.items():
-                for i, run in enumerate(each):
-                    x, y = binned(run["episodes"])
-                    name = words(label) if i == 0 else None
-                    axes.plot(x, y, label=name, **style[label])
-            axes.set_title(robot)
-            axes.set_xlabel("minutes of the robot's life")
-            axes.set_ylabel("return of an episode, while learning")
-            legend_below(axes)
+    picture = Figure(figsize=(4.4 * len(robots), 4.2), layout="constrained")
+    for axes, (robot, rows) in zip(
+        np.atleast_1d(picture.subplots(1, len(robots))), robots.items(), strict=True
+    ):
+        style = line_styles(rows)
+        for label, each in rows.items():
+            for i, run in enumerate(each):
+                x, y = binned(run["episodes"])
+                name = words(label) if i == 0 else None
+                axes.plot(x, y, label=name, **style[label])
+        axes.set_title(robot)
+        axes.set_xlabel("minutes of the robot's life")
+        axes.set_ylabel("return of an episode, while learning")
+        legend_below(axes)
     return picture
 
 

@@ -18,7 +18,6 @@ class ConstantController:
     action: float = 0.0  # of every actuator
 
     def __post_init__(self) -> None:
-        """Check the field."""
         if not -1 <= self.action <= 1:
             raise FieldError(self, "action", "must lie in [-1, 1]")
 

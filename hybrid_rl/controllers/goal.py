@@ -53,7 +53,6 @@ class GoalController:
     ahead: Natural = 0  # T positions on the way to a candidate; 0: the candidate alone
 
     def __post_init__(self) -> None:
-        """Check the target."""
         if self.ahead and not hasattr(self.target, "along"):
             kind = type(self.target).__name__
             words = f"{kind} values no ways; target=entropy_reduction does"

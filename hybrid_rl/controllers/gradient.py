@@ -29,6 +29,7 @@ candidates is that of constrained cross-entropy methods (Wen and Topcu 2018). Se
 step by its root mean square and the prices are our choice.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -261,7 +262,5 @@ class GradientController:
         if self.policy is None:
             return {}
 
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
-
+        step = partial(self.model.step, params.model)
         return agreement.metrics(step, self.policy, params, value, x, u, self.horizon)

@@ -5,6 +5,7 @@ set C of thesis Definition 4.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import jax.numpy as jnp
@@ -37,9 +38,7 @@ class GuardedController:
             return u, state, metrics
         x = self.model.lift(params.model, obs)
 
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
-
+        step = partial(self.model.step, params.model)
         out = lyapunov.exits_level_set(self.policy.lyapunov, step, x, u, self.level)
         u = jnp.where(out, jnp.clip(self.policy.mean(params.policy, x), -1, 1), u)
         return u, state, {**metrics, "planner/handed_over": out.astype(jnp.float32)}

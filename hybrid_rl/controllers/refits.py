@@ -55,7 +55,6 @@ class RefitsController:
     disagreement_price: NotNegative = 3.0  # of one running std of the change, in one decision
 
     def __post_init__(self) -> None:
-        """Check the elites."""
         if self.elites > self.samples:
             raise FieldError(self, "elites", f"must be at most samples={self.samples}")
 

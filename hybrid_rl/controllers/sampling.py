@@ -12,6 +12,7 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any, Literal, NamedTuple
 
 import jax
@@ -57,7 +58,6 @@ class SamplingController:
     agreement_every: Count = 1  # decisions between comparisons with `policy`
 
     def __post_init__(self) -> None:
-        """Check the proposal."""
         if self.log_density and not getattr(self.proposal, "density", True):
             words = "needs candidates with a density; choose proposal=policy or proposal=noise"
             raise FieldError(self, "log_density", f"{words}, or false")
@@ -88,7 +88,7 @@ class SamplingController:
         x = lifting.start(self.model, params, obs)
         to_go, memory, rolling = self._to_go(params, state, x, rolling)
         samples = sampling.imagine(
-            lambda x, u: self.model.step(params.model, x, u),
+            partial(self.model.step, params.model),
             lambda carry, x, *a: self.proposal(params, carry, lifting.policy_input(x), *a),
             state.carries,
             x,
@@ -161,9 +161,7 @@ class SamplingController:
 
     def _comparison(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """The metrics of `_agreement`."""
-
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
+        step = partial(self.model.step, params.model)
 
         def value(path: Path) -> Array:
             return to_go(path)[0]

@@ -6,6 +6,7 @@ Source: thesis section 7.5; feed-forward is ours.
 """
 
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any, Protocol
 
 from jax import Array
@@ -44,9 +45,7 @@ class TrackController:
         """Action [m], next state, metrics of the inner controller. The key is consumed."""
         now, after = (self.model.lift(params.model, x) for x in self.world.reference(obs))
 
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
-
+        step = partial(self.model.step, params.model)
         policy = self.policy.aim(params.policy, now, after, step)
         return self.controller.act(params._replace(policy=policy), state, obs, key)
 

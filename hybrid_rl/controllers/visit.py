@@ -9,6 +9,7 @@ also make candidates that no motion reaches.
 """
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import jax
@@ -51,9 +52,7 @@ class VisitController:
         spread = jnp.linalg.norm(jax.vmap(self.model.std, (None, 0))(params.model, near), axis=-1)
         goal = near[jnp.argmax(spread)]
 
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
-
+        step = partial(self.model.step, params.model)
         policy = self.policy.aim(params.policy, goal, goal, step)
         return self.controller.act(params._replace(policy=policy), state, obs, acting)
 

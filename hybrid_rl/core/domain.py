@@ -28,7 +28,6 @@ class Box:
     lattice: bool = False  # points that `sample` draws; false: independent
 
     def __post_init__(self) -> None:
-        """Check the fields."""
         if not len(self.coordinates) == len(self.low) == len(self.high) or not self.coordinates:
             raise ValueError("domain: coordinates, low and high must have one length, 1 or more")
         if not all(a < b for a, b in zip(self.low, self.high, strict=True)):

@@ -38,7 +38,6 @@ class CategoricalQ:
     bound: Positive = 5.0  # of scaled returns
 
     def __post_init__(self) -> None:
-        """Check the network."""
         normalised.check(self)
 
     @property

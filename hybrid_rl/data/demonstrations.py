@@ -92,7 +92,6 @@ class Demonstrations:
     episodes: int | None = None  # None: all
 
     def __post_init__(self) -> None:
-        """Check the fields and the file."""
         if self.episodes is not None and self.episodes < 1:
             raise ValueError(f"num_demonstrations={self.episodes}: must be 1 or more, or null")
         self.load()

@@ -32,7 +32,6 @@ class Ensemble:
     elites: int | None = None  # members that `draw` uses; None: all
 
     def __post_init__(self) -> None:
-        """Check the elites."""
         if self.elites is not None and self.elites not in range(1, self.members + 1):
             words = f"must be a whole number from 1 to members={self.members}, or null for all"
             raise FieldError(self, "elites", words)

@@ -35,7 +35,6 @@ class WeightedSum:
     decays: Mapping[str, float] = field(default_factory=dict)  # d_i per decision; absent: 1
 
     def __post_init__(self) -> None:
-        """Check the fields."""
         names = ", ".join(self.terms)
         if self.weights.keys() != self.terms.keys():
             weights = ", ".join(self.weights)

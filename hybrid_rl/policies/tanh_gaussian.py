@@ -42,7 +42,6 @@ class TanhGaussian:
     normalise: bool = False
 
     def __post_init__(self) -> None:
-        """Check the bounds."""
         if self.log_std_min >= self.log_std_max:
             raise FieldError(self, "log_std_min", "must lie below log_std_max")
 
@@ -133,7 +132,6 @@ class StartedGaussian(TanhGaussian):
     episode: Mapping[str, int] | None = None  # with `action_repeat`; None: 1
 
     def __post_init__(self) -> None:
-        """Check the fields and the file."""
         super().__post_init__()
         if self.world is None:
             raise FieldError(self, "world", "must be the environment")

@@ -32,7 +32,6 @@ class UnitGaussian:
     log_std_max: float = 2.0
 
     def __post_init__(self) -> None:
-        """Check the network."""
         normalised.check(self)
         if self.log_std_min >= self.log_std_max:
             raise FieldError(self, "log_std_min", "must lie below log_std_max")

@@ -28,7 +28,6 @@ class KnownReward:
     ends: Reward | None = None  # predicts ends; None: episodes do not end
 
     def __post_init__(self) -> None:
-        """Check the environment."""
         if self.goal is None:
             check(self, "world", Rewarded)
 

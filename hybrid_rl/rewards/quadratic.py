@@ -28,7 +28,6 @@ class QuadraticReward:
     model: Model | None = None  # e in its planning states; None: in local coordinates
 
     def __post_init__(self) -> None:
-        """Check the environment."""
         if self.model is None:
             check(self, "world", Analytic)
 

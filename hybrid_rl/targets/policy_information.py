@@ -54,7 +54,6 @@ class PolicyInformation:
     floor: Positive = 0.01  # [1/weight^2]
 
     def __post_init__(self) -> None:
-        """Check the world."""
         if self.domain is not None:
             check(self, "world", Balanced)
 

@@ -59,7 +59,6 @@ class Agent:
     frozen: tuple[str, ...] = ()  # learners that make no updates
 
     def __post_init__(self) -> None:
-        """Check the fields."""
         if not isinstance(self.num_envs, int) or self.num_envs < 1:
             raise ValueError(f"num_envs={self.num_envs}: must be a whole number, 1 or more")
         for name in ("random_steps", "pretrain"):

@@ -60,7 +60,6 @@ class Episode:
     constraint: Constraint | None = None  # what decisions must not violate
 
     def __post_init__(self) -> None:
-        """Check the fields."""
         for name, least in (("steps", 1), ("action_repeat", 1), ("delay", 0)):
             value = getattr(self, name)
             if type(value) is not int or value < least:

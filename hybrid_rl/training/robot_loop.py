@@ -45,7 +45,6 @@ class RobotLoop(Loop):
     rows: Any = field(default=None, init=False)  # shapes [stride, S, ...] of the metrics of a call
 
     def __post_init__(self) -> None:
-        """Check the counts."""
         check_one(self.agent, self.seeds)
 
     def trace(self, state: AgentState) -> list[Any]:

@@ -16,6 +16,7 @@ from hybrid_rl.constraints.limit import Limit
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.trained import load
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.rollout import evaluate_episodes, rollout
@@ -102,7 +103,7 @@ def test_evaluate_reports_the_violations_of_a_run(trained, capsys) -> None:
     assert "violations" in capsys.readouterr().out
     file = trained / "evaluation_policy_constraint=speed_constraint.most=2.json"
     values = json.loads(file.read_text())
-    plain = evaluate.evaluate(evaluate.load(trained), "policy", 2)
+    plain = evaluate.evaluate(load(trained), "policy", 2)
     np.testing.assert_allclose(values["returns"], plain["return"], rtol=1e-6)
     assert values["violations"] == [np.mean(values["violated"])]
     assert values["violations"][0] > 0
@@ -114,10 +115,10 @@ def test_a_run_plans_with_a_constraint_with_and_without_a_reward(trained, more) 
     from hybrid_rl.goals import retargeted
 
     words = f"constraint=speed constraint.chance=0.2{more}".split()
-    got = retargeted(evaluate.load(trained), words)
+    got = retargeted(load(trained), words)
     assert got.episode.constraint.chance == 0.2
     planner = got.controllers["full"]
-    own = evaluate.load(trained).controllers["full"].objective
+    own = load(trained).controllers["full"].objective
     assert (planner.objective == own) == ("reward=" not in more)
     if "sampling" not in more:
         assert planner.constraint == got.episode.constraint

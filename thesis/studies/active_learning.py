@@ -30,7 +30,7 @@ from jax import Array
 from hybrid_rl.analysis.curves import band, iqm
 from hybrid_rl.analysis.recorded import Recorded, read, run_folders
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import STYLE, legend_outside, line_styles, plain_log, words
+from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
@@ -245,26 +245,24 @@ def _banded(values: Any) -> str:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """A panel for each quantity; information is that of one reference model."""
-    import matplotlib
     from matplotlib.figure import Figure
 
     methods, exact = numbers["methods"], numbers["exact_model"]
     styles = line_styles(methods)
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(9, 5.6), layout="constrained")
-        panels = np.ravel(figure.subplots(2, 3))
-        for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
-            for label, one in methods.items():
-                _curve(axes, words(label), np.asarray(one[name]), styles[label])
-            axes.set(title=title, xlabel="Episodes")
-            if name in LOG:
-                axes.set_yscale("log")
-                plain_log(axes.yaxis)
-        panels[0].axhline(exact["cost"][0], color="k", lw=0.8, ls=":", label="exact model")
-        panels[0].set_ylim(-0.5, MOST_COST)
-        panels[-1].set_ylim(-0.02, 1.02)
-        panels[-1].axhline(exact["upright"], color="k", lw=0.8, ls=":")
-        legend_outside(panels[0])
+    figure = Figure(figsize=(9, 5.6), layout="constrained")
+    panels = np.ravel(figure.subplots(2, 3))
+    for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
+        for label, one in methods.items():
+            _curve(axes, words(label), np.asarray(one[name]), styles[label])
+        axes.set(title=title, xlabel="Episodes")
+        if name in LOG:
+            axes.set_yscale("log")
+            plain_log(axes.yaxis)
+    panels[0].axhline(exact["cost"][0], color="k", lw=0.8, ls=":", label="exact model")
+    panels[0].set_ylim(-0.5, MOST_COST)
+    panels[-1].set_ylim(-0.02, 1.02)
+    panels[-1].axhline(exact["upright"], color="k", lw=0.8, ls=":")
+    legend_outside(panels[0])
     return figure
 
 

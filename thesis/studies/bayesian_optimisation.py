@@ -18,7 +18,6 @@ from hybrid_rl.analysis.curves import Curve, curves, plural, spread
 from hybrid_rl.analysis.style import (
     ENTRY,
     NOTE_WIDTH,
-    STYLE,
     colours,
     legend_below,
     plain_log,
@@ -38,7 +37,6 @@ def figure(
     group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
 ) -> tuple[Any, dict[str, Any]]:
     """Best values and V of each method, and the measurements of its first trial."""
-    import matplotlib
     from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
@@ -51,28 +49,27 @@ def figure(
     notes = wrapped([note for one in numbers.values() for note in one["notes"]], 2 * NOTE_WIDTH)
     own = colours(best)
     heights = (3.2 + ENTRY * len(best), 1.9 * len(best) + ENTRY * len(notes))
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(9, sum(heights)), layout="constrained")
-        halves: Any = figure.subfigures(2, 1, height_ratios=heights)
-        above, below = halves
-        values, energies = above.subplots(1, 2)
-        panels = below.subplots(len(best), 2, squeeze=False)
-        for (name, curve), pair in zip(best.items(), panels, strict=True):
-            count = np.arange(1, curve.each.shape[1] + 1)
-            _band(values, count, curve.each, name, own[name])
-            _measurements(pair, by_metric[POSITION][name].each[0], by_metric[VALUE][name].each[0])
-            pair[0].set(title=f"{words(name)}: measurements, late ones light")
-            pair[1].set(title=f"{words(name)}: coordinate of each")
-        for name, curve in lyapunov.items():
-            _band(energies, _seconds(curve), curve.each, name, own[name])
-        values.set(xlabel="Measurements", title="Best value")
-        energies.set(xlabel="Time [s]", title="Lyapunov function V", yscale="log")
-        plain_log(energies.yaxis)
-        for axes in (values, *panels[:, 1]):
-            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        for axes in (values, energies):
-            legend_below(axes)
-        write_notes(below, notes)
+    figure = Figure(figsize=(9, sum(heights)), layout="constrained")
+    halves: Any = figure.subfigures(2, 1, height_ratios=heights)
+    above, below = halves
+    values, energies = above.subplots(1, 2)
+    panels = below.subplots(len(best), 2, squeeze=False)
+    for (name, curve), pair in zip(best.items(), panels, strict=True):
+        count = np.arange(1, curve.each.shape[1] + 1)
+        _band(values, count, curve.each, name, own[name])
+        _measurements(pair, by_metric[POSITION][name].each[0], by_metric[VALUE][name].each[0])
+        pair[0].set(title=f"{words(name)}: measurements, late ones light")
+        pair[1].set(title=f"{words(name)}: coordinate of each")
+    for name, curve in lyapunov.items():
+        _band(energies, _seconds(curve), curve.each, name, own[name])
+    values.set(xlabel="Measurements", title="Best value")
+    energies.set(xlabel="Time [s]", title="Lyapunov function V", yscale="log")
+    plain_log(energies.yaxis)
+    for axes in (values, *panels[:, 1]):
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    for axes in (values, energies):
+        legend_below(axes)
+    write_notes(below, notes)
     return figure, numbers
 
 

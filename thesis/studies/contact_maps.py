@@ -23,7 +23,6 @@ IQM and 95% band over trials; shares with Wilson's 95% interval.
 from typing import Annotated, Any
 
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.thesis.studies import contact_frames, contact_maps_picture, contact_poses
 
@@ -45,16 +44,13 @@ def figure(
     map_out: Annotated[str, "of view=map: file for a learned map, .npz; empty: none"] = "",
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers of one view."""
-    import matplotlib
-
     views = {
         "map": lambda: contact_maps_picture.maps(runs, names, times, trial, map_out),
         "pose": lambda: contact_poses.poses(runs, names, times),
         "frames": lambda: contact_frames.frames(runs, times, trial),
         "absence": lambda: contact_poses.absence(runs, times),
     }
-    with matplotlib.rc_context(STYLE):
-        figure, numbers = views[view]()
+    figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
 
 
@@ -64,10 +60,7 @@ def draw(numbers: dict[str, Any]) -> Any:
     Raises:
         KeyError: for other views, whose JSON has no maps.
     """
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
-        return DRAWN[numbers["view"]](numbers)
+    return DRAWN[numbers["view"]](numbers)
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:

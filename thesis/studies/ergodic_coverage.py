@@ -21,7 +21,7 @@ import numpy as np
 
 from hybrid_rl.analysis.curves import plural, spread
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import STYLE, legend_below, line_styles, plain_log
+from hybrid_rl.analysis.style import legend_below, line_styles, plain_log
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.thesis.studies.time_averages import (
@@ -58,16 +58,13 @@ def figure(
     steps: Annotated[int, "decisions of each trajectory", whole()] = 400,
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers of one view."""
-    import matplotlib
-
     views: dict[str, Callable[[], tuple[Any, dict[str, Any]]]] = {
         "control": lambda: control(seeds, steps),
         "average": lambda: average(steps),
         "marginals": lambda: marginals(task, seeds, steps),
         "cost": cost,
     }
-    with matplotlib.rc_context(STYLE):
-        figure, numbers = views[view]()
+    figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
 
 
@@ -219,10 +216,7 @@ def draw_cost(numbers: dict[str, Any]) -> Any:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """The picture of numbers from a JSON of view=cost; the JSON of other views has no densities."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
-        return draw_cost(numbers)
+    return draw_cost(numbers)
 
 
 def _seconds(run: Run, repeats: int) -> float:

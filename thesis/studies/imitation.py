@@ -16,7 +16,6 @@ view=information  figure 6-10: information of the queries of these runs, under t
 from typing import Annotated, Any
 
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import backflip_picture, queries_picture
@@ -40,24 +39,18 @@ def figure(
     at: Annotated[str, "of view=queries: demonstrations of a refit"] = "1,2,4,8,12",
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers of one view."""
-    import matplotlib
-
     views = {
         "queries": lambda: queries_picture.drawn(runs, refit, _counts(at)),
         "backflips": lambda: backflip_picture.flips(runs),
         "information": lambda: backflip_picture.queries(runs),
     }
-    with matplotlib.rc_context(STYLE):
-        figure, numbers = views[view]()
+    figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
 
 
 def draw(numbers: dict[str, Any]) -> Any:
     """The picture of numbers from a JSON."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
-        return DRAWN[numbers["view"]](numbers)
+    return DRAWN[numbers["view"]](numbers)
 
 
 def _counts(at: str) -> list[int]:

@@ -19,7 +19,6 @@ view=tracking   figures 7-6 and 7-7: RMSE, correlation and lag along a reference
 from typing import Annotated, Any
 
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.thesis.studies import (
     embeddings,
@@ -54,8 +53,6 @@ def figure(
     starts: Annotated[int, "of view=control: paths of each regulator", whole()] = 50,
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers of one view."""
-    import matplotlib
-
     views = {
         "control": lambda: oscillator.control(samples, draws, starts),
         "falls": lambda: falls_picture.information(runs),
@@ -64,8 +61,7 @@ def figure(
         "embedding": lambda: embeddings.embedding(runs),
         "tracking": lambda: tracking.tracking(runs),
     }
-    with matplotlib.rc_context(STYLE):
-        figure, numbers = views[view]()
+    figure, numbers = views[view]()
     return figure, {"view": view, **rounded(numbers)}
 
 
@@ -75,10 +71,7 @@ def draw(numbers: dict[str, Any]) -> Any:
     Raises:
         KeyError: for view=control and view=frames, whose JSON does not hold what they draw.
     """
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
-        return DRAWN[numbers["view"]](numbers)
+    return DRAWN[numbers["view"]](numbers)
 
 
 def summary(numbers: dict[str, Any]) -> list[str]:

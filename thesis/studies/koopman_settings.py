@@ -18,7 +18,6 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli.arguments import numbers as numbers_kind
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
@@ -127,28 +126,27 @@ def _median(times: np.ndarray) -> np.ndarray:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """Share of successes by forgetting and prior, a panel for each horizon."""
-    import matplotlib
     from matplotlib.figure import Figure
 
     horizons, forgetting, priors = (numbers[name] for name in ("horizons", "forgetting", "priors"))
-    with matplotlib.rc_context({**STYLE, "axes.grid": False}):
-        across = min(len(horizons), MOST_ACROSS)
-        down = -(-len(horizons) // across)
-        size = (1.0 + 2.6 * across, down * (0.8 + 0.26 * len(forgetting)))
-        figure = Figure(figsize=size, layout="constrained")
-        axes: Any = figure.subplots(down, across, squeeze=False, sharey=True)
-        for panel in axes.flat[len(horizons) :]:
-            panel.remove()
-        panels = axes.flat[: len(horizons)]
-        for panel, horizon, share in zip(panels, horizons, numbers["share"], strict=True):
-            image = panel.imshow(share, vmin=0, vmax=1, cmap="viridis", aspect="auto")
-            panel.set(title=f"horizon of {horizon:g} decisions", xlabel="weight of the prior")
-            panel.set_xticks(range(len(priors)), [f"{value:g}" for value in priors])
-            panel.set_yticks(range(len(forgetting)), [f"{value:g}" for value in forgetting])
-            for (i, j), value in np.ndenumerate(np.asarray(share)):
-                colour = "black" if value > 0.6 else "white"
-                panel.text(j, i, f"{value:.0%}", ha="center", va="center", color=colour, size=7)
-        for panel in axes[:, 0]:
-            panel.set(ylabel="forgetting per decision")
-        figure.colorbar(image, ax=list(panels), label="share of falls that stop")
+    across = min(len(horizons), MOST_ACROSS)
+    down = -(-len(horizons) // across)
+    size = (1.0 + 2.6 * across, down * (0.8 + 0.26 * len(forgetting)))
+    figure = Figure(figsize=size, layout="constrained")
+    axes: Any = figure.subplots(down, across, squeeze=False, sharey=True)
+    for panel in axes.flat[len(horizons) :]:
+        panel.remove()
+    panels = axes.flat[: len(horizons)]
+    for panel, horizon, share in zip(panels, horizons, numbers["share"], strict=True):
+        panel.grid(False)
+        image = panel.imshow(share, vmin=0, vmax=1, cmap="viridis", aspect="auto")
+        panel.set(title=f"horizon of {horizon:g} decisions", xlabel="weight of the prior")
+        panel.set_xticks(range(len(priors)), [f"{value:g}" for value in priors])
+        panel.set_yticks(range(len(forgetting)), [f"{value:g}" for value in forgetting])
+        for (i, j), value in np.ndenumerate(np.asarray(share)):
+            colour = "black" if value > 0.6 else "white"
+            panel.text(j, i, f"{value:.0%}", ha="center", va="center", color=colour, size=7)
+    for panel in axes[:, 0]:
+        panel.set(ylabel="forgetting per decision")
+    figure.colorbar(image, ax=list(panels), label="share of falls that stop")
     return figure

@@ -26,7 +26,7 @@ from jax import Array
 
 from hybrid_rl.analysis.curves import band, iqm, plural
 from hybrid_rl.analysis.recorded import run_folders
-from hybrid_rl.analysis.style import STYLE, legend_outside, line_styles, plain_log
+from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
@@ -185,54 +185,50 @@ def named(label: str) -> str:
 
 def plot_flights(flights: list[Flight], dt: float) -> Any:
     """Actions and velocities of the first trial of each method."""
-    import matplotlib
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(9, 0.5 + 1.3 * len(flights)), layout="constrained")
-        panels: Any = figure.subplots(len(flights), 3, squeeze=False, sharex=True, sharey="col")
-        for row, flight in zip(panels, flights, strict=True):
-            t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
-            row[0].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
-            row[1].plot(t, x[:, V], lw=0.8)
-            row[2].plot(t, x[:, W], lw=0.8)
-            row[0].set_ylabel(named(flight.label).replace(", ", "\n"), fontsize=8)
-        for axes, name in zip(panels[0], ("|u|", "v [m/s]", "w [rad/s]"), strict=True):
-            axes.set_title(name)
-        for axes in panels[-1]:
-            axes.set_xlabel("Time [s]")
+    figure = Figure(figsize=(9, 0.5 + 1.3 * len(flights)), layout="constrained")
+    panels: Any = figure.subplots(len(flights), 3, squeeze=False, sharex=True, sharey="col")
+    for row, flight in zip(panels, flights, strict=True):
+        t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
+        row[0].plot(t, np.linalg.norm(flight.action[0], axis=-1), lw=0.6, color="k")
+        row[1].plot(t, x[:, V], lw=0.8)
+        row[2].plot(t, x[:, W], lw=0.8)
+        row[0].set_ylabel(named(flight.label).replace(", ", "\n"), fontsize=8)
+    for axes, name in zip(panels[0], ("|u|", "v [m/s]", "w [rad/s]"), strict=True):
+        axes.set_title(name)
+    for axes in panels[-1]:
+        axes.set_xlabel("Time [s]")
     return figure
 
 
 def draw(numbers: dict[str, Any]) -> Any:
     """Distance to the target of each method's best setting; error and distance over power loss."""
-    import matplotlib
     from matplotlib.figure import Figure
 
     methods: dict[str, list[dict[str, Any]]] = {}
     for label, one in numbers.items():
         methods.setdefault(EXACT if label == EXACT else label.split()[0], []).append(one)
     styles = line_styles(methods)
-    with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(9, 3.6), layout="constrained")
-        over_time, errors, tracking = figure.subplots(1, 3)
-        for name, each in methods.items():
-            _over_time(over_time, min(each, key=lambda one: one["tracking"][0]), styles[name], name)
-            if name != EXACT:
-                _over_power(errors, each, "error", styles[name])
-                _over_power(tracking, each, "tracking", styles[name])
-        tracking.axhline(numbers[EXACT]["tracking"][0], **styles[EXACT] | {"marker": None}, lw=0.8)
-        over_time.set(xlabel="Time [s]", yscale="log")
-        over_time.set_title("Distance to the target [m],\nbest level")
-        errors.set_title("Error of one decision")
-        tracking.set_title("Mean distance\nto the target [m]")
-        for axes in (errors, tracking):
-            axes.set(xlabel="Power loss of the flight [N]", xscale="log", yscale="log")
-            axes.margins(0.12)
-            plain_log(axes.xaxis, narrow=True)
-        for axes in (over_time, errors, tracking):
-            plain_log(axes.yaxis)
-        legend_outside(over_time)
+    figure = Figure(figsize=(9, 3.6), layout="constrained")
+    over_time, errors, tracking = figure.subplots(1, 3)
+    for name, each in methods.items():
+        _over_time(over_time, min(each, key=lambda one: one["tracking"][0]), styles[name], name)
+        if name != EXACT:
+            _over_power(errors, each, "error", styles[name])
+            _over_power(tracking, each, "tracking", styles[name])
+    tracking.axhline(numbers[EXACT]["tracking"][0], **styles[EXACT] | {"marker": None}, lw=0.8)
+    over_time.set(xlabel="Time [s]", yscale="log")
+    over_time.set_title("Distance to the target [m],\nbest level")
+    errors.set_title("Error of one decision")
+    tracking.set_title("Mean distance\nto the target [m]")
+    for axes in (errors, tracking):
+        axes.set(xlabel="Power loss of the flight [N]", xscale="log", yscale="log")
+        axes.margins(0.12)
+        plain_log(axes.xaxis, narrow=True)
+    for axes in (over_time, errors, tracking):
+        plain_log(axes.yaxis)
+    legend_outside(over_time)
     return figure
 
 

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from tiny import call
 
-from hybrid_rl import config, evaluate, figures, train
+from hybrid_rl import config, figures, train
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.cart_swing_up import CartSwingUp
 from hybrid_rl.models.exact import Exact
 from hybrid_rl.thesis.studies import active_learning, unseen
+from hybrid_rl.trained import load
 
 SHORT = [
     "experiment=thesis/fig_4_1",
@@ -58,7 +59,7 @@ def test_figure_of_tiny_runs(tmp_path, monkeypatch, capsys) -> None:
     returns = [row["train/return"] for row in rows if "train/return" in row and row["step"] == 30]
     first = numbers["methods"]["none"]["first_cost"]
     np.testing.assert_allclose(first, np.array(returns) / -30, rtol=1e-3)
-    trained = evaluate.load(tmp_path / "none")
+    trained = load(tmp_path / "none")
     model = trained.controllers["full"].model
     losses = jax.vmap(lambda params: unseen.loss(model, params, data().box))
     last = numbers["methods"]["none"]["loss_box"][0][-1]

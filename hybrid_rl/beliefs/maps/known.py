@@ -44,7 +44,6 @@ class KnownMap:
     high: float = 0.99  # hi
 
     def __post_init__(self) -> None:
-        """Check the fields."""
         if not 0 < self.low < self.high < 1:
             raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
 
