@@ -153,8 +153,8 @@ class Program:
     def _physics(self, target: str, x: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
         """The state after MuJoCo's steps; `native.py` composes the name of its call."""
         kind, _, rest = target.partition(":")
-        asset, _, steps, reads = rest.rsplit(":", 3)
-        if kind != "hybrid_rl.native" or reads:
+        asset, _, steps, reads, fields = rest.rsplit(":", 4)
+        if kind != "hybrid_rl.native" or reads or fields:
             raise ValueError(f"{target}: is no plain step of MuJoCo")
         self.assets[asset] = None
         y = self._statement(f"physics([{', '.join(_text(x))}], {int(steps)})")
