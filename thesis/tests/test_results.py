@@ -31,6 +31,12 @@ def test_every_result_has_a_machine():
         assert machines.machine(path.stem)
 
 
+def test_every_file_of_a_machine_exists():
+    """A comma in brackets without quotes makes several names of one in YAML."""
+    files = [file.split(" (")[0] for entry in machines.entries() for file in entry["files"]]
+    assert not [file for file in files if not list(values.RESULTS.glob(f"{file}.json"))]
+
+
 def test_every_figure_and_table_of_the_thesis_has_an_entry(entries):
     figures = {f"Figure {c}-{i + 1}" for c, last in LAST.items() for i in range(last)}
     assert set(entries) == figures | TABLES
