@@ -279,11 +279,15 @@ def _target(part: Any) -> Any:
 
 def unknown(config: DictConfig, key: str) -> str:
     """The line for a key that `config`, any node of what was composed, does not have."""
-    if close := near(config, key):
-        return f"{key}: unknown key; did you mean {close}?"
     root: Any = config._get_root()
-    parent = key.rpartition(".")[0]
-    if not isinstance(inside := select(raw_values(root), parent) if parent else None, dict):
+    parent, _, name = key.rpartition(".")
+    inside: Any = select(raw_values(root), parent) if parent else None
+    theirs = str(_target(inside) or "hybrid_rl.").partition("hybrid_rl.")[0]  # a class of the user
+    close = near(config, key)
+    if close and (not theirs or close.startswith(f"{parent}.")):
+        return f"{key}: unknown key; did you mean {close}?"
+    if not isinstance(inside, dict):
         return f"{key}: unknown key; {SHOW}"
-    names = [name for name in inside if not name.startswith("_")]
-    return f"{key}: unknown key; {parent} has {', '.join(names) or 'no keys'}"
+    names = ", ".join(each for each in inside if not each.startswith("_")) or "no keys"
+    more = f"; a field of {theirs} must be in its YAML file, as {name}: VALUE" if theirs else ""
+    return f"{key}: unknown key; {parent} has {names}{more}"

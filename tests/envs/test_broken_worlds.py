@@ -65,6 +65,24 @@ CODE = [  # of the world: what is wrong, replaced, by what, the whole line
         r"both must be equal",
     ),
     (
+        "a metric that is a vector",
+        STATE,
+        "EnvState(x, x, reward, no, no, {'speed': x})",
+        r"w\.py:15: W\.reset: returned the metric speed float32\[2\]; it must be one number: .*",
+    ),
+    (
+        "a metric that is a word",
+        STATE,
+        "EnvState(x, x, reward, no, no, {'mode': 'fast'})",
+        r"w\.py:15: W\.reset: returned the metric mode str; it must be one number: .*",
+    ),
+    (
+        "a metric with a name of the run",
+        STATE,
+        "EnvState(x, x, reward, no, no, {'reward': x[0]})",
+        r"w\.py:15: W\.reset: metrics have reward, which a run logs itself; rename it",
+    ),
+    (
         "step returns nothing",
         "return self._state(x, -(x**2).sum())",
         "self._state(x, -(x**2).sum())",
@@ -188,6 +206,12 @@ def test_an_index_that_follows_from_the_state_may_be_clamped(folder):
 
 def test_a_state_needs_no_metrics_and_no_info(folder):
     assert check(world(folder, changed(WORLD, STATE, "EnvState(x, x, reward, no, no)"))) == ()
+
+
+@pytest.mark.parametrize("value", ["3", "0.5", "True", "x[0] > 0", "jnp.int32(3)"])
+def test_a_metric_may_be_any_one_number(folder, value):
+    state = f"EnvState(x, x, reward, no, no, {{'count': {value}}})"
+    assert check(world(folder, changed(WORLD, STATE, state))) == ()
 
 
 @pytest.mark.parametrize("task", TASKS)
