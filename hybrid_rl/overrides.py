@@ -219,16 +219,19 @@ def refuse_new_keys(hydra: Any) -> None:
     """Raise UsageError for `+key=value` if conf/ has no such key, as nothing would read it."""
     more = [text for text in hydra.overrides.hydra if text.startswith("hydra.searchpath=")]
     overrides = [text for text in of_job(hydra) if not is_swept(text)]
-    added = [text.lstrip("+").partition("=")[0] for text in overrides if text.startswith("+")]
+    groups = GlobalHydra.instance().config_loader()
+    added = {}
+    for text in (text for text in overrides if text.startswith("+")):
+        name = text.lstrip("+").partition("=")[0]
+        if not groups.get_group_options(name.partition("@")[0]):
+            added[text] = name
     if not added:
         return
-    known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
+    known = compose("train", [*more, *(text for text in overrides if text not in added)])
     if known.run is not None:  # it may have keys of parts that are chosen there
         return
-    groups = GlobalHydra.instance().config_loader()
-    for each in added:
-        is_group = groups.get_group_options(each.partition("@")[0])
-        if not is_group and OmegaConf.select(known, each, default=LACKING) is LACKING:
+    for each in added.values():
+        if OmegaConf.select(known, each, default=LACKING) is LACKING:
             raise UsageError(unknown(known, each))
 
 
@@ -269,7 +272,8 @@ def _refuse_words(raw: dict[str, Any]) -> None:
         parts = [name for name, part in raw.items() if ".controllers." in str(_target(part))]
         typed = f"{path}=${{{at}}}" if node is LACKING else f"{at}={node}"
         line = "must be a part, a group of keys with _target_; another one of the method's acts by"
-        raise UsageError(f"{typed}: {line} '{path}=${{NAME}}': {', '.join(parts)}")
+        more = "one of your own needs +controller@NAME=FILE, too"
+        raise UsageError(f"{typed}: {line} '{path}=${{NAME}}': {', '.join(parts)}; {more}")
 
 
 def _target(part: Any) -> Any:

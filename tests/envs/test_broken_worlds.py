@@ -1,10 +1,15 @@
 """A world of one's own that is wrong: one line names its file, and what it must be."""
 
+import jax
 import pytest
 from faulty import LINE, STATE, WORLD, changed, refused, world
 from worlds import TASKS, make
 
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.envs import check
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import rollout_with_actions
+from hybrid_rl.types import Params
 
 CODE = [  # of the world: what is wrong, replaced, by what, the whole line
     (
@@ -210,8 +215,13 @@ def test_a_state_needs_no_metrics_and_no_info(folder):
 
 @pytest.mark.parametrize("value", ["3", "0.5", "True", "x[0] > 0", "jnp.int32(3)"])
 def test_a_metric_may_be_any_one_number(folder, value):
+    """Also where no `vmap` makes arrays of Python's numbers, as in demonstrations."""
     state = f"EnvState(x, x, reward, no, no, {{'count': {value}}})"
-    assert check(world(folder, changed(WORLD, STATE, state))) == ()
+    made = world(folder, changed(WORLD, STATE, state))
+    assert check(made) == ()
+    episode, key = Episode(made, steps=3), jax.random.key(0)
+    states = rollout_with_actions(episode, ConstantController(), Params(), key, 3)[1]
+    assert states.metrics["count"].shape == (4,)
 
 
 @pytest.mark.parametrize("task", TASKS)
