@@ -13,6 +13,7 @@ compiling; a world with a field `physics` is simulated by MuJoCo C, which compil
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import is_dataclass, replace
+from functools import partial
 from numbers import Integral, Real
 from typing import Any
 
@@ -28,6 +29,7 @@ from hybrid_rl.errors import GYMNASIUM, SourceOf, WorldError
 from hybrid_rl.types import EnvState, Spec
 
 LARGE = 3000  # lines of a traced step; more would compile for many seconds, and are only traced
+LOGGED = ("reward", "obs", "action", "violation")  # world/NAME of every run
 SIGNATURES = {"reset": ("key",), "step": ("state", "action")}
 
 
@@ -131,6 +133,13 @@ def _check_state(world: SourceOf, method: str, state: Any) -> None:
     for name in ("metrics", "info"):
         if not isinstance(value := getattr(state, name), Mapping):
             raise WorldError(f"{at}: returned {name} {_described(value)}; it must be a dict")
+    for name, value in state.metrics.items():
+        if name in LOGGED:
+            raise WorldError(f"{at}: metrics have {name}, which a run logs itself; rename it")
+        if not isinstance(value, Real) and getattr(value, "shape", None) != ():
+            has = _described(value) if _is_array(value) else type(value).__name__
+            line = f"returned the metric {name} {has}; it must be one number"
+            raise WorldError(f"{at}: {line}: give each entry a name")
 
 
 def _check_trees(world: SourceOf, first: EnvState, after: EnvState) -> None:
@@ -216,7 +225,8 @@ def _decide(world: SourceOf, reset: Any, step: Any, decisions: int) -> tuple[str
         state = world.blamed("reset", resetting, keys[i]) if after.terminated else kept
     for method, examples in (("reset", [(key,) for key in keys[:2]]), ("step", tried[::9])):
         world.blamed(method, check_indices, getattr(world.object, method), *examples)
-    notes += _lines(world, "step", plausible.of_controls, *moved)
+    of_controls = partial(plausible.of_controls, np.array([action for _, action in tried]))
+    notes += _lines(world, "step", of_controls, *moved)
     if ended == decisions:
         line = f"every episode ended after one decision, of {decisions} tried"
         notes.append(f"{world.at('step')}: {line}")

@@ -194,20 +194,28 @@ def check_kinds(node: DictConfig, where: str = "") -> None:
 
 
 def check_fields(node: DictConfig, part: Any, where: str) -> None:
-    """Raise UsageError for a key of `node` that is no argument of `part`, a class or function."""
+    """Raise UsageError for a key of `node` that is no argument of `part`, or an argument it lacks.
+
+    part: a class or a function.
+    """
     try:
         takes = inspect.signature(part).parameters
     except (TypeError, ValueError):  # of a built-in
         return
+    called = getattr(part, "__name__", part)
+    if not part.__module__.startswith("hybrid_rl."):
+        called = f"{called} in {relative(inspect.getsourcefile(part) or part.__module__)}"
+    for name, each in takes.items():
+        many = each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD)
+        given = many or each.default is not each.empty or name in node
+        if not given and (where, name) != ("episode.", "env"):
+            raise UsageError(f"{where}{name}: is missing; {called} has no default for it")
     if any(each.kind is each.VAR_KEYWORD for each in takes.values()):
         return
     for key in node:
         name = str(key)
         if name in takes or name.startswith("_") or OmegaConf.is_missing(node, key):
             continue
-        called = getattr(part, "__name__", part)
-        if not part.__module__.startswith("hybrid_rl."):
-            called = f"{called} in {relative(inspect.getsourcefile(part) or part.__module__)}"
         if isinstance(part, type) and not is_dataclass(part) and not takes:
             called = f"{called} is no dataclass (@dataclass(frozen=True)), and"
         names = [name for name in takes if (where, name) != ("episode.", "env")]

@@ -26,7 +26,7 @@ THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the
 OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin
 SLURM = "submitit_slurm"  # the launcher of an extra
 MANY = 40  # names that are too many for a line; tasks are fewer
-GLOBAL = "# @package _global_"
+GLOBAL, METHODS = "# @package _global_", "`python -m hybrid_rl.list` shows methods"
 OF_GYMNASIUM = re.compile(r"(?P<id>-v\d+$)|(?P<make>\w:\w)")  # ids, and MODULE:CLASS
 ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
 INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
@@ -101,12 +101,12 @@ def explain(error: Exception) -> str:
         if not close and deep == 1:
             close = f"; your own {group}/{value}.yaml needs config_dir=FOLDER"
         return f"{group}={value}: unknown; {_choice(value, known)}{close}"
-    cause, text = error.__cause__, str(error)
-    absent = _absent(error)
+    cause, text, absent = error.__cause__, str(error), _absent(error)
     if absent and isinstance(cause, OmegaConfBaseException):
         return overrides.unknown(cause.parent_node, absent)
     if absent:
-        return f"{absent}: the method has no such part; `python -m hybrid_rl.list` shows methods"
+        more = f"; +{absent}=NAME adds it" if "@" in absent else ""
+        return f"{absent}: the method has no such part{more}; {METHODS}"
     if isinstance(error, OverrideParseException):
         first, problem = text.splitlines()[0], text.splitlines()[-2]
         if set(problem) == {" ", "^"}:  # it points at a character

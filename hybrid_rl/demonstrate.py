@@ -21,6 +21,7 @@ if __name__ == "__main__":
 
     interrupt.install()
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -33,7 +34,7 @@ from omegaconf import OmegaConf
 from hybrid_rl import config as configuration
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, flag, output, read, whole
+from hybrid_rl.cli.arguments import CONFIG_DIR, Argument, flag, output, read, whole
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.demonstrations import save
@@ -50,6 +51,7 @@ from hybrid_rl.types import Params, Transition
 ARGUMENTS = (
     Argument("task", "", "a task with a scripted expert"),
     Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
+    CONFIG_DIR,
     Argument("run", "", "instead: folder of a trained run"),
     Argument("mode", "full", "of run=DIR: full, policy or planner"),
     Argument("policy", "", "with run=DIR: the file for its policy's parameters"),
@@ -93,14 +95,19 @@ def record(
     )
 
 
-def scripted_expert(task: str, changes: dict[str, str]) -> tuple[Episode, Controller, Params]:
+def scripted_expert(
+    given: Mapping[str, Any], changes: Mapping[str, str]
+) -> tuple[Episode, Controller, Params]:
     """A task, as `changes` make it, and its scripted expert, which has no parameters.
+
+    given: task, expert and config_dir, of the command line.
 
     Raises:
         UsageError: if the task has none.
     """
-    values = [f"{key}={value}" for key, value in changes.items()]
-    config = configuration.load([f"task={task}", "algo=sac", *values])
+    named = {key: given[key] for key in ("task", "expert") if given[key]}
+    values = [f"{key}={value}" for key, value in {**named, **changes}.items()]
+    config = configuration.load(["algo=sac", *values], given["config_dir"] or None)
     prepare(config)
     expert = configuration.expert(config)
     return configuration.build(config).agent.episode, expert, Params()
@@ -112,8 +119,7 @@ def _expert(
     """(task, episode, controller, parameters) that the arguments name."""
     _check(given, changes)
     if given["task"]:
-        changes = {"expert": given["expert"], **changes} if given["expert"] else changes
-        return given["task"], *scripted_expert(given["task"], changes)
+        return given["task"], *scripted_expert(given, changes)
     run = load(Path(given["run"]))
     return run.task, run.episode, *run.learner(mode=given["mode"], world=True)
 

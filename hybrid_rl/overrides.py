@@ -219,16 +219,19 @@ def refuse_new_keys(hydra: Any) -> None:
     """Raise UsageError for `+key=value` if conf/ has no such key, as nothing would read it."""
     more = [text for text in hydra.overrides.hydra if text.startswith("hydra.searchpath=")]
     overrides = [text for text in of_job(hydra) if not is_swept(text)]
-    added = [text.lstrip("+").partition("=")[0] for text in overrides if text.startswith("+")]
+    groups = GlobalHydra.instance().config_loader()
+    added = {}
+    for text in (text for text in overrides if text.startswith("+")):
+        name = text.lstrip("+").partition("=")[0]
+        if not groups.get_group_options(name.partition("@")[0]):
+            added[text] = name
     if not added:
         return
-    known = compose("train", [*more, *(text for text in overrides if not text.startswith("+"))])
+    known = compose("train", [*more, *(text for text in overrides if text not in added)])
     if known.run is not None:  # it may have keys of parts that are chosen there
         return
-    groups = GlobalHydra.instance().config_loader()
-    for each in added:
-        is_group = groups.get_group_options(each.partition("@")[0])
-        if not is_group and OmegaConf.select(known, each, default=LACKING) is LACKING:
+    for each in added.values():
+        if OmegaConf.select(known, each, default=LACKING) is LACKING:
             raise UsageError(unknown(known, each))
 
 
@@ -269,7 +272,8 @@ def _refuse_words(raw: dict[str, Any]) -> None:
         parts = [name for name, part in raw.items() if ".controllers." in str(_target(part))]
         typed = f"{path}=${{{at}}}" if node is LACKING else f"{at}={node}"
         line = "must be a part, a group of keys with _target_; another one of the method's acts by"
-        raise UsageError(f"{typed}: {line} '{path}=${{NAME}}': {', '.join(parts)}")
+        more = "one of your own needs +controller@NAME=FILE, too"
+        raise UsageError(f"{typed}: {line} '{path}=${{NAME}}': {', '.join(parts)}; {more}")
 
 
 def _target(part: Any) -> Any:
@@ -279,11 +283,15 @@ def _target(part: Any) -> Any:
 
 def unknown(config: DictConfig, key: str) -> str:
     """The line for a key that `config`, any node of what was composed, does not have."""
-    if close := near(config, key):
-        return f"{key}: unknown key; did you mean {close}?"
     root: Any = config._get_root()
-    parent = key.rpartition(".")[0]
-    if not isinstance(inside := select(raw_values(root), parent) if parent else None, dict):
+    parent, _, name = key.rpartition(".")
+    inside: Any = select(raw_values(root), parent) if parent else None
+    theirs = str(_target(inside) or "hybrid_rl.").partition("hybrid_rl.")[0]  # a class of the user
+    close = near(config, key)
+    if close and (not theirs or close.startswith(f"{parent}.")):
+        return f"{key}: unknown key; did you mean {close}?"
+    if not isinstance(inside, dict):
         return f"{key}: unknown key; {SHOW}"
-    names = [name for name in inside if not name.startswith("_")]
-    return f"{key}: unknown key; {parent} has {', '.join(names) or 'no keys'}"
+    names = ", ".join(each for each in inside if not each.startswith("_")) or "no keys"
+    more = f"; a field of {theirs} must be in its YAML file, as {name}: VALUE" if theirs else ""
+    return f"{key}: unknown key; {parent} has {names}{more}"

@@ -140,8 +140,7 @@ def _episode_of(
         from hybrid_rl.demonstrate import scripted_expert
         from hybrid_rl.training.rollout import evaluation_keys
 
-        other = {"expert": given["expert"]} if given["expert"] else {}
-        world, controller, params = scripted_expert(given["task"], {**other, **changes})
+        world, controller, params = scripted_expert(given, changes)
         check_drawable(world.env)
         begun = replace(world, steps=_steps(world, asked, out))
         key = evaluation_keys(seed or 0, number + 1)[-1]

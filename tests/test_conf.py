@@ -13,6 +13,7 @@ from tiny import SMALL
 
 from hybrid_rl import config
 from hybrid_rl.composition import file, options
+from hybrid_rl.controllers.gradient import GradientController
 
 PARTS = [
     path
@@ -204,3 +205,10 @@ def test_two_copies_are_equal_by_value() -> None:
     """The planner's model and the learner's are two equal objects."""
     run = config.build(config.load(["task=pendulum", *SMALL]))
     assert run.agent.learners["model"].model == run.agent.controller.model
+
+
+def test_a_planner_acts_without_a_file_of_a_method():
+    given = ["task=pendulum", "+controller@mine=gradient", "controllers.full=${mine}"]
+    run = config.build(config.load([*given, "mine.horizon=7"]))
+    assert isinstance(run.controllers["full"], GradientController)
+    assert run.controllers["full"].horizon == 7

@@ -78,6 +78,16 @@ def test_the_task_is_changed_as_in_training(tmp_path, capsys):
     assert "planner.samples=3: unknown argument; give key=value with task" in printed
 
 
+def test_a_task_of_ones_own_has_an_expert_too(tmp_path):
+    (tmp_path / "task").mkdir()
+    (tmp_path / "task" / "mine.yaml").write_text(
+        "# @package _global_\ndefaults: [/task@_global_: pendulum, _self_]\ntask: mine\n"
+    )
+    line = [f"config_dir={tmp_path}", "task=mine", "expert=babble", f"out={tmp_path / 'x.npz'}"]
+    assert call(lambda: command.run(demonstrate.main), *line, "episode.steps=3", "episodes=1") == 0
+    assert load(tmp_path / "x.npz")["task"] == "mine"
+
+
 def test_what_was_learned_outlives_its_demonstrations(tmp_path, capsys):
     """To evaluate needs the learned policy alone; to go on learning needs the file."""
     demonstrations = recorded(tmp_path, config.load(["task=pendulum"]))

@@ -186,7 +186,7 @@ def test_each_episode_of_a_crane_can_have_another_body(conf, tmp_path):
     (tmp_path / "crane.xml").write_text(xml)
     (conf / "task" / "crane.yaml").write_text(yaml)
     train(conf, tmp_path / "run", "task=crane", "algo=sac", "episode.steps=10")
-    episode = evaluate.load(tmp_path / "run").episode
+    episode = load(tmp_path / "run").episode
     keys = jax.random.split(jax.random.key(0), 3)
     start = jax.vmap(episode.reset)(keys)
     after = jax.jit(jax.vmap(episode.step))(start, jnp.ones((3, 1)))

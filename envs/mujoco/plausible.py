@@ -1,4 +1,4 @@
-"""What MuJoCo allows and few mean: degrees for radians, no rotation, controls that are cut off.
+"""What MuJoCo allows and few mean: degrees for radians, no rotation, controls off their range.
 
     2 pi in degrees, 0.11 rad, <= range of a hinge <= 4 pi,
     |quaternion(0)| = 1,   ctrl in [ctrlrange] of each actuator, which MuJoCo clips
@@ -39,8 +39,11 @@ def of_start(states: Sequence[PhysicsState]) -> Iterator[str]:
                 yield f'{turns}; MJCF has degrees, unless <compiler angle="radian"/>'
 
 
-def of_controls(states: Sequence[PhysicsState]) -> Iterator[str]:
-    """A line about the controls that led to `states`, if some are cut off."""
+def of_controls(actions: np.ndarray, states: Sequence[PhysicsState]) -> Iterator[str]:
+    """Lines about the controls that led to `states`, if some are cut off, or no range is used.
+
+    actions: [N, m] in [-1, 1], that of each state.
+    """
     if not states or states[0].ctrl is None:
         return
     model, ctrl = mjcf.load(states[0].asset), np.array([state.ctrl for state in states])
@@ -52,3 +55,9 @@ def of_controls(states: Sequence[PhysicsState]) -> Iterator[str]:
         yield f"random actions give actuator {names} controls outside ctrlrange, as {given}; " + (
             "MuJoCo cuts them off: map [-1, 1] to the range"
         )
+    wide = model.actuator_ctrllimited * ((low < -1 - NEAR) | (high > 1 + NEAR))
+    plain = (ctrl == actions).all(0) if ctrl.shape == actions.shape else False
+    if len(left := np.flatnonzero(wide * plain)):
+        names, i = ", ".join(str(model.actuator(k).name or k) for k in left), left[0]
+        given = f"the actions as they are, where {low[i]:.3g} to {high[i]:.3g} is allowed"
+        yield f"controls of actuator {names} are {given}; map [-1, 1] to the range"

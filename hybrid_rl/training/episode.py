@@ -7,7 +7,7 @@ episode has another body (`envs/mujoco/randomised.py`).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property, partial
 from numbers import Real
 
@@ -53,9 +53,10 @@ class Episode:
     steps: int = 1000  # decisions until the time limit
     action_repeat: int = 1
     delay: int = 0  # decisions until an action arrives
-    sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
+    # std of the observation: of all entries, or [o]
+    sensor_noise: tuple[float, ...] | float = field(default=0.0, hash=False)  # may be a list
     action_noise: float = 0.0  # [u] std of what is added to an action when it arrives
-    randomise: Mapping[str, tuple[float, ...]] | None = None  # of `Ranges`: [low, high]
+    randomise: Mapping[str, tuple[float, ...]] | None = field(default=None, hash=False)
     reward: Goal | None = None  # what it pays; None: the environment's own reward
     constraint: Constraint | None = None  # what decisions must not violate
 
@@ -114,7 +115,7 @@ class Episode:
     def reset(self, key: Array) -> EnvState:
         """The first state of an episode. The key is consumed."""
         with EXACT():
-            state = self.env.reset(key)
+            state = jax.tree.map(jnp.asarray, self.env.reset(key))  # of Python's numbers, too
         if self._ranges is not None:
             own = self._ranges.draw(state.data, self.spec.act, jax.random.fold_in(key, 7))
             state = state.replace(data=own)
@@ -182,7 +183,7 @@ class Episode:
 
     def _substep(self, state: EnvState, action: Array) -> EnvState:
         with EXACT():
-            now = self.env.step(state, action)
+            now = jax.tree.map(jnp.asarray, self.env.step(state, action))
             if self.reward is None:
                 return now
             u = jnp.clip(action, -1.0, 1.0)

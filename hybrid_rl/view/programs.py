@@ -11,6 +11,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.scenery import pose_of
 from hybrid_rl.protocols import Controller
 from hybrid_rl.training.episode import Episode
@@ -66,9 +67,12 @@ class Actor:
 
 
 def _bare(state: EnvState, like: EnvState) -> EnvState:
-    """`state` with only the memory and the metrics that `like` has."""
-    info = {name: state.info[name] for name in like.info}
-    return state.replace(info=info, metrics={name: state.metrics[name] for name in like.metrics})
+    """`state` with only the memory, the metrics and the own fields of the model that `like` has."""
+    info, data = {name: state.info[name] for name in like.info}, state.data
+    if isinstance(data, PhysicsState):
+        data = data.replace(fields={name: data.fields[name] for name in like.data.fields})
+    metrics = {name: state.metrics[name] for name in like.metrics}
+    return state.replace(data=data, info=info, metrics=metrics)
 
 
 def world(episode: Episode, numbers: Numbers) -> World:

@@ -165,9 +165,7 @@ class Source:
             UsageError: for a reward or a value that does not fit.
         """
         if self.trained is None:
-            expert = {"expert": self.given["expert"]} if self.given["expert"] else {}
-            task = self.given["task"]
-            episode, controller, _ = scripted_expert(task, {**expert, **self.changes, **changes})
+            episode, controller, _ = scripted_expert(self.given, {**self.changes, **changes})
             return Subject(episode, {"expert": controller}, scripted=True)
         words = dict(self.changes)
         if reward != self.given["reward"]:

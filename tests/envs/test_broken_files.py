@@ -36,6 +36,13 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "gian:",
         r"env\.gian: W in w\.py has gain; did you mean gain\?",
     ),
+    (
+        "a field without a default",
+        "py",
+        "gain: float = 1.0",
+        "gain: float\n    mass: float",
+        r"env\.mass: is missing; W in w\.py has no default for it",
+    ),
     ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: w\.py has no class V"),
     (
         "no such module",
@@ -127,6 +134,13 @@ def test_files_that_make_no_run_are_refused_in_a_line(folder, file, old, new, li
     texts[file] = changed(texts[file], old, new)
     write(folder, texts["py"], texts["yaml"])
     refused(line, lambda: config.build(config.load(["task=broken", "algo=sac"], "my_conf")))
+
+
+def test_a_field_that_the_file_of_a_task_lacks_is_no_other_parts(folder):
+    """Not even if these have the same name, as `adjoint_planner.gain`."""
+    write(folder, task=changed(TASK, ", gain: 2.0", ""))
+    line = r"env\.gain: unknown key; env has no keys; a field of w\.W must be in its YAML file.*"
+    refused(line, lambda: config.load(["task=broken", "env.gain=3"], "my_conf"))
 
 
 def test_what_is_seldom_meant_is_a_note_of_the_run(folder):

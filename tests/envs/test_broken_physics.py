@@ -87,6 +87,7 @@ def test_physics_of_another_time_than_a_decision_is_one_line(folder, step, sure)
     [
         ('type="slide"', 'range="-1.7 1.7" limited="true"', "joint rail turns from -0.0297 to 0.0"),
         ('joint="rail"', 'joint="rail" ctrlrange="0 1"', "actuator 0 controls outside ctrlrange, "),
+        ('joint="rail"', 'name="m" joint="rail" ctrlrange="-3 3"', "of actuator m are the actions"),
         (
             '<joint name="rail" type="slide"/>',
             '<joint name="rail" type="ball"/>',
@@ -94,7 +95,7 @@ def test_physics_of_another_time_than_a_decision_is_one_line(folder, step, sure)
         ),
         ('joint="rail"', 'joint="rail" ctrlrange="-1 1"', None),
     ],
-    ids=["radians for degrees", "controls that are cut off", "no rotation", "sound"],
+    ids=["radians for degrees", "controls cut off", "a wider range", "no rotation", "sound"],
 )
 def test_what_mujoco_allows_and_few_mean_is_one_line(folder, old, new, note):
     ball = CRANE.replace("jnp.zeros(1), jnp.zeros(1)", "jnp.zeros(4), jnp.zeros(3)")

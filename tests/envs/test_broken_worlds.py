@@ -1,10 +1,15 @@
 """A world of one's own that is wrong: one line names its file, and what it must be."""
 
+import jax
 import pytest
 from faulty import LINE, STATE, WORLD, changed, refused, world
 from worlds import TASKS, make
 
+from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.envs import check
+from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.rollout import rollout_with_actions
+from hybrid_rl.types import Params
 
 CODE = [  # of the world: what is wrong, replaced, by what, the whole line
     (
@@ -63,6 +68,24 @@ CODE = [  # of the world: what is wrong, replaced, by what, the whole line
         "self._state(x, -(x**2).sum()).replace(metrics={'speed': x[0]})",
         r"w\.py:19: W\.step: returned metrics\.speed float32\[\], and W\.reset no metrics\.speed; "
         r"both must be equal",
+    ),
+    (
+        "a metric that is a vector",
+        STATE,
+        "EnvState(x, x, reward, no, no, {'speed': x})",
+        r"w\.py:15: W\.reset: returned the metric speed float32\[2\]; it must be one number: .*",
+    ),
+    (
+        "a metric that is a word",
+        STATE,
+        "EnvState(x, x, reward, no, no, {'mode': 'fast'})",
+        r"w\.py:15: W\.reset: returned the metric mode str; it must be one number: .*",
+    ),
+    (
+        "a metric with a name of the run",
+        STATE,
+        "EnvState(x, x, reward, no, no, {'reward': x[0]})",
+        r"w\.py:15: W\.reset: metrics have reward, which a run logs itself; rename it",
     ),
     (
         "step returns nothing",
@@ -188,6 +211,17 @@ def test_an_index_that_follows_from_the_state_may_be_clamped(folder):
 
 def test_a_state_needs_no_metrics_and_no_info(folder):
     assert check(world(folder, changed(WORLD, STATE, "EnvState(x, x, reward, no, no)"))) == ()
+
+
+@pytest.mark.parametrize("value", ["3", "0.5", "True", "x[0] > 0", "jnp.int32(3)"])
+def test_a_metric_may_be_any_one_number(folder, value):
+    """Also where no `vmap` makes arrays of Python's numbers, as in demonstrations."""
+    state = f"EnvState(x, x, reward, no, no, {{'count': {value}}})"
+    made = world(folder, changed(WORLD, STATE, state))
+    assert check(made) == ()
+    episode, key = Episode(made, steps=3), jax.random.key(0)
+    states = rollout_with_actions(episode, ConstantController(), Params(), key, 3)[1]
+    assert states.metrics["count"].shape == (4,)
 
 
 @pytest.mark.parametrize("task", TASKS)

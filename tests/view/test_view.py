@@ -35,9 +35,9 @@ BLANK = {each.name: each.default for each in view.ARGUMENTS}
 PATIENCE = 60.0  # [s]
 
 
-def player(policy, choice):
+def player(policy, choice, changes=None):
     read = trained.read(policy)
-    source = Source({**BLANK, "policy": policy}, {}, read)
+    source = Source({**BLANK, "policy": policy}, changes or {}, read)
     return Player(source, learner(read, None), choice, seed=0)
 
 
@@ -88,6 +88,16 @@ def test_sliders_have_the_range_of_their_field():
     for world in (Quadcopter(), QuadcopterSE3()):
         (wind,) = [one for one in sliders("env", world) if one.key == "env.wind"]
         assert (wind.value, wind.least, wind.most) == (0, -5, 5)
+
+
+def test_bodies_that_episodes_draw_act_in_the_window():
+    noise = [0.0, 0.1, 0.1, 0.1, 0.1]
+    drawn = {"episode.randomise.mass": "[2,3]", "episode.sensor_noise": str(noise)}
+    one = player("cartpole", Choice("policy"), drawn)
+    one.advance()
+    mass = one.state.data.fields["body_mass"] / one.cast.world.episode.env._body.model.body_mass
+    assert 2 <= mass[1] <= 3
+    assert one.state.info["decision"] == 1
 
 
 def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
