@@ -202,7 +202,8 @@ def main() -> None:
         return
     size = made.in_avals[1].shape[0]
     print(f"  state = numpy.zeros({size}, numpy.uint32)  # at the start of an episode")
-    print("  action, state = f(obs, state, numpy.array([seed, decision], numpy.uint32))")
+    print("  key = numpy.array([seed, decision], numpy.uint32)")
+    print("  action, state = map(numpy.asarray, f(obs, state, key))  # the first call compiles")
 
 
 if __name__ == "__main__":
