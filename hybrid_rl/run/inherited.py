@@ -103,6 +103,8 @@ def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
         if key in now:
             values.setdefault(key, now[key])
     for key in sorted({source(raw, overrides.key(each)) for each in typed} - {*CHOSEN}):
+        while (above := key.rpartition(".")[0]) and select(values, above) is LACKING:
+            key = above  # a group that is newer than the run
         _put(values, key, _node(select(raw, key), select(now, key), values, raw))
     made: Any = OmegaConf.create(values)
     OmegaConf.resolve(made)

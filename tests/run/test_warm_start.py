@@ -122,6 +122,18 @@ def test_what_was_imagined_is_kept_only_where_nothing_changed(source, monkeypatc
     assert seen
 
 
+def test_a_group_that_is_newer_than_the_run_is_changed_all_the_same(source, tmp_path):
+    folder = tmp_path / "older"
+    shutil.copytree(source, folder)
+    older = OmegaConf.load(folder / "config.yaml")
+    del older.episode.randomise
+    OmegaConf.save(older, folder / "config.yaml")
+    made = together.load([f"run={folder}", "episode.randomise.mass=[0.7,1.3]"])[0].config
+    assert made.episode.randomise.mass == [0.7, 1.3]
+    assert made.episode.randomise.friction is None
+    assert made.episode.steps == 40
+
+
 def test_a_key_that_the_run_lacks_is_named(source, tmp_path):
     folder = tmp_path / "older"
     shutil.copytree(source, folder)
