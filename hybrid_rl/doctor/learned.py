@@ -155,8 +155,9 @@ def scale(run: Evidence) -> str | None:
     if not (one > 1 and value < one):
         return None
     return (
-        f"a reward is about {one:.2g}, and the critic's values, sums of them, are {value:.2g}: it "
-        f"does not come that far; divide the reward by {_round(one)}, or critic.scale=true"
+        f"a reward is about {one:.2g}, and the critic's values, sums of them, are {value:.2g}: "
+        f"it has not learned values that large; divide the reward by {_round(one)}, or "
+        "critic.scale=true"
     )
 
 

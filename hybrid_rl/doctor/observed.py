@@ -105,8 +105,8 @@ def action(run: Evidence) -> str | None:
         )
     if effect[1:].sum() > OLDER * effect[0]:
         return (
-            f"older actions act more than the newest one ({shown}): a motor too slow for such "
-            "short decisions; episode.action_repeat=5, or show the learner the motor's state"
+            f"older actions act more than the newest one ({shown}): the motor is slower than "
+            "a decision; episode.action_repeat=5, or show the learner the motor's state"
         )
     return None
 
@@ -201,7 +201,7 @@ def hidden(run: Evidence) -> str | None:
         return None
     worst = at[np.argmax(unseen[at])]
     return (
-        f"observation and actions tell {1 - unseen[worst]:.0%} of how obs "
+        f"observation and action explain {1 - unseen[worst]:.0%} of how obs "
         f"{_numbers(run.moving[at])} changes, with the last observation {1 - more[worst]:.0%}: "
         "what moves is not observed; add velocities, or the last observation, to the observation"
     )
