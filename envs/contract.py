@@ -188,8 +188,8 @@ def _physics(program: Jaxpr, once: bool = True) -> Iterator[tuple[str, int, bool
     """Model, physics steps, and whether it is made once, of each call of MuJoCo C in a program."""
     for each in program.eqns:
         if each.primitive.name == "ffi_call":
-            called = native.steps_of(each.params["target_name"])
-            yield from [(*called, once)] if called and called[1] else []
+            called = native.call_of(each.params["target_name"])
+            yield from [(called.asset, called.steps, once)] if called and called.steps else []
         straight = each.primitive.name in ("jit", "pjit") or each.params.get("branches_platforms")
         for inner in jax.tree.leaves(list(each.params.values())):
             if isinstance(inner, ClosedJaxpr | Jaxpr):

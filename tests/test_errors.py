@@ -97,10 +97,7 @@ USAGE = [  # overrides of train, words of the line
     ("algo=nn_mppi planner=gradient", "planner: must be a group of keys; `python -m"),
     ("env=pendulum", "env=pendulum: must be a group of keys; did you mean task=pendulum?"),
     ("planner=adjoint", "planner=adjoint: must be a part, a group of keys with _target_; another "),
-    (
-        "controllers.full=${gradient}",
-        "actor, noisy; one of your own needs +controller@NAME=FILE, too",
-    ),
+    ("controllers.full=${gradient}", "noisy; one of your own needs +controller@NAME=FILE, too"),
     ("controllers.full=${controllers.full}", "controllers.full=${controllers.full}: must be a p"),
     ("total_steps 100", "total_steps: has no value; write total_steps=100"),
     ("task = pendulum", "task: has no value; write task=pendulum"),

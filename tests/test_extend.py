@@ -178,7 +178,7 @@ def test_a_mujoco_environment_is_two_files_and_one_yaml(conf, tmp_path, capfd, c
 
 
 def test_each_episode_of_a_crane_can_have_another_body(conf, tmp_path):
-    """By a reset that takes the place of the crane's own."""
+    """By a reset that replaces the crane's own."""
     code, xml, yaml = blocks("A MuJoCo world")
     (drawn,) = blocks("Another body in each episode", HOWTO)
     own = re.compile(r"    def reset.*?\n\n", re.S)

@@ -80,6 +80,10 @@ def test_other_words_may_change_freely(results):
         ('range("made/hop/a@end")', [4, 1, 7]),
         ('mean(area("made/hop/a", 5))', [4]),
         ('ahead("made/run/a@5", "made/hop/a@5")', [100, 100, 100]),
+        (
+            'p_within("made/run/a@5", "made/hop/a@5", "made/run/a@5", "made/hop/a@5")',
+            [0.0577795711],
+        ),
         ('reached("made/after", 6), reached("made/after", 7)', [9, np.inf]),
         ('peak("made/run/a"), peak_at("made/run/a")', [2000.4, 9]),
     ],

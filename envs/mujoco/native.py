@@ -154,12 +154,20 @@ def _call(
     return lambda x: jax.lax.platform_dependent(x, cpu=on_cpu, default=on_accelerator)
 
 
-def steps_of(name: str) -> tuple[str, int] | None:
-    """The model and the number of physics steps of a foreign call; None for others' calls."""
+class Call(NamedTuple):
+    """What the name of a foreign call says."""
+
+    asset: str
+    steps: int
+    plain: bool  # neither reads nor fields
+
+
+def call_of(name: str) -> Call | None:
+    """The call of this name; None for others' calls."""
     if not name.startswith(NAME):
         return None
-    asset, _, n, _, _ = name.removeprefix(NAME).rsplit(":", 4)
-    return asset, int(n)
+    asset, _, n, reads, fields = name.removeprefix(NAME).rsplit(":", 4)
+    return Call(asset, int(n), not reads + fields)
 
 
 def step(

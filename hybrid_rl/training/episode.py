@@ -7,9 +7,10 @@ episode has another body (`envs/mujoco/randomised.py`).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from functools import cached_property, partial
+from dataclasses import dataclass, fields
+from functools import partial
 from numbers import Real
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -53,10 +54,9 @@ class Episode:
     steps: int = 1000  # decisions until the time limit
     action_repeat: int = 1
     delay: int = 0  # decisions until an action arrives
-    # std of the observation: of all entries, or [o]
-    sensor_noise: tuple[float, ...] | float = field(default=0.0, hash=False)  # may be a list
+    sensor_noise: tuple[float, ...] | float = 0.0  # std of the observation: of all entries, or [o]
     action_noise: float = 0.0  # [u] std of what is added to an action when it arrives
-    randomise: Mapping[str, tuple[float, ...]] | None = field(default=None, hash=False)
+    randomise: Ranges | None = None  # of each episode's body; also as {NAME: [low, high]}
     reward: Goal | None = None  # what it pays; None: the environment's own reward
     constraint: Constraint | None = None  # what decisions must not violate
 
@@ -70,7 +70,9 @@ class Episode:
             user_functions.check(name, getattr(self, name), self.env.spec)
         if not (isinstance(self.action_noise, Real) and self.action_noise >= 0):
             raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
-        self._check_bodies()
+        object.__setattr__(self, "randomise", self._ranges(self.randomise))
+        if isinstance(self.sensor_noise, list):  # so that episodes can be hashed
+            object.__setattr__(self, "sensor_noise", self._std)
         if not any(self._std):
             return
         sizes = (1, self.env.spec.obs)
@@ -79,29 +81,24 @@ class Episode:
             line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
             raise ValueError(f"episode.sensor_noise={self.sensor_noise}: {line}")
 
-    def _check_bodies(self) -> None:
-        names = [field.name for field in fields(Ranges)]
-        given = {} if self.randomise is None else self.randomise
+    def _ranges(self, given: Any) -> Ranges | None:
+        """Of the bodies, as they were given; None if all have the same."""
+        if given is None or isinstance(given, Ranges):
+            return given
+        names = [each.name for each in fields(Ranges)]
         if not isinstance(given, Mapping) or not {*given} <= {*names}:
             line = f"must be {{NAME: [low, high]}}, with names of {', '.join(names)}"
             raise ValueError(f"episode.randomise={given}: {line}")
-        try:
-            ranges = self._ranges
-        except FieldError as error:
-            raise error.at("episode.randomise") from error
-        if ranges is None:
-            return
+        if all(pair is None for pair in given.values()):
+            return None
         state = jax.eval_shape(self.env.reset, jax.random.key(0))
         if not isinstance(state.data, PhysicsState):
-            raise ValueError(
-                "episode.randomise: only for robots in MuJoCo, whose state.data Physics makes"
-            )
-
-    @cached_property
-    def _ranges(self) -> Ranges | None:
-        """Of the bodies; None if all have the same."""
-        given = {name: pair for name, pair in (self.randomise or {}).items() if pair is not None}
-        return Ranges(**given) if given else None
+            line = "only for robots in MuJoCo, whose state.data Physics makes"
+            raise ValueError(f"episode.randomise: {line}")
+        try:
+            return Ranges(**given)
+        except FieldError as error:
+            raise error.at("episode.randomise") from error
 
     @property
     def _std(self) -> tuple[float, ...]:
@@ -116,8 +113,8 @@ class Episode:
         """The first state of an episode. The key is consumed."""
         with EXACT():
             state = jax.tree.map(jnp.asarray, self.env.reset(key))  # of Python's numbers, too
-        if self._ranges is not None:
-            own = self._ranges.draw(state.data, self.spec.act, jax.random.fold_in(key, 7))
+        if self.randomise is not None:
+            own = self.randomise.draw(state.data, self.spec.act, jax.random.fold_in(key, 7))
             state = state.replace(data=own)
         clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
         if self.delay:

@@ -18,6 +18,8 @@ import jax
 import numpy as np
 from jax.extend import core
 
+from hybrid_rl.envs.mujoco import native
+
 MOVES = {
     *(
         "slice",
@@ -151,13 +153,12 @@ class Program:
         return self._entrywise(form, [x], x.shape)
 
     def _physics(self, target: str, x: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-        """The state after MuJoCo's steps; `native.py` composes the name of its call."""
-        kind, _, rest = target.partition(":")
-        asset, _, steps, reads, fields = rest.rsplit(":", 4)
-        if kind != "hybrid_rl.native" or reads or fields:
+        """The state after MuJoCo's steps."""
+        called = native.call_of(target)
+        if called is None or not called.plain:
             raise ValueError(f"{target}: is no plain step of MuJoCo")
-        self.assets[asset] = None
-        y = self._statement(f"physics([{', '.join(_text(x))}], {int(steps)})")
+        self.assets[called.asset] = None
+        y = self._statement(f"physics([{', '.join(_text(x))}], {called.steps})")
         return _symbols([f"{y}[{i}]" for i in range(shape[0])], shape)
 
     def _statement(self, expression: str) -> str:

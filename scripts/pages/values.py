@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import binomtest, mannwhitneyu
+from scipy.stats import binomtest, mannwhitneyu, norm
 
 from hybrid_rl.analysis.curves import RESAMPLES, improvement
 from hybrid_rl.analysis.curves import iqm as iqm_of
@@ -121,6 +121,19 @@ def ahead(x: Any, y: Any) -> list[float]:
     return [100 * part for part in improvement(x, y)]
 
 
+def p_within(*pairs: Any) -> float:
+    """Two-sided p of x1, y1, x2, y2, ...: Mann-Whitney's test within each pair, taken together.
+
+    Source: van Elteren 1960, for pairs of equal sizes.
+    """
+    excess = variance = 0.0
+    for x, y in zip(map(np.asarray, pairs[::2]), map(np.asarray, pairs[1::2]), strict=True):
+        n, m = len(x), len(y)
+        excess += float(mannwhitneyu(x, y).statistic) - n * m / 2
+        variance += n * m * (n + m + 1) / 12
+    return float(2 * norm.sf(abs(excess) / np.sqrt(variance)))
+
+
 def reached(evaluations: dict[str, list[float]], aim: float) -> float:
     """The first of the decisions, keys of the evaluations [S], whose IQM is `aim`; or infinity."""
     found = [int(n) for n, each in evaluations.items() if iqm_of(np.array(each)) >= aim]
@@ -155,6 +168,7 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     "peak": lambda line: float(np.max(_iqms(line))),  # the greatest IQM of a line
     "peak_at": lambda line: line["x"][np.argmax(_iqms(line))],
     "p": lambda x, y: float(mannwhitneyu(x, y).pvalue),  # two-sided
+    "p_within": p_within,
     "range": lambda x: [np.mean(x), np.min(x), np.max(x)],  # mean, lowest and highest
     "reached": reached,
     "sign": lambda x, y: float(binomtest(*_less(x, y)).pvalue),  # p of the sign test, of pairs
