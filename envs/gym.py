@@ -23,8 +23,6 @@ from typing import Any
 import gymnasium
 import yaml
 
-from hybrid_rl.errors import UsageError
-
 TASKS = Path(__file__).parents[1] / "conf" / "task"
 ADAPTER = "hybrid_rl.envs.adapters.gymnasium"
 
@@ -33,61 +31,18 @@ ADAPTER = "hybrid_rl.envs.adapters.gymnasium"
 def limits() -> dict[str, int]:
     """The time limit of each task by the full name of its environment's class.
 
-    It counts steps of the environment, of which a decision of a task may be several. Of tasks with
-    one environment that counts which is written out, without `defaults`.
-
-    Raises:
-        UsageError: for a task without an environment or the length of an episode, its own or of
-            `defaults` that exist.
+    It counts steps of the environment, of which a decision of a task may be several. Of tasks that
+    write out `env` and `episode`, as those of this package do.
     """
     found = {}
-    files = sorted(TASKS.glob("*.yaml"), key=lambda file: ("defaults" not in _read(file), file))
-    for file in files:
-        task = _composed(file)
-        try:
-            target, episode = task["env"]["_target_"], task["episode"]
-            steps, repeat = episode["steps"], episode["action_repeat"]
-        except KeyError as error:
-            raise UsageError(
-                f"{file}: has no {error.args[0]}; a task needs env._target_, episode.steps and "
-                "episode.action_repeat, its own or by defaults: [/task@_global_: NAME, _self_]"
-            ) from None
-        if steps and ".adapters." not in target:
-            found[target] = steps * repeat
+    for file in sorted(TASKS.glob("*.yaml")):
+        match yaml.safe_load(file.read_text("utf-8")):
+            case {
+                "env": {"_target_": str(target)},
+                "episode": {"steps": int(steps), "action_repeat": int(repeat)},
+            } if steps and ".adapters." not in target:
+                found[target] = steps * repeat
     return found
-
-
-def _read(file: Path) -> dict[str, Any]:
-    return yaml.safe_load(file.read_text("utf-8")) or {}
-
-
-def _composed(file: Path) -> dict[str, Any]:
-    """The keys of a task with those of the tasks in its `defaults`, as Hydra composes them."""
-    own, made = _read(file), {}
-    names = own.pop("defaults", [])
-    for name in names if "_self_" in names else [*names, "_self_"]:
-        if name == "_self_":
-            made = _merged(made, own)
-        elif (other := _task(name)) is not None:
-            if not (base := file.with_stem(other)).exists():
-                raise UsageError(f"{file}: there is no {base.name} beside it")
-            made = _merged(made, _composed(base))
-    return made
-
-
-def _task(name: Any) -> str | None:
-    """The task that an entry of `defaults` names: NAME, /task: NAME or /task@_global_: NAME."""
-    if not isinstance(name, dict):
-        return str(name)
-    group, other = next(iter(name.items()))
-    return other if group.partition("@")[0] == "/task" else None
-
-
-def _merged(old: Any, new: Any) -> Any:
-    """`new` where it has a value, else `old`; key by key."""
-    if not (isinstance(old, dict) and isinstance(new, dict)):
-        return new
-    return old | {key: _merged(old.get(key), value) for key, value in new.items()}
 
 
 def time_limit(env: Any) -> int:
