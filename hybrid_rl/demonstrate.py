@@ -41,8 +41,8 @@ from hybrid_rl.data.demonstrations import save
 from hybrid_rl.data.trained import save as save_policy
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.run.reading import json_file
+from hybrid_rl.run.files.reading import json_file
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.trained import OBJECTIVES, Trained, load
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.rollout import rollout_with_actions

@@ -35,9 +35,9 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.config import load
 from hybrid_rl.errors import UsageError, user_line
-from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.run.reading import json_file
-from hybrid_rl.run.records import json_value
+from hybrid_rl.run.files.reading import json_file
+from hybrid_rl.run.logs.records import json_value
+from hybrid_rl.run.machine.jax_settings import prepare
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

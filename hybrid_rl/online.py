@@ -29,13 +29,13 @@ from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.envs.adapters.robot import Outside
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.jax_settings import prepare, refuse_x64
-from hybrid_rl.run.lock import lock
-from hybrid_rl.run.records import flatten_keys
-from hybrid_rl.run.rows import Gathered
-from hybrid_rl.run.store import Record, Store
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.checkpoints.store import Record, Store
+from hybrid_rl.run.files.lock import lock
+from hybrid_rl.run.logs.records import flatten_keys
+from hybrid_rl.run.logs.rows import Gathered
+from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.training.given import numbers
 from hybrid_rl.training.robot_loop import RobotLoop, flags, packed

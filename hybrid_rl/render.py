@@ -43,7 +43,7 @@ from hybrid_rl.cli.arguments import (
     whole,
 )
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.progress import say
+from hybrid_rl.run.logs.progress import say
 
 ARGUMENTS = (
     *ROBOT,

@@ -37,10 +37,10 @@ from hybrid_rl.analysis.results import RunFolder, differences, find
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, output, read
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.progress import clock
-from hybrid_rl.run.reading import json_file
-from hybrid_rl.run.reading import text as text_of
+from hybrid_rl.run.files.integrity import write_text
+from hybrid_rl.run.files.reading import json_file
+from hybrid_rl.run.files.reading import text as text_of
+from hybrid_rl.run.logs.progress import clock
 
 ARGUMENTS = (
     Argument("run", "", 'run folders, with commas, or "GLOB"', needed="run=DIR, a run folder"),

@@ -28,8 +28,8 @@ from hybrid_rl.cli.arguments import Argument, flag, number, read
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.run.lock import lock
+from hybrid_rl.run.files.lock import lock
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.trained import build_run, load
 from hybrid_rl.training.actor import LOST, Actor
 

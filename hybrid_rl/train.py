@@ -38,8 +38,9 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import command, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
-from hybrid_rl.run import assembled, curve, divergence, folder, launch, together
-from hybrid_rl.run.progress import say
+from hybrid_rl.run import assembled, divergence, folder, launch, together
+from hybrid_rl.run.logs import curve
+from hybrid_rl.run.logs.progress import say
 from hybrid_rl.training.agent import Agent
 
 if TYPE_CHECKING:

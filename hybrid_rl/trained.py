@@ -28,11 +28,11 @@ from hybrid_rl.data.trained import SavedPolicy, part
 from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError, printable
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.jax_settings import prepare
-from hybrid_rl.run.reading import from_json
-from hybrid_rl.run.store import read_part
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.checkpoints.store import read_part
+from hybrid_rl.run.files.reading import from_json
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode

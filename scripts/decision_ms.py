@@ -28,7 +28,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, one_of, read
 from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import retargeted
-from hybrid_rl.run.provenance import device
+from hybrid_rl.run.machine.provenance import device
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider

@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 
 from hybrid_rl import config
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.types import EnvState
 
 

@@ -30,7 +30,7 @@ import numpy as np
 from omegaconf import OmegaConf
 
 from hybrid_rl import config as configuration
-from hybrid_rl.run import checkpoint, leaves
+from hybrid_rl.run.checkpoints import checkpoint, leaves
 from hybrid_rl.training.loop import Loop
 
 EARLY = 0.2  # share of the faults that come before the run trains, perhaps

@@ -83,13 +83,13 @@ MUTANTS = {
         "tests/core tests/objectives",
     ),
     "a checkpoint is lost": Mutant(
-        "hybrid_rl/run/checkpoint.py",
+        "hybrid_rl/run/checkpoints/checkpoint.py",
         "    draft.rename(path)\n",
         "    shutil.rmtree(draft)\n",
         "tests/run",
     ),
     "a resumed run forgets its record": Mutant(
-        "hybrid_rl/run/store.py",
+        "hybrid_rl/run/checkpoints/store.py",
         'record = Record(**meta["record"])',
         'record = Record(**{**meta["record"], "wall_s": 0.0, "step": 0})',
         "tests/run",

@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.run.provenance import device
+from hybrid_rl.run.machine.provenance import device
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.rollout import evaluation_keys
 

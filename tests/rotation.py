@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import TypeVar
 
-from hybrid_rl.run.provenance import git_commit
+from hybrid_rl.run.machine.provenance import git_commit
 
 Item = TypeVar("Item")
 

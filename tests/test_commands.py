@@ -21,8 +21,8 @@ from hybrid_rl.analysis.curves import curves
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.envs.mujoco.native import cores
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
+from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.trained import build_run, load, restore
 from hybrid_rl.training.rollout import evaluation_keys
 
@@ -250,7 +250,7 @@ def test_python_does_what_the_commands_do(tmp_path):
 def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
     code = (
         "import jax; from pathlib import Path\n"
-        "from hybrid_rl import config; from hybrid_rl.run.jax_settings import prepare\n"
+        "from hybrid_rl import config; from hybrid_rl.run.machine.jax_settings import prepare\n"
         "given = config.load(['physics=mjx', 'compile_cache=null'])\n"
         "prepare(given); config.build(given); jax.devices()\n"
         "names = [path.read_text() for path in Path('/proc/self/task').glob('*/comm')]\n"

@@ -12,8 +12,8 @@ from hybrid_rl import figures, report
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.loggers import CSV
+from hybrid_rl.run.logs.log import RunLog
+from hybrid_rl.run.logs.loggers import CSV
 
 READ = {"config.yaml": "settings", "metrics.jsonl": "rows", "summary.json": "summary"}
 

@@ -11,7 +11,7 @@ from hybrid_rl.analysis import recorded
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run import jax_settings
+from hybrid_rl.run.machine import jax_settings
 
 SYSTEM = {"_target_": "os.system", "command": "true"}
 COMMANDS = {
@@ -56,7 +56,7 @@ def test_a_section_that_holds_no_part_is_refused(folder, keys, words):
             "numpy.save",
         ),
         *("antigravity.webbrowser", "yaml.unsafe_load", "__main__.x", "site.main", "pytest.main"),
-        "hybrid_rl.run.integrity.write_text",
+        "hybrid_rl.run.files.integrity.write_text",
         "hybrid_rl.analysis.results.RunFolder",
         "hybrid_rl.config.Path",
         "hybrid_rl.config.Run",
@@ -65,7 +65,7 @@ def test_a_section_that_holds_no_part_is_refused(folder, keys, words):
         "hybrid_rl.data.trained.save",
         "hybrid_rl.envs..os",
         "hybrid_rl..os.system",
-        "hybrid_rl.run.provenance.subprocess.run",
+        "hybrid_rl.run.machine.provenance.subprocess.run",
         "hybrid_rl.envs.analytic.pendulum.jax.numpy.save",
         "hybrid_rl.envs.analytic.pendulum.dataclass",
         "hybrid_rl.envs.analytic.pendulum.Pendulum.reset",
@@ -119,7 +119,7 @@ def test_it_is_refused_wherever_it_stands(folder, keys, at):
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_refuses_it(folder, capfd, name):
-    changed(folder, extra=[{"_target_": "hybrid_rl.run.integrity.write_text", "path": "ran"}])
+    changed(folder, extra=[{"_target_": "hybrid_rl.run.files.integrity.write_text", "path": "ran"}])
     before = contents(folder)
     given = [f"run={folder}", *(["out=a.npz"] if name == "export" else [])]
     if name == "report":  # its page has the curves; only the film needs the parts

@@ -13,7 +13,7 @@ from hybrid_rl.cli import arguments, command
 from hybrid_rl.cli.arguments import Argument, several, whole
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.jax_settings import cache_folder
+from hybrid_rl.run.machine.jax_settings import cache_folder
 
 NAMES = sorted(set(commands.commands()) - {"train"})
 

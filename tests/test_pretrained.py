@@ -64,7 +64,7 @@ def test_evaluating_it_gives_its_number(capsys):
             "_target_=os.system: is no part of hybrid_rl; put its folder on PYTHONPATH",
         ),
         (
-            {"env": {"_target_": "hybrid_rl.run.provenance.subprocess.run", "args": "true"}},
+            {"env": {"_target_": "hybrid_rl.run.machine.provenance.subprocess.run", "args": "ls"}},
             "subprocess.run: is no part of hybrid_rl",
         ),
         (

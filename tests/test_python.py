@@ -21,7 +21,7 @@ from tiny import TINY, contents, summary_of
 import hybrid_rl as hr
 from hybrid_rl.analysis.curves import Curve
 from hybrid_rl.run.assembled import run_of
-from hybrid_rl.run.loggers import Callback
+from hybrid_rl.run.logs.loggers import Callback
 from hybrid_rl.run.session import Session
 from hybrid_rl.train import Result
 

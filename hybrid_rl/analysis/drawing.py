@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.envs.mujoco.offscreen import Canvas
-from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.logs.progress import Progress
 
 SUFFIXES = (".mp4", ".gif", ".png")
 GIF_FPS = 20.0  # [1/s] at most

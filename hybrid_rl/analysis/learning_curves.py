@@ -35,7 +35,7 @@ from hybrid_rl.analysis.curves import (
 from hybrid_rl.analysis.curves_picture import plot
 from hybrid_rl.cli.arguments import number
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.reading import json_file
+from hybrid_rl.run.files.reading import json_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -16,7 +16,7 @@ import numpy as np
 
 from hybrid_rl.analysis.style import BLUE, GREY, STYLE, VERMILION, legend_outside, plain_log
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.reading import json_file
+from hybrid_rl.run.files.reading import json_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -33,7 +33,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, number, output, read, several, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks.precision import PRECISIONS
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.machine.jax_settings import prepare
 
 EXPERIMENT = "thesis/fig_3_2_halfcheetah"
 SETTINGS = ("default", "light", "fast", "thesis")
@@ -98,7 +98,7 @@ def main() -> None:
     import jax
 
     from hybrid_rl.benchmark.picture import draw
-    from hybrid_rl.run import provenance
+    from hybrid_rl.run.machine import provenance
 
     given, changes = read(__doc__, ARGUMENTS, GROUPS)
     settings: dict[str, Any] = {**given, **changes}

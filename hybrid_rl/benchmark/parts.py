@@ -20,7 +20,7 @@ from hybrid_rl.benchmark.race import Contestant, race
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks import precision
-from hybrid_rl.run.jax_settings import CACHE
+from hybrid_rl.run.machine.jax_settings import CACHE
 from hybrid_rl.training.agent import Agent
 
 TASKS = "halfcheetah,hopper,cartpole"

@@ -17,7 +17,7 @@ from hydra.core.override_parser.types import Override
 
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, Natural, part
-from hybrid_rl.run.records import Row
+from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.session import RETURNS
 
 if TYPE_CHECKING:

@@ -30,7 +30,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted
 from hybrid_rl.run import together
 from hybrid_rl.run.folder import new_folder
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world

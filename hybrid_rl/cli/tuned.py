@@ -22,9 +22,9 @@ from hybrid_rl.cli import study, sweep
 from hybrid_rl.composition import options
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.lock import lock
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.files.lock import lock
 
 INSTALL = f"hydra/sweeper=tuned: Optuna is not installed; {install('tune')}"
 OWN = ("resume", "distributed")  # keys that trials cannot have

@@ -28,9 +28,9 @@ from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
 from hybrid_rl.doctor.tried import Tried, episodes
 from hybrid_rl.errors import CheckpointError, UsageError
-from hybrid_rl.run import checkpoint
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.trained import Trained, build_run, load, restore
 from hybrid_rl.types import Params, Transition
 

@@ -10,7 +10,7 @@ import numpy as np
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.doctor.evidence import STILL, Evidence
 from hybrid_rl.doctor.limits import ENOUGH, INFLATED, OUTWEIGHED, SUMMED, UNSEEN
-from hybrid_rl.run.rows import of_world
+from hybrid_rl.run.logs.rows import of_world
 
 
 def diverged(run: Evidence) -> str | None:

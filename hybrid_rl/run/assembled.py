@@ -17,8 +17,8 @@ from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.envs.adapters.external import check_world
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import checkpoint
-from hybrid_rl.run.jax_settings import prepare
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.training.agent import Agent
 
 DEFAULTS = ("compile_cache", "precision")  # those of conf/train.yaml

@@ -10,9 +10,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.run.rows import of_world
+from hybrid_rl.run.checkpoints.store import End
+from hybrid_rl.run.logs.rows import of_world
 from hybrid_rl.run.shelf import Shelf
-from hybrid_rl.run.store import End
 from hybrid_rl.training.loop import Loop
 
 

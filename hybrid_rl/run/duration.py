@@ -10,7 +10,7 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl.config import CONF
-from hybrid_rl.run.progress import clock, rate
+from hybrid_rl.run.logs.progress import clock, rate
 from hybrid_rl.run.schedule import Speed
 
 LONG = 1800.0  # [s]

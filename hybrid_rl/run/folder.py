@@ -26,11 +26,11 @@ from hybrid_rl.checks import COUNTS, SECTIONS
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.overrides import quoted
-from hybrid_rl.run import checkpoint
-from hybrid_rl.run.anchors import as_yaml
-from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.lock import lock
-from hybrid_rl.run.reading import json_file, yaml_file
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.files.anchors import as_yaml
+from hybrid_rl.run.files.integrity import write_text
+from hybrid_rl.run.files.lock import lock
+from hybrid_rl.run.files.reading import json_file, yaml_file
 
 FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.together)

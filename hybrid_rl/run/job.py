@@ -11,12 +11,14 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
 from hybrid_rl.networks import precision
-from hybrid_rl.run import integrity, loggers, provenance
-from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.records import Row, flatten_keys
+from hybrid_rl.run.checkpoints.store import Store
+from hybrid_rl.run.files import integrity
+from hybrid_rl.run.logs import loggers
+from hybrid_rl.run.logs.log import RunLog
+from hybrid_rl.run.logs.records import Row, flatten_keys
+from hybrid_rl.run.machine import provenance
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.shelf import Shelf
-from hybrid_rl.run.store import Store
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of

@@ -14,14 +14,18 @@ from hybrid_rl.checks import check, countable, whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
 from hybrid_rl.networks import precision
-from hybrid_rl.run import checkpoint, distributed, folder, integrity, loggers, memory, together
+from hybrid_rl.run import folder, together
 from hybrid_rl.run import start as starting
+from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.duration import Duration, instead
-from hybrid_rl.run.jax_settings import prepare, refuse_x64
+from hybrid_rl.run.files import integrity
+from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.job import Job, Output, written
-from hybrid_rl.run.lock import lock
-from hybrid_rl.run.progress import Progress, Silent
-from hybrid_rl.run.records import changes, summary_of
+from hybrid_rl.run.logs import loggers
+from hybrid_rl.run.logs.progress import Progress, Silent
+from hybrid_rl.run.logs.records import changes, summary_of
+from hybrid_rl.run.machine import distributed, memory
+from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.schedule import Schedule
 from hybrid_rl.run.session import Session
 from hybrid_rl.run.start import Start

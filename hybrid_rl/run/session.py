@@ -18,16 +18,18 @@ import numpy as np
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.protocols import Controller
-from hybrid_rl.run import divergence, memory, provenance, rows
+from hybrid_rl.run import divergence
+from hybrid_rl.run.checkpoints.store import Record
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.duration import Duration
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
-from hybrid_rl.run.progress import DRAWN, Progress
-from hybrid_rl.run.records import Row
+from hybrid_rl.run.logs import rows
+from hybrid_rl.run.logs.progress import DRAWN, Progress
+from hybrid_rl.run.logs.records import Row
+from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.start import Start
-from hybrid_rl.run.store import Record
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 

@@ -10,10 +10,10 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 
-from hybrid_rl.run.log import RunLog
-from hybrid_rl.run.records import Row
-from hybrid_rl.run.rows import Gathered
-from hybrid_rl.run.store import End, Record, Store
+from hybrid_rl.run.checkpoints.store import End, Record, Store
+from hybrid_rl.run.logs.log import RunLog
+from hybrid_rl.run.logs.records import Row
+from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.training.loop import Loop
 
 

@@ -26,9 +26,9 @@ from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import LACKING, raw_values, select, source
 from hybrid_rl.run import folder, inherited
+from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import SWEEP
-from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.records import flatten_keys
+from hybrid_rl.run.logs.records import flatten_keys
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of

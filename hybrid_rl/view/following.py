@@ -4,7 +4,7 @@ import threading
 from pathlib import Path
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.run import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.trained import Trained, build_run, of
 from hybrid_rl.types import Params
 from hybrid_rl.view.subject import learner

@@ -22,7 +22,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.types import Spec, Transition
 
 WEIGHTS = "policy/trunk/params/Dense_0/kernel"
-EVIL = '{"_target_": "hybrid_rl.run.integrity.write_text", "path": "ran"}'
+EVIL = '{"_target_": "hybrid_rl.run.files.integrity.write_text", "path": "ran"}'
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import shutil
 import pytest
 from states import state_at
 
-from hybrid_rl.run import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint
 
 
 @pytest.fixture

@@ -10,7 +10,8 @@ import pytest
 from states import assert_same, largest_file, state_at
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.run import checkpoint, integrity, leaves
+from hybrid_rl.run.checkpoints import checkpoint, leaves
+from hybrid_rl.run.files import integrity
 
 
 @pytest.mark.parametrize("abstract", [False, True])

@@ -14,7 +14,7 @@ import pytest
 from states import assert_same, state_at
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.run import checkpoint, leaves
+from hybrid_rl.run.checkpoints import checkpoint, leaves
 
 KILLED = """
 import os, signal, sys

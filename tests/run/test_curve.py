@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hybrid_rl.run import curve
+from hybrid_rl.run.logs import curve
 
 
 def columns(text):

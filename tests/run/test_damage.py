@@ -13,8 +13,12 @@ from tiny import TINY, call, call_train, contents, only_line, run, summary_of
 from hybrid_rl import evaluate
 from hybrid_rl.cli import command
 from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.run import checkpoint, integrity, memory, rows, session
+from hybrid_rl.run import session
+from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
+from hybrid_rl.run.files import integrity
+from hybrid_rl.run.logs import rows
+from hybrid_rl.run.machine import memory
 
 pytestmark = pytest.mark.turns(2)
 

@@ -50,7 +50,7 @@ def test_each_process_trains_its_share_and_goes_on_with_it(tmp_path, monkeypatch
     assert [summary["seeds"] for summary in summaries] == [[0, 1], [2]]
     run(tmp_path / "alone", *LINE, "seed=2")
     assert rows(shares[1], 2) == rows(tmp_path / "alone", 2)
-    monkeypatch.setattr("hybrid_rl.run.distributed.processes", lambda: (1, 2))
+    monkeypatch.setattr("hybrid_rl.run.machine.distributed.processes", lambda: (1, 2))
     assert call_train(f"resume={folder}", "distributed=true", "total_steps=150") == 0
     assert [rows(shares[0], 0)[-1]["step"], rows(shares[1], 2)[-1]["step"]] == [100, 150]
 
@@ -58,7 +58,7 @@ def test_each_process_trains_its_share_and_goes_on_with_it(tmp_path, monkeypatch
 def test_what_makes_no_distributed_run_is_one_line(tmp_path, monkeypatch, capfd):
     assert call_train(*LINE, "distributed=true") == 2
     assert "run_dir=null: distributed=true needs one folder" in capfd.readouterr().err
-    monkeypatch.setattr("hybrid_rl.run.distributed.processes", lambda: (1, 2))
+    monkeypatch.setattr("hybrid_rl.run.machine.distributed.processes", lambda: (1, 2))
     assert call_train(*LINE, "distributed=true", f"run_dir={tmp_path}") == 2
     assert "num_seeds=1: must be 2 or more, one a process" in capfd.readouterr().err
     assert call_train(f"resume={tmp_path}", "distributed=true") == 2

@@ -9,7 +9,8 @@ import pytest
 
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.run import divergence, rows
+from hybrid_rl.run import divergence
+from hybrid_rl.run.logs import rows
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.axis import Axis
 from hybrid_rl.training.episode import Episode

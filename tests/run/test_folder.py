@@ -17,8 +17,8 @@ from hybrid_rl.config import load
 from hybrid_rl.doctor.__main__ import examine
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run import integrity
-from hybrid_rl.run.lock import lock
+from hybrid_rl.run.files import integrity
+from hybrid_rl.run.files.lock import lock
 from hybrid_rl.training.loop import Loop
 
 pytestmark = pytest.mark.turns(3)

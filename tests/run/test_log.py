@@ -14,9 +14,10 @@ import pytest
 from tensorboardX.proto.event_pb2 import Event
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.run import progress, provenance
-from hybrid_rl.run.log import RunLog, number
-from hybrid_rl.run.progress import Progress
+from hybrid_rl.run.logs import progress
+from hybrid_rl.run.logs.log import RunLog, number
+from hybrid_rl.run.logs.progress import Progress
+from hybrid_rl.run.machine import provenance
 
 
 def row(step, seed=0, **scalars):
@@ -112,7 +113,7 @@ def test_a_rewound_run_has_every_row_once(tmp_path):
 def test_flushed_rows_survive_a_kill(tmp_path):
     code = (
         "import os, signal, sys; from pathlib import Path\n"
-        "from hybrid_rl.run.log import RunLog\n"
+        "from hybrid_rl.run.logs.log import RunLog\n"
         "log = RunLog(Path(sys.argv[1]), [0])\n"
         "log.write([{'step': 1, 'seed': 0, 'wall_s': 0, 'a': 5}]); log.flush()\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
@@ -149,9 +150,9 @@ def test_versions_commit_and_device_are_reported():
 
 
 def test_the_commit_of_another_checkout_is_not_ours(monkeypatch, tmp_path):
-    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "a" / "b" / "c.py"))
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "a" / "b" / "c" / "d.py"))
     assert provenance.git_commit() is None
-    ours = provenance.Path(__file__).resolve().parents[2] / "hybrid_rl" / "training" / "log.py"
+    ours = provenance.Path(__file__).resolve().parents[2] / "hybrid_rl" / "run" / "logs" / "log.py"
     monkeypatch.setattr(provenance, "__file__", str(ours))
     before = provenance.git_commit()
     monkeypatch.setenv("GIT_DIR", str(tmp_path))  # as in a hook
@@ -228,7 +229,7 @@ def test_no_speed_is_shown_before_it_is_steady(capsys, now):
 def test_a_terminal_shows_a_bar():
     """In a pseudo-terminal of 60 columns, since nothing else is one."""
     code = (
-        "from hybrid_rl.run.progress import Progress\n"
+        "from hybrid_rl.run.logs.progress import Progress\n"
         "with Progress(2000, 0, 'hopper sac') as shown:\n"
         "    shown.note('compiling [soon] ...')\n"
         "    for value in (-11.0, 10.0, -4.0):\n"

@@ -8,8 +8,8 @@ import pytest
 from tiny import call_train, only_line, rows_of
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import loggers
-from hybrid_rl.run.log import RunLog
+from hybrid_rl.run.logs import loggers
+from hybrid_rl.run.logs.log import RunLog
 
 CONFIG = {"task": "ant", "algo": "sac", "learners": {"policy": {"rate": 0.1}}}
 

@@ -11,7 +11,8 @@ from omegaconf import OmegaConf
 from tiny import TINY, call_train, contents, run, summary_of
 
 from hybrid_rl import __version__, config
-from hybrid_rl.run import checkpoint, launch
+from hybrid_rl.run import launch
+from hybrid_rl.run.checkpoints import checkpoint
 from scripts import interrupt
 
 pytestmark = pytest.mark.turns(4)

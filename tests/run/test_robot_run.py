@@ -18,7 +18,7 @@ from hybrid_rl.doctor.__main__ import CHECKS, examine
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
-from hybrid_rl.run.lock import lock
+from hybrid_rl.run.files.lock import lock
 from hybrid_rl.training.robot_process import RobotProcess
 from hybrid_rl.types import Spec
 

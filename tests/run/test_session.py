@@ -13,10 +13,12 @@ from tiny import TINY, call_train, rows_of, run, summary_of
 
 from hybrid_rl.errors import DivergenceError
 from hybrid_rl.overrides import quoted
-from hybrid_rl.run import checkpoint, integrity, schedule, session
+from hybrid_rl.run import schedule, session
+from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.evaluations import Evaluations
-from hybrid_rl.run.progress import Progress
-from hybrid_rl.run.rows import Gathered
+from hybrid_rl.run.files import integrity
+from hybrid_rl.run.logs.progress import Progress
+from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.session import Session
 from hybrid_rl.training.loop import Loop

@@ -12,7 +12,7 @@ from tiny import TINY, call, call_train, only_line, rows_of, summary_of
 import hybrid_rl
 from hybrid_rl import evaluate, export, train
 from hybrid_rl.cli import command
-from hybrid_rl.run import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint
 
 pytestmark = pytest.mark.turns(3)
 

@@ -13,7 +13,7 @@ from hybrid_rl import config, trained
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import start, together
-from hybrid_rl.run.store import Store
+from hybrid_rl.run.checkpoints.store import Store
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
 from scripts import interrupt

@@ -72,7 +72,7 @@ def main() -> None:
         os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: arguments.cores])
     import jax
 
-    from hybrid_rl.run.provenance import device
+    from hybrid_rl.run.machine.provenance import device
 
     rows = []
     for width in WIDTHS:

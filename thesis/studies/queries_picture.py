@@ -8,7 +8,7 @@ import numpy as np
 
 from hybrid_rl.analysis.style import legend_outside, line_styles, words
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.reading import json_file
+from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.thesis.studies import queries
 
 SAME = ("task", "score", "decisions_of_a_demonstration")

@@ -18,7 +18,7 @@ import jax
 import numpy as np
 
 from hybrid_rl.errors import MisfitError
-from hybrid_rl.run.reading import from_json
+from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.types import PyTree
 
 AFTERMATH = 0.5  # [s] in which TensorStore's threads print tracebacks after a failed write

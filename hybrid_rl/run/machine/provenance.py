@@ -30,7 +30,7 @@ def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str | None]:
 
 def git_commit() -> str | None:
     """The commit of the checkout that this package runs from; None outside a checkout."""
-    checkout = Path(__file__).resolve().parents[2]
+    checkout = Path(__file__).resolve().parents[3]
     if not (checkout / ".git").exists():
         return None
     command = ["git", "-C", str(checkout), "rev-parse", "HEAD"]

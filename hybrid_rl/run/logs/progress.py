@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Task, TextColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
-from hybrid_rl.run import curve
+from hybrid_rl.run.logs import curve
 
 WINDOW = 30.0  # [s] over which the speed is measured
 PAUSE = 8.0  # [s] between two plain lines

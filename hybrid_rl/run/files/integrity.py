@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hybrid_rl.run.reading import from_json
+from hybrid_rl.run.files.reading import from_json
 
 MANIFEST = "manifest.json"
 

@@ -16,8 +16,8 @@ from tensorboardX.proto.summary_pb2 import (
     Summary,  # pyright: ignore[reportAttributeAccessIssue]
 )
 
-from hybrid_rl.run.loggers import Logger, scalars
-from hybrid_rl.run.records import Row
+from hybrid_rl.run.logs.loggers import Logger, scalars
+from hybrid_rl.run.logs.records import Row
 
 
 class TensorBoard(Logger):

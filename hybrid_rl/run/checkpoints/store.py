@@ -9,8 +9,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.run import checkpoint
-from hybrid_rl.run.rows import Gathered
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop

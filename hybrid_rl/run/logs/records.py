@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.reading import from_json, json_file
+from hybrid_rl.run.files.reading import from_json, json_file
 
 Row = dict[str, Any]
 COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric

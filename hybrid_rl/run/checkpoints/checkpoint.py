@@ -26,8 +26,9 @@ from typing import Any
 import jax
 
 from hybrid_rl.errors import CheckpointError
-from hybrid_rl.run import integrity, leaves
-from hybrid_rl.run.reading import from_json
+from hybrid_rl.run.checkpoints import leaves
+from hybrid_rl.run.files import integrity
+from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.types import PyTree
 
 KEEP = 2  # complete checkpoints

@@ -9,7 +9,7 @@ from typing import Self
 
 import numpy as np
 
-from hybrid_rl.run.records import Row
+from hybrid_rl.run.logs.records import Row
 
 Metrics = dict[str, np.ndarray]
 ACTION = "world/action"

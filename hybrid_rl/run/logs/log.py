@@ -11,16 +11,16 @@ from typing import Any, Self
 
 import numpy as np
 
-from hybrid_rl.run.integrity import write_text
-from hybrid_rl.run.loggers import Lines, Logger
-from hybrid_rl.run.records import json_value
+from hybrid_rl.run.files.integrity import write_text
+from hybrid_rl.run.logs.loggers import Lines, Logger
+from hybrid_rl.run.logs.records import json_value
 
 
 class RunLog:
     """Writes rows of numbers to a run folder, which exists; `loggers` get them, too."""
 
     def __init__(self, run_dir: Path, seeds: Sequence[int], loggers: Sequence[Logger] = ()) -> None:
-        from hybrid_rl.run.tensorboard import TensorBoard  # 0.2 s
+        from hybrid_rl.run.logs.tensorboard import TensorBoard  # 0.2 s
 
         self.run_dir = run_dir
         self._lines = Lines(run_dir)

@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from hybrid_rl.errors import FAULTS, CheckpointError, UsageError, install
-from hybrid_rl.run.reading import lines, open_to_append, text
-from hybrid_rl.run.records import COORDINATES, Row, row_of
+from hybrid_rl.run.files.reading import lines, open_to_append, text
+from hybrid_rl.run.logs.records import COORDINATES, Row, row_of
 
 HEADER = (*COORDINATES, "metric", "value")
 PACKAGES = ("wandb", "trackio")  # extras of the same name
