@@ -1,6 +1,6 @@
 """Stops a run at random moments, resumes it, and compares it with one that was never stopped.
 
-    python scripts/interrupt.py --trials 20 task=cartpole algo=hybrid_stochastic total_steps=3000
+    python -m scripts.interrupt --trials 20 task=cartpole algo=hybrid_stochastic total_steps=3000
 
 A trial starts the run in a process of its own and stops it `--stops` times, most times while it
 trains, at a random moment and by a random one of FAULTS: a signal, two at once, a console that is
