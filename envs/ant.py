@@ -29,7 +29,6 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.locomotion import pybullet_reward
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
@@ -102,10 +101,6 @@ class Ant(Body):
         `speed` is the velocity along x.
         """
         return {"height": obs[0], "speed": obs[13], "velocity": obs[13:15], "turning": obs[18]}
-
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("ant.xml")
 
 
 def _state(data: PhysicsState, reward: Array, terminated: Array, speed: Array) -> EnvState:

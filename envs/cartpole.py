@@ -22,7 +22,6 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
@@ -64,10 +63,6 @@ class Cartpole(Body):
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Position [m] and speed [m/s] of the cart, and the pole's height, -1 to 1, at obs [5]."""
         return {"position": obs[0], "speed": obs[1], "height": obs[2]}
-
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text(ASSET)
 
 
 def _dm_control(data: PhysicsState, action: Array) -> Array:

@@ -17,7 +17,6 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.envs.locomotion import pybullet_reward
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
@@ -72,10 +71,6 @@ class HalfCheetah(Body):
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Height of the torso above its start [m], pitch [rad] and speed [m/s] at obs [17]."""
         return {"height": obs[0], "pitch": obs[1], "speed": obs[8]}
-
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("halfcheetah.xml")
 
 
 def _kneels(body: Physics, data: PhysicsState) -> Array:

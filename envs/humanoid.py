@@ -24,7 +24,6 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
 from hybrid_rl.fields import part
@@ -93,7 +92,3 @@ class Humanoid(Body):
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Height of the torso [m] and speed along x [m/s] at obs [o]."""
         return {"height": obs[0], "speed": obs[22]}
-
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("humanoid.xml")

@@ -150,10 +150,6 @@ class PandaStack:
         back = self.posture * (jnp.asarray(READY, jnp.float32) - data.qpos[:7])
         return damped_inverse(jacobian, twist, self.damping, back)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text(ASSET)
-
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [23] for rendering."""
         return state.data.qpos

@@ -93,7 +93,3 @@ class PlanarLegs(Body):
     def quantities(self, obs: Array) -> dict[str, Array]:
         """Height of the torso [m], pitch [rad] and speed [m/s] at obs [o]."""
         return {"height": obs[0], "pitch": obs[1], "speed": obs[self._body.model.nq - 1]}
-
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text(self.asset)

@@ -83,7 +83,7 @@ def robot(name: str) -> str:
     (physics,) = [_plain(name, asset) for asset in program.assets] or [None]
     values = {
         "title": NAMES[name],
-        "models": {"physics": physics, "scene": env.scene()},
+        "models": {"physics": physics, "scene": env.scene() if hasattr(env, "scene") else physics},
         "repeat": episode.action_repeat,
         "dt": env.spec.dt,  # [s] of a step
         "limit": episode.steps,  # decisions

@@ -26,6 +26,7 @@ from worlds import (
 )
 
 from hybrid_rl.composition import options
+from hybrid_rl.envs.mujoco import mjcf, scenery
 
 pytestmark = pytest.mark.xdist_group("worlds")  # both read `rollout`
 
@@ -114,7 +115,7 @@ def test_equal_by_value(env):
 
 
 def test_pose_has_the_size_of_the_scene(env):
-    model = mujoco.MjModel.from_xml_string(env.scene())
+    model = mjcf.load(scenery.scene_of(env))
     pose = jax.eval_shape(lambda key: env.pose(env.reset(key)), jax.random.key(0))
     assert pose.shape == (model.nq,)
     assert model.camera("track").id >= 0
@@ -131,7 +132,7 @@ def placed(task):
     """States of eight decisions, and where MuJoCo has their points [8, n, 3]."""
     env = make(task, "native")
     states = [jax.tree.map(lambda a, t=t: a[(*OTHER, t)], rollout(env)) for t in range(8)]
-    model = mujoco.MjModel.from_xml_string(env.scene())
+    model = mjcf.load(scenery.scene_of(env))
     data, points = mujoco.MjData(model), []
     for state in states:
         data.qpos[:] = env.pose(state)
