@@ -215,9 +215,17 @@ def modules(member: str) -> list[str]:
         folder = ROOT.joinpath(*member.split("."))
     if not folder.is_dir():
         return [f"hybrid_rl.{member}"]
-    paths = (path for path in sorted(folder.rglob("*.py")) if not path.name.startswith("_"))
-    inner = [".".join(path.relative_to(folder).with_suffix("").parts) for path in paths]
-    return [f"hybrid_rl.{member}.{name}" for name in inner if name != "adapters.brax"]
+    inner = [path.relative_to(folder) for path in sorted(folder.rglob("*.py")) if shown(path)]
+    ways = [".".join(("hybrid_rl", member, *path.with_suffix("").parts)) for path in inner]
+    names = [way.removesuffix(".__init__") for way in ways]
+    return [name for name in names if not name.endswith(".adapters.brax")]
+
+
+def shown(path: Path) -> bool:
+    """Whether the reference has a section of this file; of an `__init__.py`, if it holds code."""
+    if path.name != "__init__.py":
+        return not path.name.startswith("_")
+    return bool(re.search(r"^(class|def) ", path.read_text(encoding="utf-8"), re.MULTILINE))
 
 
 def build(builder: str, out: Path, *options: str) -> None:
