@@ -154,6 +154,40 @@ def parsed_once():
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def composed_once():
+    """Hydra composes a command's configuration one time, and resolves no name that is fixed.
+
+    Without `hydra.mode` it would compose all of it only to find that none is set; and for each
+    group of a defaults list it makes a configuration of all choices, in case a name refers to them.
+    """
+    from hydra._internal import defaults_list as defaults
+    from hydra._internal.hydra import Hydra
+    from hydra.core.default_element import InputDefault
+
+    mode, choices = Hydra.get_mode, defaults._create_interpolation_map
+    resolve = InputDefault._resolve_interpolation_impl
+
+    def mode_of(self, config_name, overrides):
+        given = any("hydra.mode" in word for word in overrides)
+        return mode(self, config_name, overrides) if given else None
+
+    def choices_of(overrides, elements, self_added):
+        parts = ("path", "group", "value")
+        refers = any("${" in str([getattr(each, part, "") for part in parts]) for each in elements)
+        return choices(overrides, elements, self_added) if refers else None
+
+    def resolved(self, known, name):
+        fixed = isinstance(name, str) and "${" not in name
+        return name if fixed else resolve(self, known, name)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Hydra, "get_mode", mode_of)
+        patch.setattr(defaults, "_create_interpolation_map", choices_of)
+        patch.setattr(InputDefault, "_resolve_interpolation_impl", resolved)
+        yield
+
+
 @pytest.fixture(scope="module", autouse=True)
 def frozen():
     """What the files before this one left is not searched for garbage again."""
