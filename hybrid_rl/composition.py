@@ -112,7 +112,7 @@ def explain(error: Exception) -> str:
         if set(problem) == {" ", "^"}:  # it points at a character
             problem = f"{first[len(problem) - 1]} stands outside quotes"
         problem = problem.partition(" expecting {")[0]  # of kinds of signs
-        return f"{error.override}: {problem}; write key=value, text in quotes"
+        return f"{error.override}: {problem}; write {overrides.TYPED}"
     if inner := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):
         return f"{inner[1]}={inner[2]}: is not for this method, which has no {inner[3]} to change"
     if several := re.match(r"Ambiguous value for argument '([^']+)'", text):
@@ -125,7 +125,7 @@ def explain(error: Exception) -> str:
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
     if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
         return f"{error.full_key}: refers to the part that it is in; give it another one"
-    if word := re.search(r"node `([^`]+)` is not a container", text):
+    if word := overrides.PLAIN.search(f"{text} {cause}"):
         return f"{word[1]}: must be a group of keys; {overrides.SHOW}"
     return _sentences(f"{text}\n{cause or ''}")
 

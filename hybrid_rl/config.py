@@ -274,7 +274,8 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
         line = str(error)
         if isinstance(error, FieldError) and error.line.startswith("world=") and error.lacks:
             names = ", ".join(tasks_with(error.lacks))
-            who = who or config.get("algo") or "this"
+            part = str(error).partition(".world=")[0]
+            who = part if part in PAID else who or config.get("algo") or "this"
             line = f"task={config.task}: {who} {error.words}; choose one of {names}"
         field, equals, rest = line.partition("=")
         if field in config.env and field not in config:  # of a world of the user's

@@ -20,6 +20,8 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl.errors import UsageError
 
 REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
+PLAIN = re.compile(r"(?s)(?:node `|override )([^`=]+).*(?:not a container|merge DictConfig)")
+TYPED = "key=value, text as 'key=\"TEXT\"'"
 MOST = 4  # keys that one line suggests
 GROUPS = ("learning", "settings", "experiment")  # groups that leave no key of their name
 SHOW = "`python -m hybrid_rl.train --cfg job` shows all of them"

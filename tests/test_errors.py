@@ -52,7 +52,9 @@ USAGE = [  # overrides of train, words of the line
     ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
     ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
     ("seed=${seeds}", "seed: refers to seeds, which neither this task nor this method sets"),
-    ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text in quotes"),
+    ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text as 'key="),
+    ("episode.randomise=[0.7,1.3]", "hybrid_rl: episode.randomise: must be a group of keys; "),
+    ("task=gymnasium env.id=Pendulum-v1 reward=speed", "task=Pendulum-v1: reward needs an envi"),
     ("episode=3", "episode=3: must be a group of keys"),
     (
         "objective=foo",
@@ -71,10 +73,7 @@ USAGE = [  # overrides of train, words of the line
     ("task=pendulm", "walker2d; did you mean pendulum?"),
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
-    (
-        "algo=kle3 settings=light",
-        "settings=light: is not for this method, which has no proposal to change",
-    ),
+    ("algo=kle3 settings=light", "settings=light: is not for this method, which has no proposal"),
     *(
         (f"algo={name} settings=light", f"settings=light: is not for this method: {key}")
         for name, key in (("flash_sac", "policy.normalise: Unit"), ("mppi", "policy.hidden: Saved"))
@@ -144,7 +143,7 @@ USAGE = [  # overrides of train, words of the line
     ("planner.temperature=-0.1", "planner.temperature=-0.1: must be above 0"),
     ("planner.temperature=hot", "planner.temperature=hot: must be a number"),
     ("policy.hidden=16", "policy.hidden=16: must be a list"),
-    ("policy.hidden=(9,9)", "policy.hidden=(9,9): extraneous input '('; write key=value, text in"),
+    ("policy.hidden=(9,9)", "policy.hidden=(9,9): extraneous input '('; write key=value, text as"),
     ("episode.action_noise=a", "episode.action_noise=a: must be 0 or more"),
     ("policy.hidden=[0]", "policy.hidden=[0]: must be a whole number, 1 or more"),
     ("policy_learner.updates=1.5", "policy_learner.updates=1.5: with num_envs=1 this gives 1.5"),

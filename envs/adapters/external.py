@@ -20,7 +20,7 @@ from typing import Any, NamedTuple, NoReturn
 import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict, Space, flatdim, flatten
-from gymnasium.wrappers import FlattenObservation
+from gymnasium.wrappers import FlattenObservation, TimeLimit
 from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
@@ -30,8 +30,8 @@ from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
-KINDS = "its spaces must be numbers: actions a Box with finite bounds; observations of any form "
-KINDS += "that Gymnasium flattens (Box, Discrete, Dict, Tuple)"
+ACTIONS = "they must be a Box with finite bounds"
+FORMS = "they must be numbers in a form that Gymnasium flattens (Box, Discrete, Dict, Tuple), "
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
 RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
 UNKNOWN = (gymnasium.error.NamespaceNotFound, gymnasium.error.NameNotFound)
@@ -172,8 +172,10 @@ def _known(env: External) -> Known:
         raise UsageError(f"env.{key}={env.name}: {line}") from error
     space, obs = one.action_space, one.observation_space
     bounded = isinstance(space, Box) and bool(np.isfinite([space.low, space.high]).all())
-    if not (bounded and isinstance(obs, Box) and 0 < np.prod(obs.shape) < HUGE):
-        raise UsageError(f"{env.name}: has actions {space} and observations {obs}; {KINDS}")
+    if not bounded:
+        raise UsageError(f"{env.name}: has actions {space}; {ACTIONS}")
+    if not (isinstance(obs, Box) and 0 < np.prod(obs.shape) < HUGE):
+        raise UsageError(f"{env.name}: has observations {obs}; {FORMS}fewer than {HUGE:,}")
     dt = env.dt or getattr(one.unwrapped, "dt", None)
     rate = one.metadata.get("render_fps") or np.inf
     dt = dt or (1 / rate if isinstance(rate, int | float) else 0)
@@ -182,7 +184,7 @@ def _known(env: External) -> Known:
     _check_first(env.name, one, found)
     notes = _unseeded(env.name, one, before)
     found = None if env.make or one.spec is None else gymnasium.spec(one.spec.id)
-    limit = found and found.max_episode_steps  # of the newest version where env.id names none
+    limit = found.max_episode_steps if found else _limit(one)  # of the newest version of an env.id
     one.close()
     assert isinstance(space, Box)
     sizes = int(np.prod(obs.shape)), int(np.prod(space.shape))
@@ -191,6 +193,15 @@ def _known(env: External) -> Known:
         notes += (f"{env.name}: {line}, without convolutions",)
     seen = one.env.observation_space if isinstance(one, Flat) else obs
     return Known(Spec(*sizes, float(dt)), limit, space, seen, notes)
+
+
+def _limit(env: gymnasium.Env) -> int | None:
+    """The steps of the first TimeLimit among an environment's wrappers; None: there is none."""
+    while isinstance(env, gymnasium.Wrapper):
+        if isinstance(env, TimeLimit):
+            return env._max_episode_steps
+        env = env.env
+    return None
 
 
 def check_world(env: Any) -> tuple[str, ...]:

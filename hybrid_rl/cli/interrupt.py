@@ -34,6 +34,7 @@ GRAPHICS = (  # what mujoco accepts as MUJOCO_GL on any system
     *("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0"),
     *("glfw", "glx", "egl", "osmesa", "wgl", "cgl"),
 )
+DRAWING = {"egl": ("EGL", "libegl1"), "osmesa": ("OSMesa", "libosmesa6")}  # library, of Debian's
 PATIENCE = 3.0  # [s] for the clean-up after KeyboardInterrupt
 
 Ask = Callable[[int], None]
@@ -57,10 +58,7 @@ def install() -> None:
     if _State.installed:
         return
     _State.installed = True
-    if os.environ.get("MUJOCO_GL", "").strip().lower() not in GRAPHICS:
-        chosen = os.environ["MUJOCO_GL"]  # importing mujoco would be a traceback
-        print(f"hybrid_rl: MUJOCO_GL={chosen}: unset it, or choose egl or osmesa", file=sys.stderr)
-        sys.exit(2)
+    _check_graphics(os.environ.get("MUJOCO_GL", ""))
     # Importing mujoco loads GLFW by a Python child, which would print a traceback on Ctrl-C.
     os.environ.setdefault("MUJOCO_GL", "disable")  # envs/mujoco/offscreen chooses its own backend
     heard, written = os.pipe()
@@ -71,6 +69,21 @@ def install() -> None:
     atexit.register(_deaf)
     sys.unraisablehook = _unraisable
     threading.Thread(target=_listen, args=(heard,), name="signals", daemon=True).start()
+
+
+def _check_graphics(chosen: str) -> None:
+    """End the process if mujoco cannot be imported with this MUJOCO_GL, which is a traceback."""
+    name = chosen.strip().lower()
+    problem = "" if name in GRAPHICS else "unset it, or choose egl or osmesa"
+    if name in DRAWING:
+        from ctypes.util import find_library  # asks other programs, in a tenth of a second
+
+        library, package = DRAWING[name]
+        if find_library(library) is None:
+            problem = f"lib{library} is not installed; unset it, or apt-get install {package}"
+    if problem:
+        print(f"hybrid_rl: MUJOCO_GL={chosen}: {problem}", file=sys.stderr)
+        sys.exit(2)
 
 
 @contextmanager

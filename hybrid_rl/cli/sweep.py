@@ -29,7 +29,8 @@ from hybrid_rl.composition import concerns, explain
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted
 from hybrid_rl.run import together
-from hybrid_rl.run.folder import new_folder
+from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.folder import new_folder, rowless
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 
@@ -215,10 +216,11 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
     """The overrides of each job, with a run folder of its own.
 
     Jobs with the same run_dir=X write into X/0, X/1, ...; jobs without one into
-    runs/TASK/ALGO/TIME_0, ..., which are created here, so that no other sweep uses them.
+    runs/TASK/ALGO/TIME_0, ..., which are created here, so that no other sweep uses them. One whose
+    run_dir holds a checkpoint goes on from it; `resume` refuses other settings.
 
     Raises:
-        UsageError: if such a folder holds a run already.
+        UsageError: if such a folder holds a run without a checkpoint.
     """
     given = [config.run_dir for config in configs]
     complete = []
@@ -232,7 +234,10 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
         else:
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")
-        if (folder / "config.yaml").exists():
+        if checkpoint.steps(folder / "checkpoints"):
+            complete.append([*mine, f"resume={quoted(str(folder))}"])
+            continue
+        if (folder / "config.yaml").exists() and not rowless(folder):
             raise UsageError(f"run_dir={folder}: holds a run already; choose another")
         complete.append([*mine, f"run_dir={quoted(str(folder))}"])
     return complete

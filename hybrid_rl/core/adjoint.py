@@ -165,9 +165,9 @@ def plan(
             x, a = step(x, a[0]), sampling.shift(a)
 
     Raises:
-        ValueError: for shapes that are not those.
+        ValueError: for shapes that are not those, or another x [n] from `step` than x.
     """
-    returns.check_start(x, before)
+    returns.check_start(step, x, before)
 
     def policy(x: Array) -> Array:
         return jnp.zeros_like(before[0])

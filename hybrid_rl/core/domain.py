@@ -49,7 +49,14 @@ class Box:
         return prod(b - a for a, b in zip(self.low, self.high, strict=True))
 
     def of(self, x: Array) -> Array:
-        """The coordinates s [..., v] of states x [..., n]."""
+        """The coordinates s [..., v] of states x [..., n].
+
+        Raises:
+            ValueError: if x has fewer entries, where JAX would take the last one.
+        """
+        if not all(-x.shape[-1] <= i < x.shape[-1] for i in self.coordinates):
+            line = f"must be entries of a state with {x.shape[-1]}"
+            raise FieldError(self, "coordinates", line)
         return x[..., jnp.array(self.coordinates)]
 
     def put(self, x: Array, s: Array) -> Array:

@@ -51,7 +51,13 @@ def jacobians(step: ParametricStep, theta: Any, x: Array, u: Array) -> tuple[Arr
 
 
 def along(step: ParametricStep, theta: Any, path: Path, kind: str) -> Array:
-    """F [T, n, P] along path, x [T+1, n] and u [T, m]; kind: step or path."""
+    """F [T, n, P] along path, x [T+1, n] and u [T, m]; kind: step or path.
+
+    Raises:
+        ValueError: for another kind.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"kind {kind}: choose one of {', '.join(KINDS)}")
     if kind == "step":
         one = jax.vmap(lambda x, u: jacobian(lambda theta: step(theta, x, u), theta))
         return one(path.x[:-1], path.u)
@@ -99,7 +105,13 @@ def log_det(F: Array, sigma: Array, prior: Array) -> Array:
 
 
 def criterion(name: str, F: Array, sigma: Array, prior: Array) -> Array:
-    """One of CRITERIA [] for F [T, n, P], sigma [n] and prior c [P] above 0; larger is better."""
+    """One of CRITERIA [] for F [T, n, P], sigma [n] and prior c [P] above 0; larger is better.
+
+    Raises:
+        ValueError: for another name.
+    """
+    if name not in CRITERIA:
+        raise ValueError(f"criterion {name}: choose one of {', '.join(CRITERIA)}")
     if name == "full":
         return log_det(F, sigma, prior)
     each = diagonal(F, sigma)  # [T, P]

@@ -3,11 +3,13 @@
 S_t = r_t + c_t S_{t+1},   S_T = the value of the last state
 """
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.types import Path, Reward
+from hybrid_rl.types import Path, Reward, Step
 
 
 def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> Array:
@@ -34,8 +36,19 @@ def rewards(reward: Reward, path: Path) -> Array:
     return r
 
 
-def check_start(x: Array, before: Array) -> None:
-    """Raise ValueError unless they are a state [n] and a plan [T, m]."""
+def check_start(step: Step, x: Array, before: Array) -> None:
+    """Raise ValueError unless they are a state [n] and a plan [T, m], and `step` gives such x."""
     if (jnp.ndim(x), jnp.ndim(before)) != (1, 2):
         given = f"x is {list(jnp.shape(x))} and before {list(jnp.shape(before))}"
         raise ValueError(f"{given}; they must be [n] and [T, m]: jax.vmap plans for many states")
+    traced = jax.eval_shape(lambda x, u: (step(x, u), x), x, before[0])
+    after, wanted = map(_form, traced)
+    if after != wanted:
+        raise ValueError(f"step returns {after}, where x is {wanted}; it must return another x")
+
+
+def _form(value: Any) -> str:
+    """An array's shape and kind of numbers, [2] of float32, or the class of what is none."""
+    if not hasattr(value, "dtype"):
+        return type(value).__name__
+    return f"{list(value.shape)} of {value.dtype}"

@@ -115,8 +115,9 @@ def plan(
     """The plan [T, m] from x [n]: the weighted mean of candidates around `before` [T, m] (MPPI).
 
     Candidates are clip(before + std N(0, I)) to [-1, 1]. Their returns are normalised over the
-    candidates, so that `temperature` is a pure number. The key is consumed. Execute the first
-    action and `shift` the rest:
+    candidates, so that `temperature` is a pure number. One whose return is NaN or infinite has no
+    weight, so a reward of -inf forbids what it is paid for; where no return is finite, the plan is
+    NaN. The key is consumed. Execute the first action and `shift` the rest:
 
         a = jnp.zeros((20, 1))  # 20 decisions
         for key in jax.random.split(jax.random.key(0), 60):
@@ -124,9 +125,9 @@ def plan(
             x, a = step(x, a[0]), shift(a)
 
     Raises:
-        ValueError: for shapes that are not those.
+        ValueError: for shapes that are not those, or another x [n] from `step` than x.
     """
-    returns.check_start(x, before)
+    returns.check_start(step, x, before)
 
     def propose(carry: Array, x: Array, a: Array, noise: Array) -> tuple[Array, Array, Array]:
         return jnp.clip(a + std * noise, -1, 1), jnp.zeros(()), carry
@@ -137,5 +138,8 @@ def plan(
 
     noise = jax.random.normal(key, (samples, *before.shape))
     path = imagine(step, propose, jnp.zeros(samples), x, before, noise).path
-    w = weights(jax.vmap(to_go)(path)[:, :-1], temperature, normalise=True)
+    S = jax.vmap(to_go)(path)[:, :-1]
+    sound = jnp.isfinite(S)
+    S = jnp.where(sound, S, jnp.min(S, axis=0, initial=jnp.inf, where=sound, keepdims=True))
+    w = weights(S, temperature, normalise=True, log_prob=jnp.where(sound, 0.0, -jnp.inf))
     return jnp.einsum("kt,ktm->tm", w, path.u)

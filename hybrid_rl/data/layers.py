@@ -223,5 +223,6 @@ def _within(net: Perceptron) -> str:
 
 
 def _floats(values: np.ndarray) -> str:
-    """Literals of C, of which each float is read back exactly."""
-    return ", ".join(f"{float(value):#.9g}f" for value in np.ravel(values))
+    """Literals of C, of which each float is read back exactly; C99 ends a line at 4,095 signs."""
+    each = [f"{float(value):#.9g}f" for value in np.ravel(values)]
+    return ",\n    ".join(", ".join(each[i : i + 6]) for i in range(0, len(each), 6))

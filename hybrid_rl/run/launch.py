@@ -201,7 +201,9 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
         raise UsageError(f"resume={run_dir}: {line}")
     if not checkpoint.steps(run_dir / "checkpoints"):
         raise UsageError(f"resume={run_dir}: holds no checkpoint; start the run again")
-    for key in given.keys() - {"resume", "total_steps", "compile_cache", "precision"}:
+    free = {"resume", "total_steps", "compile_cache", "precision"}
+    groups = {key: OmegaConf.select(old, key, default=UNKNOWN) is UNKNOWN for key in given}
+    for key in sorted(given.keys() - free, key=lambda key: groups[key]):  # a changed value is named
         before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))
         if _same(old, config) if before is UNKNOWN else before == now:
             continue

@@ -169,6 +169,15 @@ def test_an_unknown_backend_of_mujoco_is_one_line():
     assert (done.returncode, done.stdout, done.stderr) == (2, "", line)
 
 
+def test_a_backend_of_mujoco_that_is_not_installed_is_one_line(monkeypatch, capsys):
+    monkeypatch.setattr("ctypes.util.find_library", {"EGL": "libEGL.so.1"}.get)
+    interrupt._check_graphics("egl")
+    with pytest.raises(SystemExit, match="2"):
+        interrupt._check_graphics("OSMesa")
+    line = "MUJOCO_GL=OSMesa: libOSMesa is not installed; unset it, or apt-get install libosmesa6\n"
+    assert capsys.readouterr().err == f"hybrid_rl: {line}"
+
+
 @pytest.mark.parametrize("number", WORDS)
 def test_a_job_cleans_up(number):
     code = """

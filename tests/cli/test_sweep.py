@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 
 import pytest
 from hydra.errors import MissingConfigException
@@ -106,9 +107,31 @@ def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):
     for number in (0, 1):
         summary = json.loads((tmp_path / "it's" / str(number) / "summary.json").read_text())
         assert summary["seeds"] == [number]
-    capfd.readouterr()
-    assert call_train(*line) == 2
-    assert "run_dir=it's/0: holds a run already" in capfd.readouterr().err
+
+
+def test_the_same_command_continues_a_sweep_that_was_stopped(tmp_path, capfd, monkeypatch):
+    line = ["-m", *SHORT, "seed=0,1,2", "run_dir=both"]
+    job, called = train._job, []
+
+    def stopped(config):
+        called.append(config.seed)
+        if len(called) == 2:
+            raise KeyboardInterrupt
+        return job(config)
+
+    monkeypatch.setattr(train, "_job", stopped)
+    with suppress(KeyboardInterrupt):
+        call_train(*line)
+    assert called == [0, 1]
+    before = (tmp_path / "both/0/metrics.jsonl").read_text()
+    assert call_train(*line) == 0
+    assert "3 of 3 jobs done" in capfd.readouterr().out
+    assert (tmp_path / "both/0/metrics.jsonl").read_text() == before
+    assert {*map(str, (tmp_path / "both").glob("*/summary.json"))} == {
+        str(tmp_path / f"both/{number}/summary.json") for number in range(3)
+    }
+    assert call_train(*line, "policy_learner.tau=0.1") == 2
+    assert "policy_learner.tau=0.1: with resume only total_steps" in capfd.readouterr().err
 
 
 def test_jobs_in_one_of_many_worlds_have_folders_of_its_name(tmp_path, monkeypatch):

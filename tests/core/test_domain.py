@@ -53,3 +53,11 @@ def test_bad_boxes_are_refused(fields, words) -> None:
     """The error names the field."""
     with pytest.raises(ValueError, match=words):
         Box(**fields)
+
+
+def test_a_coordinate_that_a_state_does_not_have_is_refused() -> None:
+    box = Box(coordinates=(0, 9), low=(0.0, 0.0), high=(1.0, 1.0))
+    with pytest.raises(
+        ValueError, match=r"coordinates=\[0, 9\]: must be entries of a state with 4"
+    ):
+        box.of(jnp.zeros(4))

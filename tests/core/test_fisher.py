@@ -226,3 +226,12 @@ def test_variance_of_estimates_is_the_inverse_of_the_information() -> None:
     np.testing.assert_allclose(one, predicted["step"], rtol=0.1)
     assert predicted["step"][0] > 3 * whole[0]
     assert one[0] > 3 * predicted["path"][0]
+
+
+def test_names_that_are_none_are_refused() -> None:
+    F = jnp.ones((5, 2, 2))
+    with pytest.raises(ValueError, match="criterion d: choose one of A_step, A, D, T, full"):
+        fisher.criterion("d", F, jnp.ones(2), jnp.ones(2))
+    path = Path(jnp.zeros((3, 1)), jnp.zeros((2, 1)))
+    with pytest.raises(ValueError, match="kind steps: choose one of step, path"):
+        fisher.along(lambda theta, x, u: theta * x, jnp.ones(1), path, "steps")

@@ -1,12 +1,14 @@
 """The sampling core against a plain loop, and against the path integral that it estimates."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
 
-from hybrid_rl.core import sampling
+from hybrid_rl.core import adjoint, sampling
 
 K, T, N, M = 7, 4, 3, 2
 A = jnp.array([[0.9, 0.1, 0.0], [0.0, 0.8, 0.2], [0.1, 0.0, 0.7]])
@@ -87,3 +89,40 @@ def test_shift_drops_the_first_action() -> None:
     plan = jnp.arange(6.0).reshape(3, 2)
     np.testing.assert_array_equal(sampling.shift(plan), [[2, 3], [4, 5], [0, 0]])
     np.testing.assert_array_equal(sampling.shift(plan, 7.0), [[2, 3], [4, 5], [7, 7]])
+
+
+def test_plans_refuse_a_step_that_returns_no_state_like_x() -> None:
+    def plan(module: Any, x: Array, step: Any) -> None:
+        given = (jax.random.key(0),) if module is sampling else ()
+        module.plan(step, lambda x, u, after: after[0], x, jnp.zeros((3, 1)), *given)
+
+    for module in (sampling, adjoint):
+        for x, step, words in (
+            (
+                jnp.zeros(2),
+                lambda x, u: jnp.zeros(3),
+                r"returns \[3\] of float32, where x is \[2\]",
+            ),
+            (jnp.zeros(2), lambda x, u: (x, u), "returns tuple, where x is"),
+            (jnp.zeros(2, int), lambda x, u: x + u[0], "of float32, where x is .* of int32"),
+        ):
+            with pytest.raises(ValueError, match=words):
+                plan(module, x, step)
+        plan(module, np.zeros(2), lambda x, u: x + u[0])  # float64, which JAX takes as float32
+
+
+def test_a_candidate_without_a_finite_return_has_no_weight() -> None:
+    """The best action that is allowed lies at 0.3; where none is, the plan is NaN."""
+    x, before, key = jnp.zeros(1), jnp.zeros((1, 1)), jax.random.key(0)
+
+    def plan(bad: float) -> Array:
+        def reward(x: Array, u: Array, after: Array) -> Array:
+            return jnp.where(after[0] > 0.3, bad, u[0])
+
+        return sampling.plan(lambda x, u: x + u, reward, x, before, key)
+
+    assert plan(1.0) > 0.4
+    assert 0.2 < plan(-jnp.inf) <= 0.3
+    assert plan(jnp.nan) == plan(-jnp.inf)
+    always = sampling.plan(lambda x, u: x * jnp.nan, lambda x, u, after: after[0], x, before, key)
+    assert np.isnan(always).all()

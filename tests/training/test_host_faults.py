@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from gymnasium.spaces import Box, Dict, Discrete
+from gymnasium.wrappers import OrderEnforcing, TimeLimit
 from hosted import Count, counting
 
 from hybrid_rl.envs.adapters.external import External
@@ -62,8 +63,16 @@ def test_spaces_of_any_form_are_flattened():
     assert (odd.spec, odd.parts) == (Spec(obs=7, act=2, dt=0.02), "a [4], b [3]")
     np.testing.assert_array_equal(odd.flat({"b": 1, "a": np.ones((2, 2))}), [1, 1, 1, 1, 0, 1, 0])
     assert counting().parts == ""
-    with pytest.raises(UsageError, match="its spaces must be numbers"):
+    with pytest.raises(UsageError, match=r"Odd: has observations Box\(.*; they must be numbers in"):
         External(make=Odd, kwargs={"obs": Box(-1, 1, (0,))})
+    with pytest.raises(UsageError, match=r"CartPole-v1: has actions Discrete\(2\); they must be a"):
+        External(id="CartPole-v1")
+
+
+def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
+    limited = External(make=lambda: OrderEnforcing(TimeLimit(Odd(), 50)))
+    assert limited.known.steps == 50
+    assert External(make=Odd).known.steps is None
 
 
 @pytest.mark.parametrize(
