@@ -20,7 +20,7 @@ KILLED = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.run import checkpoint, leaves
+from hybrid_rl.run.checkpoints import checkpoint, leaves
 folder = Path(sys.argv[1])
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
 checkpoint._rename = lambda draft, path: os.kill(os.getpid(), signal.SIGKILL)
@@ -42,7 +42,7 @@ BETWEEN = """
 import os, signal, sys
 from pathlib import Path
 import jax.numpy as jnp
-from hybrid_rl.run import checkpoint
+from hybrid_rl.run.checkpoints import checkpoint
 folder = Path(sys.argv[1])
 checkpoint.save(folder, 1, {"x": jnp.ones(3)}, {})
 rename = Path.rename
