@@ -34,7 +34,7 @@ GRAPHICS = (  # what mujoco accepts as MUJOCO_GL on any system
     *("", "enable", "enabled", "on", "true", "1", "disable", "disabled", "off", "false", "0"),
     *("glfw", "glx", "egl", "osmesa", "wgl", "cgl"),
 )
-DRAWING = {"egl": ("EGL", "libegl1"), "osmesa": ("OSMesa", "libosmesa6")}  # library, of Debian's
+DRAWING = {"egl": ("libEGL", "libegl1"), "osmesa": ("libOSMesa", "libosmesa6")}  # Debian's package
 PATIENCE = 3.0  # [s] for the clean-up after KeyboardInterrupt
 
 Ask = Callable[[int], None]
@@ -76,11 +76,11 @@ def _check_graphics(chosen: str) -> None:
     name = chosen.strip().lower()
     problem = "" if name in GRAPHICS else "unset it, or choose egl or osmesa"
     if name in DRAWING:
-        from ctypes.util import find_library  # asks other programs, in a tenth of a second
-
-        library, package = DRAWING[name]
-        if find_library(library) is None:
-            problem = f"lib{library} is not installed; unset it, or apt-get install {package}"
+        try:
+            import mujoco  # noqa: F401
+        except (AttributeError, ImportError, OSError):
+            library, package = DRAWING[name]
+            problem = f"{library} is not installed; unset it, or apt-get install {package}"
     if problem:
         print(f"hybrid_rl: MUJOCO_GL={chosen}: {problem}", file=sys.stderr)
         sys.exit(2)
