@@ -38,6 +38,7 @@ OF_A_SESSION += ("compile_cache", "precision")
 
 ONLY = "with resume only total_steps and precision can be changed"
 SLOWER = "precision=bf16: slower than float32 on a CPU (0.5 to 0.7 of its speed); it is for GPUs"
+NOT_MUJOCO = "has no effect; task={} is not simulated by hybrid_rl.envs.mujoco"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
 CONSOLE = Output()
@@ -158,6 +159,8 @@ def _run(
         notes += [size, *run.notes]
         if precision.current() == "bf16" and jax.default_backend() == "cpu":
             notes.append(SLOWER)
+        if config.physics != "auto" and configuration.physics(config) is None:
+            notes.append(f"physics={config.physics}: {NOT_MUJOCO.format(config.task)}")
         progress.note("\n".join(notes))
         loop = job.loop()
         shelf = job.shelf(loop, logs)
