@@ -179,9 +179,8 @@ def check(given: Mapping[str, Any]) -> None:
 
 def main() -> None:
     """The command."""
-    from hybrid_rl.run.files.integrity import (
-        write_text,  # here, as a learner's clock starts without JAX
-    )
+    # Here, as a learner's clock starts without JAX.
+    from hybrid_rl.run.files.integrity import write_text
     from hybrid_rl.run.machine.provenance import versions
 
     given: Any = read(__doc__, ARGUMENTS)[0]
