@@ -2,13 +2,12 @@
 
 import inspect
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from numbers import Integral
 from types import NoneType
 from typing import Any, get_origin
 
-import jax
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
@@ -20,7 +19,7 @@ from hybrid_rl.errors import UsageError, printable, relative
 from hybrid_rl.fields import choices, plain
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.overrides import SHOW, closest_hint
-from hybrid_rl.types import NAME, Spec
+from hybrid_rl.types import NAME
 
 COUNTS = (
     "num_seeds",
@@ -35,7 +34,6 @@ SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 STEPS = 2**31  # decisions, fewer of which are counted
 SEEDS = 2**32  # distinct seeds of JAX's generator
-OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
 MODES = ("full", "policy", "planner")
 KINDS = {  # type of a part's field -> its name in messages
     int: "a whole number",
@@ -130,31 +128,6 @@ def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int
     if isinstance(env, Robot) or env.known.steps is None:
         raise UsageError(f"episode.steps: {env.name} has no time limit; give one, in decisions")
     return {"steps": -(-env.known.steps // given.get("action_repeat", 1))}
-
-
-def check_owners(parts: Any, owned: Collection[str], spec: Spec) -> None:
-    """Check that what the parts of controllers act by has parameters.
-
-    parts: any parts, in lists, dictionaries and each other. owned: the fields of Params that
-    learners give.
-
-    Raises:
-        ValueError: for a policy, a model or the like that has parameters, which no learner gives.
-    """
-    if isinstance(parts, dict | list | tuple):
-        for each in parts.values() if isinstance(parts, dict) else parts:
-            check_owners(each, owned, spec)
-    if not (is_dataclass(parts) and type(parts).__module__.startswith("hybrid_rl.")):
-        return
-    for name in (field.name for field in fields(parts)):
-        part = getattr(parts, name)
-        init = getattr(part, "init", None) if name in OF_PARAMS - {*owned} else None
-        if init is None:
-            check_owners(part, owned, spec)
-        elif jax.tree.leaves(jax.eval_shape(lambda init=init: init(jax.random.key(0), spec))):
-            line = f"{type(parts).__name__} acts by it, and no learner of this method trains it"
-            remedy = f"leave {name}= out, or choose a method that learns a {name}"
-            raise ValueError(f"{name}={type(part).__name__}: {line}; {remedy}")
 
 
 def random_decisions(values: Mapping[str, Any], given: Mapping[str, str]) -> Any:

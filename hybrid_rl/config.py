@@ -17,7 +17,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import checks, renamed
 from hybrid_rl import overrides as overriding
-from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds, check_owners
+from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
 from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
 from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
@@ -163,8 +163,6 @@ def build(config: DictConfig) -> Run:
             tuple(config.get("freeze", ())),
         )
         agent.check(rounds * config.num_envs, controllers.values())
-        owned = [name for learner in agent.learners.values() for name in learner.owns]
-        check_owners(controllers, owned, agent.spec)
     return Run(config, agent, {mode: c.greedy() for mode, c in controllers.items()}, notes)
 
 

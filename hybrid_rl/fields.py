@@ -146,6 +146,8 @@ def _wrong(kind: Any, value: Any) -> str:
         except TypeError:  # a word in a list of numbers, say
             holds = False
         return "" if holds else must.words if must.has else f"must {must.words}"
+    if getattr(kind, "_is_protocol", False) and isinstance(value, bool | int | float | str):
+        return "must be a part"
     if get_origin(kind) is Literal:
         return "" if value in of else f"choose one of {', '.join(map(str, of))}"
     if get_origin(kind) is not tuple or isinstance(value, float | int):

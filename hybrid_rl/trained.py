@@ -36,6 +36,7 @@ from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import Params
 
 PARTS, COUNTS = ("env", "episode", "policy"), ("seed", "step")  # of `about`
@@ -96,7 +97,7 @@ class Trained:
             raise UsageError(f"seed={seed}: the run has {', '.join(map(str, self.seeds))}")
         if mode not in self.controllers:
             raise UsageError(f"mode={mode}: the run has {', '.join(self.controllers)}")
-        if not world and getattr(self.controllers[mode], "needs_world", False):
+        if not world and needs_world(self.controllers[mode]):
             raise UsageError(
                 f"mode={mode}: plans from the state of the world (model=world), which observations "
                 "do not give; use evaluate or render"

@@ -50,7 +50,7 @@ class EnvState:
     reward: Array  # []
     terminated: Array  # [] bool: the task ended, no reward follows
     truncated: Array  # [] bool: only the time limit ended the episode
-    metrics: dict[str, Array] = field(default_factory=dict)  # name -> [], for logs only
+    metrics: dict[str, Array] = field(default_factory=dict)  # name -> [], logged; or success
     info: dict[str, Array] = field(default_factory=dict)  # the task's own memory
 
     @property
@@ -117,7 +117,7 @@ class Params(NamedTuple):
     labels: PyTree = None  # of a teacher, so far
     information: PyTree = None  # of the decisions so far about the parameters of the model
     scale: PyTree = None  # [] of returns
-    decisions: Array | None = None  # [] decisions of the run so far, during training
+    decisions: Array | None = None  # [] of the run so far; None outside of training
     world: EnvState | None = None  # the state of the environment, for plans on the world itself
 
 

@@ -74,10 +74,9 @@ USAGE = [  # overrides of train, words of the line
     ("hydra/launcher=joblib", "hydra/launcher=joblib: unknown; choose one of basic, submitit_"),
     ("hydra/launcher=submitit_slurm", "submitit_slurm: sends the jobs of a sweep; add -m"),
     ("algo=kle3 settings=light", "settings=light: is not for this method, which has no proposal"),
-    *(
-        (f"algo={name} settings=light", f"settings=light: is not for this method: {key}")
-        for name, key in (("flash_sac", "policy.normalise: Unit"), ("mppi", "policy.hidden: Saved"))
-    ),
+    ("algo=flash_sac settings=light", "settings=light: is not for this method: policy.norm"),
+    ("algo=mppi settings=light", "; add '~policy.hidden' '~policy.normalise' to leave out what it"),
+    ("algo=nn_mppi reward_model=quadratic", "ends: add a field ends, leave it out by '~reward_mod"),
     ("sed=3", "sed: unknown key; did you mean seed?"),
     ("setings=light", "setings: unknown key; did you mean settings?"),
     ("experment=thesis/fig_3_3", "experment: unknown key; did you mean experiment, expert?"),

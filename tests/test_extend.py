@@ -31,8 +31,6 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 HOWTO = (ROOT / "docs" / "howto.md").read_text(encoding="utf-8")
 WHICH = (ROOT / "docs" / "which_method.md").read_text(encoding="utf-8")
-OWN = ("ring", "reward_average", "kettle", "crane", "swing", "reach", "upright", "refit")
-OWN += ("my_robot", "stacked")  # modules
 
 
 def section(title: str, page: str = PAGE) -> str:
@@ -54,9 +52,9 @@ def conf(tmp_path, monkeypatch):
     for group in ("algo", "target", "task"):
         (tmp_path / "my_conf" / group).mkdir(parents=True)
     yield tmp_path / "my_conf"
-    for name in OWN:
-        if name not in modules:
-            sys.modules.pop(name, None)
+    for name in {*sys.modules} - modules:
+        if str(tmp_path) in str(getattr(sys.modules[name], "__file__", "")):
+            del sys.modules[name]
 
 
 @pytest.fixture
@@ -197,14 +195,16 @@ def test_each_episode_of_a_crane_can_have_another_body(conf, tmp_path):
 
 
 def test_a_planner_is_one_file(conf, tmp_path):
-    """It trains by the files of the page, and its run logs its metric."""
+    """It trains by the files of the page, also alone on the simulator, and logs its metric."""
     code, fields, method = blocks("A planner of your own", HOWTO)
     (tmp_path / "refit.py").write_text(code)
     (conf / "controller").mkdir()
     (conf / "controller" / "mine.yaml").write_text(fields)
     (conf / "algo" / "mine.yaml").write_text(method)
-    train(conf, tmp_path / "run", "task=pendulum", "algo=mine", "mine.horizon=3")
-    assert '"planner/std"' in (tmp_path / "run" / "metrics.jsonl").read_text()
+    alone = "algo=mppi model=world ~model.hidden +controller@mine=mine controllers.full=${mine}"
+    for run, words in {"hybrid": "algo=mine", "alone": alone}.items():
+        train(conf, tmp_path / run, "task=pendulum", "mine.horizon=3", *words.split())
+        assert '"planner/std"' in (tmp_path / run / "metrics.jsonl").read_text()
 
 
 def test_a_reward_is_one_file_that_the_environment_pays(conf, tmp_path, capsys):

@@ -8,6 +8,7 @@ import pytest
 
 from hybrid_rl import config
 from hybrid_rl.fields import Count, Discount, FieldError, NotNegative, Positive, Share, part
+from hybrid_rl.protocols import Objective
 
 
 @part
@@ -23,6 +24,7 @@ class Probe:
     weights: tuple[NotNegative, ...] = ()
     rows: tuple[tuple[float, ...], ...] = ()
     factors: tuple[Positive, ...] | Positive = 1.0
+    aim: Objective | None = None
 
     def __post_init__(self) -> None:
         """Check what depends on two fields."""
@@ -43,6 +45,7 @@ class Probe:
         ({"low": [1.0]}, "low=[1.0]: must have 2 entries"),
         ({"weights": [1.0, -1.0]}, "weights=[1.0, -1.0]: must be 0 or more"),
         ({"weights": [1.0, "a"]}, "weights=[1.0, 'a']: must be 0 or more"),
+        ({"aim": True}, "aim=true: must be a part, or null"),
         ({"factors": 0.0}, "factors=0.0: must be above 0"),
         ({"factors": [1.0, 0.0]}, "factors=[1.0, 0.0]: must be above 0"),
         ({"kind": "fast", "rate": 0.5}, "rate=0.5: must be 1 or more"),

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from typing import Any, NoReturn
 
 import yaml
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
@@ -22,7 +22,7 @@ from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_choices, explain, file, options
 from hybrid_rl.errors import UsageError, printable, user_line
-from hybrid_rl.overrides import LACKING, raw_values, select
+from hybrid_rl.overrides import select
 from hybrid_rl.run import inherited
 
 FLAGS = {  # of Hydra -> how many words follow
@@ -100,17 +100,19 @@ def as_typed(typed: Sequence[str]) -> Iterator[None]:
 
 
 def _of_settings(line: str, given: Mapping[str, str]) -> str:
-    """A message about a field that a part lacks, with the settings that set it, not the user."""
-    field, name = re.match(r"([\w.]+): \w+ (?:in \S+ )?has ", line), given.get("settings", "")
+    """A message about a field that a part lacks, with what set it, and what leaves it out."""
+    field = re.match(r"([\w.]+): \w+ (?:in \S+ )?has ([\w, ]+)", line)
+    name = given.get("settings", "")
     if field is None or field[1] in given:
         return line
-    if name not in options("settings"):
-        lacking = field[1].rpartition(".")[2]
-        return f"{line}; the method sets {field[1]}: add a field {lacking}, or another part"
-    sets: Any = OmegaConf.load(file("settings", name))
-    if select(raw_values(sets), field[1]) is LACKING:
-        return line
-    return f"settings={name}: is not for this method: {line}"
+    part, _, lacking = field[1].rpartition(".")
+    text = file("settings", name).read_text() if name in options("settings") else ""
+    of_part: Any = select(yaml.safe_load(text) or {}, part)
+    if not isinstance(of_part, dict) or lacking not in of_part:
+        remedy = f"add a field {lacking}, leave it out by '~{field[1]}', or take another part"
+        return f"{line}; the method sets {field[1]}: {remedy}"
+    lost = " ".join(f"'~{part}.{key}'" for key in of_part if key not in field[2].split(", "))
+    return f"settings={name}: is not for this method: {line}; add {lost} to leave out what it lacks"
 
 
 def usage(module: Any) -> str:

@@ -18,6 +18,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, lifting, sampling
+from hybrid_rl.core.batching import prepend
 from hybrid_rl.core.members import predict_members
 from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, Positive, part
 from hybrid_rl.protocols import Model, Objective, Proposal
@@ -122,7 +123,7 @@ class RefitsController:
             after, apart, _ = predict_members(self.model, params.model, x, u)
             return after, (after, apart.mean())
 
-        _, (xs, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v)))
-        J = value(Path(jnp.concatenate([x[None], xs]), v))
+        _, (xs, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v), x))
+        J = value(Path(prepend(x, xs), v))
         score = J - self.disagreement_price * apart.sum()
         return jnp.where(jnp.isfinite(score), score, -jnp.inf)

@@ -62,11 +62,6 @@ class SamplingController:
             words = "needs candidates with a density; choose proposal=policy or proposal=noise"
             raise FieldError(self, "log_density", f"{words}, or false")
 
-    @property
-    def needs_world(self) -> bool:
-        """Whether plans begin at the state of the world, `params.world`."""
-        return hasattr(self.model, "start")
-
     def init(self, spec: Spec) -> SamplingState:
         """The plan of `rest`, and the initial carries and memory."""
         quantiles = jnp.arange(self.samples) / self.samples

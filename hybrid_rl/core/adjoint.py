@@ -9,14 +9,15 @@ dependence on u, which is missing in print.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import returns
-from hybrid_rl.types import Path, Return, Reward, Step
+from hybrid_rl.core.batching import prepend
+from hybrid_rl.types import EnvState, Path, Return, Reward, Step
 
 
 class Adjoint(NamedTuple):
@@ -31,27 +32,29 @@ UNROLLED = 32  # longest loop that a GPU unrolls completely [decisions]
 TURNS = 4  # steps in a turn of other loops
 
 
-def scan_unroll(length: int) -> int:
-    """The unroll factor of a loop of `length` steps.
+def scan_unroll(length: int, x: Any = None) -> int:
+    """The unroll factor of a loop of `length` steps from x; 1 on a world, which compiles slowly.
 
     Each turn of a loop costs a GPU launches; XLA takes minutes to compile 120 steps, though. On a
     CPU longer turns are slower, and where a step uses its state twice, XLA computes each of them
     again for every use of its result: 2^length times.
     """
+    if isinstance(x, EnvState):
+        return 1
     whole = length <= UNROLLED and jax.default_backend() != "cpu"
     return length if whole else min(length, TURNS)
 
 
-def roll(step: Step, policy: Callable[[Array], Array], x: Array, correction: Array) -> Path:
-    """The path from x [n] under `policy` plus `correction` v [T, m]."""
+def roll(step: Step, policy: Callable[[Any], Array | float], x: Any, correction: Array) -> Path:
+    """The path from x [n], or a tree of arrays, under `policy` plus `correction` v [T, m]."""
 
-    def forward(x: Array, v: Array) -> tuple[Array, tuple[Array, Array]]:
+    def forward(x: Any, v: Array) -> tuple[Any, tuple[Any, Array]]:
         u = policy(x) + v
         after = step(x, u)
         return after, (after, u)
 
-    xs, us = jax.lax.scan(forward, x, correction, unroll=scan_unroll(len(correction)))[1]
-    return Path(jnp.concatenate([x[None], xs]), us)
+    xs, us = jax.lax.scan(forward, x, correction, unroll=scan_unroll(len(correction), x))[1]
+    return Path(prepend(x, xs), us)
 
 
 def adjoint(

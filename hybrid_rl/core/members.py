@@ -5,6 +5,7 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl.core.batching import repeat
 from hybrid_rl.protocols import Model
 
 
@@ -17,4 +18,4 @@ def predict_members(model: Model, params: Any, x: Array, u: Array) -> tuple[Arra
     if each is not None:
         return each(params, x, u)
     after = model.step(params, x, u)
-    return after, jnp.zeros(()), after[None]
+    return after, jnp.zeros(()), repeat(after, 1)

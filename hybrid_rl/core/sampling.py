@@ -22,7 +22,7 @@ from jax import Array
 from hybrid_rl.core import returns
 from hybrid_rl.core.adjoint import scan_unroll
 from hybrid_rl.core.batching import prepend, repeat
-from hybrid_rl.types import EnvState, Path, Reward, Step
+from hybrid_rl.types import Path, Reward, Step
 
 
 class Samples(NamedTuple):
@@ -61,7 +61,7 @@ def imagine(
         forward,
         (start, carries),
         (plan, jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), noise)),
-        unroll=1 if isinstance(x, EnvState) else scan_unroll(len(plan)),  # physics compiles slowly
+        unroll=scan_unroll(len(plan), x),
     )
     xs = jax.tree.map(lambda leaf: leaf.swapaxes(0, 1), prepend(start, xs))
     return Samples(Path(xs, vs.swapaxes(0, 1)), log_probs.T)

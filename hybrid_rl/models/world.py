@@ -47,6 +47,7 @@ class World:
             ValueError: for an observation instead of a state.
         """
         if not isinstance(x, EnvState):
-            raise ValueError("model=world: needs a planner that samples, such as algo=mppi has")
+            line = "model=world: needs a planner that samples, such as algo=mppi has"
+            raise ValueError(f"{line}; one of yours begins at lifting.start(model, params, obs)")
         after = self.world.step(x, u)
         return jax.tree.map(lambda old, new: jnp.where(x.done, old, new), x, after)

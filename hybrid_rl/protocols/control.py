@@ -25,6 +25,7 @@ class Objective(Protocol):
 
         u_before: [m] the previous action, 0 at the first decision. J is a plain function, which
         closes over everything drawn from `key`; the memory holds only what later decisions need.
+        `params.decisions` is None in evaluation, where a bonus for exploration is left out.
         """
 
 

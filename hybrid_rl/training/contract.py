@@ -1,13 +1,14 @@
 """What the parts of a method must be, checked before a run: JAX traces them, nothing is compiled.
 
-A method of the library's parts alone is not checked. Of one with a part of the user's, controllers
-and learners are traced, and compared with `protocols.Controller` and `protocols.Learner`: shapes of
-actions, states and metrics, the fields of `Params` that a learner owns; so is the return J of an
-objective of the user's. What goes wrong is one line that begins with the user's file, as in
-`envs.contract` for worlds.
+What acts must have a learner. A method of the library's parts alone is not checked further. Of one
+with a part of the user's, controllers and learners are traced, and compared with
+`protocols.Controller` and `protocols.Learner`: shapes of actions, states and metrics, the fields of
+`Params` that a learner owns; so is the return J of an objective of the user's. What goes wrong is
+one line that begins with the user's file, as in `envs.contract` for worlds.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import fields, is_dataclass
 from functools import partial
 from typing import Any
 
@@ -35,6 +36,7 @@ FIELDS = {  # of a learner, by its data
 }
 OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
 OF_WORLD = ("world/reward", "world/obs", "world/action")
+OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
 COLUMNS = ("step", "seed", "wall_s")  # of a row, beside its metrics
 
 
@@ -90,6 +92,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         PartError: in one line: the file and line, what a method gives, and what it must give.
     """
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
+    check_owners(controllers, sum((each.owns for each in agent.learners.values()), ()), agent.spec)
     if not any(users([*controllers, *agent.learners.values()])):
         return
     key = jax.eval_shape(lambda: jax.random.key(0))
@@ -132,6 +135,33 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
             raise PartError(f"{SourceOf(controller).at('greedy')}: {got}")
         for each in [controller] if greedy is controller else [controller, greedy]:
             _check_acting(each, agent, params, env, {**names} if each is controller else {})
+
+
+def check_owners(parts: Any, owned: Collection[str], spec: Spec) -> None:
+    """Check that what the library's parts of controllers act by has parameters.
+
+    parts: any parts, in lists, dictionaries and each other. owned: the fields of Params that
+    learners give.
+
+    Raises:
+        ValueError: for a policy, a model or the like that has parameters, which no learner gives.
+    """
+    if isinstance(parts, dict | list | tuple):
+        for each in parts.values() if isinstance(parts, dict) else parts:
+            check_owners(each, owned, spec)
+    if not is_dataclass(parts) or isinstance(parts, type):
+        return
+    of_params = set() if of_user(parts) else OF_PARAMS - {*owned}
+    for name in (field.name for field in fields(parts)):
+        part = getattr(parts, name)
+        if name not in of_params or not hasattr(part, "init"):
+            check_owners(part, owned, spec)
+            continue
+        begin = partial(lambda part, key: part.init(key, spec), part)
+        if jax.tree.leaves(shapes(part, "init", begin, jax.random.key(0))):
+            line = f"{type(parts).__name__} acts by it, and no learner of this method trains it"
+            remedy = f"leave {name}= out, or choose a method that learns a {name}"
+            raise ValueError(f"{name}={type(part).__name__}: {line}; {remedy}")
 
 
 def _check_model(part: Any, spec: Spec, key: Any) -> None:

@@ -96,6 +96,11 @@ def parts(part: Any) -> Iterator[Any]:
             yield from parts(getattr(part, field.name, None))
 
 
+def needs_world(controller: Any) -> bool:
+    """Whether a controller plans from the state of the world, where a model in it starts."""
+    return any(hasattr(each, "start") for each in parts(controller))
+
+
 def words(value: Any) -> str:
     """float32[2], or the kind of a Python value."""
     if hasattr(value, "shape") and hasattr(value, "dtype"):

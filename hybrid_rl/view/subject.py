@@ -17,6 +17,7 @@ from hybrid_rl.goals import apply_changes
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
+from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import Params
 
 DISTURBED = {"delay": 5.0, "sensor_noise": 0.5, "action_noise": 0.5}  # of an episode -> the most
@@ -50,7 +51,7 @@ class Subject:
 
     def sees_world(self, mode: str) -> bool:
         """Whether who acts in `mode` gets the state of the world, and not only observations."""
-        return self.scripted or getattr(self.controllers[mode], "needs_world", False)
+        return self.scripted or needs_world(self.controllers[mode])
 
     @cached_property
     def goals(self) -> list[Slider]:

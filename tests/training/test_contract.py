@@ -16,6 +16,7 @@ from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import PartError
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.proposals.noise import NoiseProposal
+from hybrid_rl.rewards.network import RewardNetwork
 
 
 @dataclass(frozen=True)
@@ -155,12 +156,20 @@ def test_what_is_wrong_is_one_line(part, words):
     assert "\n" not in line
 
 
+class Free:
+    """A reward without outcome."""
+
+
 def test_a_part_of_the_library_names_what_the_users_part_lacks():
-    reward: Any = Actless()
+    reward: Any = Free()
     planner = SamplingController(Line(), PredictedReturn(reward=reward), NoiseProposal())
-    with pytest.raises(
-        PartError, match=r"Actless has no outcome; see protocols\.Reward.*; in Samp"
-    ):
+    with pytest.raises(PartError, match=r"Free has no outcome; see protocols\.Reward.*; in Samp"):
+        check(planner)
+
+
+def test_a_reward_without_a_learner_is_named_and_not_the_users_model():
+    planner = SamplingController(Line(), PredictedReturn(RewardNetwork((4,))), NoiseProposal())
+    with pytest.raises(ValueError, match=r"^reward=RewardNetwork: PredictedReturn acts by it, and"):
         check(planner)
 
 
