@@ -183,6 +183,7 @@ USAGE = [  # overrides of train, words of the line
         "demonstrations: 20 decisions are too few for 22 regressors",
     ),
     ("algo=fisher model=exact", "model_learner.model=Exact: has no weights to learn; choose"),
+    ("algo=nn_mppi reward_model=known reward_model.ends=null", "give model_learner.reward=null"),
     (
         "task=halfcheetah algo=fisher",
         "task=halfcheetah: fisher needs an environment with a known reward; choose one of cart_",

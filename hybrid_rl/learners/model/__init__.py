@@ -29,6 +29,7 @@ from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Params, PyTree, Spec
 
+KNOWN = "has no weights to learn; give model_learner.reward=null"
 RATE = 0.01  # of the running mean of the held-out loss, per update (our choice)
 
 
@@ -84,7 +85,7 @@ class ModelLearner:
             "(protocols.Trainable)",
         ),
     ]
-    reward: LearnedReward | None = None
+    reward: Annotated[LearnedReward, has("init", KNOWN)] | None = None
     learning_rate: Positive = 3e-3
     batch_size: int = 128
     updates: float = 2  # per decision
