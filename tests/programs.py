@@ -29,7 +29,13 @@ def kept(make: Callable[[], Any], *of: Any) -> Any:
 @contextmanager
 def shared() -> Iterator[None]:
     """Within it, runs take the programs of equal runs before them."""
-    trace, compiled, evaluator = Loop.trace, Loop.compile_trace, Evaluator.__init__
+    first, trace, compiled = Loop._first, Loop.trace, Loop.compile_trace
+    evaluator = Evaluator.__init__
+
+    def begun(self: Loop) -> tuple[Any, ...]:
+        program, *given = first(self)
+        of = self.agent, self.axis, len(self.seeds), precision.current()
+        return kept(lambda: program, "first", *of), *given
 
     def traced(self: Loop, state: Any) -> Any:
         of = self.agent, self.axis, len(self.seeds), self.stride, precision.current()
@@ -49,6 +55,7 @@ def shared() -> Iterator[None]:
         vars(self).update(kept(make, "evaluation", *of))
 
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Loop, "_first", begun)
         patch.setattr(Loop, "trace", traced)
         patch.setattr(Loop, "compile_trace", program)
         patch.setattr(Evaluator, "__init__", evaluation)

@@ -34,8 +34,9 @@ NAME = re.compile(r"(train|eval|model|sac|planner|perf|world)/[a-z_]+")
 def trained(tmp_path_factory):
     """A run of the command, on MuJoCo C."""
     folder = tmp_path_factory.mktemp("trained") / "run"
-    world = ["task=cartpole", "algo=hybrid_stochastic", "physics=native", "episode.steps=40"]
-    settings = [*TINY, *world, "eval_modes=[full,policy,planner]", f"run_dir={folder}"]
+    world = ["task=cartpole", "physics=native", "episode.steps=40"]
+    method = ["algo=hybrid_stochastic", "learning=replay"]
+    settings = [*TINY, *world, *method, "eval_modes=[full,policy,planner]", f"run_dir={folder}"]
     assert call_train(*settings) == 0
     return folder
 

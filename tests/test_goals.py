@@ -20,6 +20,7 @@ from scripts import new_goals
 
 pytestmark = pytest.mark.turns(2)
 
+METHOD = ["algo=hybrid_stochastic", "learning=replay"]
 AT = ["reward=aim", "reward.quantity=position", "reward.target=0.5"]
 SMALL = ["planner.horizon=3", "planner.tail=2", "planner.samples=6", "planner.refined=2"]
 
@@ -28,7 +29,7 @@ SMALL = ["planner.horizon=3", "planner.tail=2", "planner.samples=6", "planner.re
 def trained(tmp_path_factory) -> Path:
     """A run of a few decisions with models, policy and critic."""
     folder = tmp_path_factory.mktemp("goals") / "run"
-    run(folder, "task=cartpole", "algo=hybrid_stochastic", "episode.steps=20")
+    run(folder, "task=cartpole", *METHOD, "episode.steps=20")
     return folder
 
 

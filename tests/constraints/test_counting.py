@@ -92,7 +92,8 @@ def test_learners_are_paid_less_and_the_return_stays() -> None:
 def trained(tmp_path_factory):
     """A small run without a constraint."""
     folder = tmp_path_factory.mktemp("trained") / "run"
-    run(folder, "algo=hybrid_stochastic", "episode.steps=20", "total_steps=300")
+    method = ["algo=hybrid_stochastic", "learning=replay"]
+    run(folder, *method, "episode.steps=20", "total_steps=300")
     return folder
 
 

@@ -76,8 +76,9 @@ def test_the_path_that_acts_is_among_the_considered() -> None:
     """It begins at the state, with the action; all candidates are there."""
     planner = GradientController(Cart(), Speed(0.5), **SMALL)
     given = Params(), planner.init(SPEC), jnp.array((0.2, -0.1)), jax.random.key(0)
-    u, _, metrics, found = planner.considered(*given)
-    np.testing.assert_array_equal(u, planner.act(*given)[0])
+    both = jax.jit(lambda *of: (planner.considered(*of), planner.act(*of)[0]))
+    (u, _, metrics, found), acts = both(*given)
+    np.testing.assert_array_equal(u, acts)
     assert found.paths.x.shape == (1 + 2 * (2 + 1) + 8, 6, 2)  # what acts, refined, starts, drawn
     np.testing.assert_allclose(found.paths.x[:, 0], np.tile([0.2, -0.1], (15, 1)), atol=1e-6)
     chosen = jax.tree.map(lambda leaf: leaf[found.chosen], found.paths)
@@ -142,6 +143,16 @@ def test_noise_is_as_large_at_each_decision_and_correlated_with_that_before() ->
     v = planner._drawn(planner.init(SPEC), jax.random.key(0)).v[..., 0]
     apart = np.abs(np.subtract.outer(np.arange(4), np.arange(4)))
     np.testing.assert_allclose(np.cov(np.asarray(v).T), 0.04 * 0.8**apart, atol=0.004)
+
+
+def test_each_strength_is_drawn_with_and_without_noise() -> None:
+    """Twelve candidates, half of them quiet: three of each strength and kind."""
+    given: dict[str, Any] = {**SMALL, "samples": 12, "strengths": (1.0, 0.5), "quiet": 0.5}
+    planner = GradientController(Cart(), Speed(), policy=Steady(), **given)
+    drawn = jax.jit(planner._drawn)(planner.init(SPEC), jax.random.key(0))
+    noisy = np.asarray(drawn.v).any((1, 2))
+    for s in (1.0, 0.5):
+        assert sorted(noisy[drawn.s == s]) == [False] * 3 + [True] * 3
 
 
 def test_the_tail_sees_what_comes_after_the_plan() -> None:

@@ -1,5 +1,6 @@
 """Noise around a controller."""
 
+from functools import partial
 from typing import Any
 
 import jax
@@ -118,8 +119,6 @@ def test_noise_is_added_before_the_action_is_clipped() -> None:
         regulator = PolicyController(Regulator(world, (1.0,), (0.001,), clip=clip), explore=False)
         noisy = NoisyController(regulator, level=1.0)
         keys = jax.random.split(key, 200)
-        act = jax.vmap(
-            lambda key, noisy=noisy: noisy.act(Params(), noisy.init(world.spec), obs, key)
-        )
-        u = np.asarray(act(keys)[0])
+        act = partial(noisy.act, Params(), noisy.init(world.spec), obs)
+        u = np.asarray(jax.jit(jax.vmap(act))(keys)[0])
         assert (u < 1).any() == moved  # without a clip: 1/2 + 2 * 5.248 > 10

@@ -74,21 +74,19 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     reward = RewardNetwork(hidden=(8,), ends=ends)
     objective = PredictedReturn(reward, discount=0.9, critic=Closing(), policy=Closing())
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
-    paths = Path(jnp.zeros((K, T + 1, 2)), jnp.zeros((K, T, 1)))
+    paths = Path(np.zeros((K, T + 1, 2), np.float32), np.zeros((K, T, 1), np.float32))
     for k in range(K):
-        x, u = X, jnp.full(1, k / K)
-        paths = Path(paths.x.at[k, 0].set(x), paths.u.at[k].set(u))
+        paths.x[k, 0], paths.u[k] = X, k / K
         for t in range(T):
-            x = Cart().step((), x, u)
-            paths = paths._replace(x=paths.x.at[k, t + 1].set(x))
-    to_go = jax.vmap(lambda path: objective.reward_to_go(params, path))(paths)
+            paths.x[k, t + 1] = Cart().step((), paths.x[k, t], paths.u[k, t])
+    to_go = jax.jit(jax.vmap(lambda path: objective.reward_to_go(params, path)))(paths)
     w = np.asarray(sampling.weights(to_go[:, :-1], 0.1))[:, 0]
-    first = [float(reward.outcome(params, X, jnp.full(1, k / K), X)[0]) for k in range(K)]
+    first = jax.jit(jax.vmap(lambda u: reward.outcome(params, X, u, X)[0]))(paths.u[:, 0])
     controller = SamplingController(Cart(), objective, Grid(), horizon=T, samples=K)
     given = params, controller.init(SPEC), X, jax.random.key(1)
-    metrics = controller.act(*given)[2]
+    both = jax.jit(lambda *of: (controller.act(*of)[2], controller.considered(*of)[3]))
+    metrics, found = both(*given)  # the candidates, and the one that weighs most
     assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
-    found = controller.considered(*given)[3]  # the candidates, and the one that weighs most
     np.testing.assert_allclose(found.paths.x, paths.x, atol=1e-5)
     assert int(found.chosen) == np.argmax(w)
 

@@ -115,8 +115,8 @@ def test_the_points_of_observations_are_those_of_the_tip(paths) -> None:
     """The height, which is not observed, within 2 mm."""
     _, _, states = paths
     one = jax.tree.map(lambda a: a[0], states)
-    got = WORLD.points(jax.tree.map(lambda a: a[0], one), one.obs)
-    want = jax.vmap(TIP.pose)(one.data.qpos)[0]
+    got = jax.jit(WORLD.points)(jax.tree.map(lambda a: a[0], one), one.obs)
+    want = jax.jit(jax.vmap(TIP.pose))(one.data.qpos)[0]
     np.testing.assert_allclose(got[:, 0, :2], want[:, :2], atol=1e-6)
     np.testing.assert_allclose(got[:, 0, 2], want[:, 2], atol=2e-3)
 

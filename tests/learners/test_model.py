@@ -157,7 +157,7 @@ def test_mean_and_standard_deviation_are_learned() -> None:
     ahead = jax.jit(jax.vmap(model.step, (None, 0, 0)))(params, test.obs, test.action)
     wanted = test.obs + jnp.concatenate([0.5 * test.obs[:, 1:], test.action], 1)
     assert float(jnp.sqrt(jnp.mean((ahead - wanted) ** 2))) < 0.03
-    std = jax.vmap(lambda x: model.std(params, x) * params["change"].std)(test.obs)
+    std = jax.jit(jax.vmap(lambda x: model.std(params, x) * params["change"].std))(test.obs)
     assert float(jnp.mean(jnp.abs(std / noise(test.obs) - 1))) < 0.15
 
 

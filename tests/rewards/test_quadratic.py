@@ -19,7 +19,7 @@ def test_return_is_the_plain_sum() -> None:
     objective = PredictedReturn(QuadraticReward(WORLD, q, (0.3,)), discount=0.9)
     rng = np.random.default_rng(0)
     e, u = rng.uniform(-0.4, 0.4, (5, 12)), rng.uniform(-1, 1, (4, 4))
-    x = jax.vmap(WORLD.from_local)(jnp.asarray(e, jnp.float32))
+    x = jax.jit(jax.vmap(WORLD.from_local))(jnp.asarray(e, jnp.float32))
     hover = np.asarray(WORLD.equilibrium()[1])
     rewards = [
         -sum(w * a**2 for w, a in zip(q, e[t + 1], strict=True)) - 0.3 * sum((u[t] - hover) ** 2)
@@ -27,9 +27,10 @@ def test_return_is_the_plain_sum() -> None:
     ]
     path = Path(x, jnp.asarray(u, jnp.float32))
     want = [sum(0.9 ** (i - t) * rewards[i] for i in range(t, 4)) for t in range(5)]
-    np.testing.assert_allclose(objective.reward_to_go(Params(), path), want, rtol=1e-4)
+    to_go = jax.jit(objective.reward_to_go)(Params(), path)
+    np.testing.assert_allclose(to_go, want, rtol=1e-4)
     value, _ = objective.prepare(Params(), (), path.x[0], path.u[0], jax.random.key(0))
-    assert float(value(path)) == pytest.approx(want[0], rel=1e-4)
+    assert float(jax.jit(value)(path)) == pytest.approx(want[0], rel=1e-4)
 
 
 def test_bad_weights_are_refused() -> None:

@@ -7,6 +7,7 @@ import jax
 import numpy as np
 import pytest
 from omegaconf import OmegaConf
+from programs import shared
 from tiny import call_train, contents, only_line, rows_of, run, summary_of
 
 from hybrid_rl import config, trained
@@ -45,16 +46,18 @@ def warm(source, tmp_path_factory):
 def begun(source, *overrides):
     """Configuration, loop and first state of a run that begins with `source`."""
     made = together.load([f"run={source}", *overrides])[0].config
-    built, first = start.build_new_run(made)
-    loop = Loop(built.agent, built.seeds, 1)
-    return made, loop, first.given(loop.init()), first.line
+    with shared():
+        built, first = start.build_new_run(made)
+        loop = Loop(built.agent, built.seeds, 1)
+        return made, loop, first.given(loop.init()), first.line
 
 
 def saved(folder):
     """The state in the newest checkpoint of a run."""
     made = config.build(OmegaConf.load(folder / "config.yaml"))
     store = Store(folder / "checkpoints", Loop(made.agent, made.seeds, 1), True, {})
-    return store.restore()[0]
+    with shared():
+        return store.restore()[0]
 
 
 def same(one, two):

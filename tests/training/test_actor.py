@@ -101,6 +101,10 @@ def test_rows_are_decisions_in_order(agent, tmp_path):
         assert [row["truncated"] for row in rows if row["episode"] == episode] == [0] * 9 + [1]
     third = [row for row in rows if row["episode"] == 3]
     assert [row["terminated"] for row in third] == [row["next_obs"][1] > 5 for row in third]
+    _, more = moved(agent, tmp_path, Counting)  # another process goes on with the file
+    assert [row["number"] for row in more] == list(range(len(more)))
+    assert more[len(rows)]["stretch"] > rows[-1]["stretch"]
+    assert more[len(rows)]["episode"] > rows[-1]["episode"]
     applied = np.array(actor.robot.applied)
     assert applied.min() >= 0
     assert applied.max() <= 2
@@ -132,6 +136,11 @@ def test_it_ends_without_a_learner(agent, tmp_path):
     assert 0.1 < time.monotonic() - began < 5
     assert actor.robot.stopped == 1
     assert not actor.robot.applied
+    (tmp_path / "stop").touch()  # the learner is there, and says so
+    asked = Actor(of(agent, Counting, alone_s=9.0), tmp_path)
+    began = time.monotonic()
+    asked.run()
+    assert time.monotonic() - began < 5
 
 
 def lost(obs):

@@ -106,13 +106,14 @@ def test_returns_in_the_model_are_those_of_the_world(chance: float) -> None:
     reward = KnownReward(WORLD, Corner(), Ending(chance))
     part = Imagination(replace(LEARNER, reward=reward), decisions=30, episodes=4)
     starts = jax.vmap(EPISODE.reset)(jax.random.split(jax.random.key(2), 4))
-    rewards = []
-    state = starts
-    for _ in range(30):
+
+    def step(state, _):
         u = jax.vmap(POLICY.mean, (None, 0))(PARAMS.policy, state.obs)
         state = jax.vmap(EPISODE.step)(state, u)
-        rewards.append(state.reward)
-    wanted = (chance ** np.arange(30) @ np.array(rewards)).mean()
+        return state, state.reward
+
+    rewards = jax.jit(lambda: jax.lax.scan(step, starts, length=30)[1])()
+    wanted = (chance ** np.arange(30) @ np.asarray(rewards)).mean()
     np.testing.assert_allclose(part.returns(PARAMS, starts.obs), [wanted], rtol=1e-5)
 
 

@@ -36,11 +36,15 @@ def test_positions_follow_from_observations(env, fits):
     if fits is None:
         assert read is None
         return
-    first = episode.reset(jax.random.key(3))
-    action = 0.3 * jnp.ones(env.spec.act)
-    _, states = jax.lax.scan(lambda s, _: (episode.step(s, action),) * 2, first, length=20)
-    obs = jnp.concatenate([first.obs[None], states.obs])
-    apart = np.asarray(read(first, obs))[1:] - jax.vmap(env.pose)(states)
+
+    @jax.jit
+    def path(key):
+        first, action = episode.reset(key), 0.3 * jnp.ones(env.spec.act)
+        _, states = jax.lax.scan(lambda s, _: (episode.step(s, action),) * 2, first, length=20)
+        return first, jnp.concatenate([first.obs[None], states.obs]), jax.vmap(env.pose)(states)
+
+    first, obs, poses = path(jax.random.key(3))
+    apart = np.asarray(read(first, obs))[1:] - poses
     assert np.abs((apart + np.pi) % (2 * np.pi) - np.pi).max() < fits  # angles may turn round
 
 
