@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import yaml
@@ -35,6 +36,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("precision", "distributed", "logger", "run", "freeze"),
 )
+COMPOSING = Lock()  # Hydra composes in one thread at a time
 
 
 @dataclass(frozen=True)
@@ -78,9 +80,10 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
     more = [] if config_dir is None else [overriding.search_path(config_dir)]
     overrides = overriding.allow_sweep_keys(overrides)
     try:
-        initialised = GlobalHydra.instance().is_initialized()
-        with nullcontext() if initialised else initialize_config_dir(str(CONF), version_base="1.3"):
-            return _composed(overrides, more)
+        with COMPOSING:
+            known = GlobalHydra.instance().is_initialized()
+            with nullcontext() if known else initialize_config_dir(str(CONF), version_base="1.3"):
+                return _composed(overrides, more)
     except (HydraException, OmegaConfBaseException, yaml.YAMLError) as error:
         raise UsageError(explain(error)) from error
 

@@ -216,7 +216,7 @@ def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictCo
         words.append(search_path(config_dir))
     try:
         check_choices(words)
-        with initialize_config_dir(str(CONF), version_base="1.3"):
+        with configuration.COMPOSING, initialize_config_dir(str(CONF), version_base="1.3"):
             found: Any = compose("retarget", words)
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(_as_given(explain(error))) from error

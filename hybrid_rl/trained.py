@@ -32,6 +32,7 @@ from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import read_part
 from hybrid_rl.run.files.reading import from_json
+from hybrid_rl.run.logs.progress import say
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.training.acting import TrainedPolicy
 from hybrid_rl.training.agent import Agent, AgentState
@@ -55,7 +56,7 @@ class Trained:
     params: Params  # [S, ...]
     seeds: tuple[int, ...]
     step: int  # decisions of each learner
-    notes: tuple[str, ...]  # one for each checkpoint that was skipped
+    notes: tuple[str, ...]  # on how it was made
     config: DictConfig | None = None  # of the run; env and episode at least
     agent: Agent | None = None  # of the run; None: of a policy's file
 
@@ -109,7 +110,7 @@ class Trained:
 def load(folder: Path | str, key: str = "run") -> Trained:
     """The learners of the run in `folder`, at its newest sound checkpoint.
 
-    key: the argument that named the folder.
+    A line is printed for each checkpoint that is skipped. key: the argument that named the folder.
 
     Raises:
         UsageError: if `folder` holds no run, a damaged configuration, or no checkpoint.
@@ -122,7 +123,10 @@ def load(folder: Path | str, key: str = "run") -> Trained:
     with run_folder.blame_config(folder):
         check(config)
         prepare(config)
-        return replace(of(build_run(config), folder), config=config)
+        trained = of(build_run(config), folder)
+    for note in trained.notes:
+        say(note)
+    return replace(trained, config=config, notes=())
 
 
 def of(run: Run, folder: Path) -> Trained:

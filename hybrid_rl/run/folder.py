@@ -31,6 +31,7 @@ from hybrid_rl.run.files.anchors import as_yaml
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.files.reading import json_file, yaml_file
+from hybrid_rl.run.machine.provenance import git_commit
 
 FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.together)
@@ -149,7 +150,7 @@ def read(folder: Path, key: str) -> DictConfig:
         )
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
-        raise UsageError(f"{path}: lacks {', '.join(missing)}")
+        raise UsageError(f"{path}: lacks {', '.join(missing)}{_of_another_commit(folder)}")
     _check_seeds(folder, config)
     return config
 
@@ -214,12 +215,21 @@ def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
     except PartError:  # a file of the user's own
         raise
     except (ConfigKeyError, ConfigAttributeError) as error:
-        raise UsageError(f"{path}: lacks {error.full_key or error.key}") from error
+        line = f"{path}: lacks {error.full_key or error.key}{_of_another_commit(folder)}"
+        raise UsageError(line) from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
         if lacking:  # the others are of another configuration
             raise
         line = str(error).partition("\n")[0]
-        raise UsageError(f"{path}: {line.removeprefix(f'{path}: ')}") from error
+        line = f"{path}: {line.removeprefix(f'{path}: ')}{_of_another_commit(folder)}"
+        raise UsageError(line) from error
+
+
+def _of_another_commit(folder: Path) -> str:
+    """The end of a line about a run that another commit of this version made; else empty."""
+    commit = _of_summary(folder, "git_commit")
+    same = commit in (None, git_commit())
+    return "" if same else f"; made at another commit: check out {commit}, or train again"
 
 
 def members(folder: Path) -> dict[Path, dict[str, float]]:
@@ -278,7 +288,7 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
         parts.check(OmegaConf.to_container(config), folder)
     except ValueError as error:
         _check_version(folder, key, config)  # another one may have had such a part
-        raise UsageError(f"{path}: {error}") from error
+        raise UsageError(f"{path}: {error}{_of_another_commit(folder)}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
     return config

@@ -1,5 +1,7 @@
 """Which keys a run reads, and what is printed of those that it does not read."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 from omegaconf import OmegaConf
 
@@ -72,6 +74,12 @@ def test_python_refuses_what_the_command_refuses():
     with pytest.raises(config.UsageError, match=r"planner\.horizon: sac does not use it"):
         config.load(["algo=sac", "planner.horizon=7"])
     assert "planner" not in config.load(["algo=sac", "experiment=thesis/fig_3_2_pendulum"])
+
+
+def test_threads_compose_at_once():
+    with ThreadPoolExecutor(8) as threads:
+        made = threads.map(lambda seed: config.load([f"seed={seed}"]).seed, range(16))
+        assert list(made) == [*range(16)]
 
 
 def test_in_a_sweep_one_method_that_uses_a_key_is_enough():

@@ -123,6 +123,16 @@ def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
     assert contents(copied) == before
 
 
+@pytest.mark.parametrize("harm", [without_env, without_physics, other_value, other_module])
+def test_what_another_commit_wrote_says_which(copied, capfd, harm):
+    words, summary = harm(copied / "config.yaml"), json.loads((copied / "summary.json").read_text())
+    (copied / "summary.json").write_text(json.dumps(summary | {"git_commit": "1a2b3c"}))
+    assert call(lambda: command.run(evaluate.main), f"run={copied}") == 2
+    line = only_line(capfd)
+    assert words in line
+    assert line.endswith("; made at another commit: check out 1a2b3c, or train again\n")
+
+
 @pytest.mark.parametrize("given", ["runs/pendulum/sac", "runs/pendulum", "runs/*/sac/*"])
 def test_a_folder_of_runs_names_the_newest(tmp_path, monkeypatch, given):
     monkeypatch.chdir(tmp_path)
