@@ -95,7 +95,7 @@ class GradientController:
     samples: Count = 32  # K
     noise: NotNegative = 0.1  # [u] std of the candidates' corrections
     correlation: Discount = 0.8  # of the noise of successive decisions
-    quiet: Fraction = 0.34  # share of the candidates without noise
+    quiet: Fraction = 0.34  # share without noise, rounded up to whole rounds of strengths
     refined: Count = 5  # of the K, which gradients improve
     iterations: Natural = 5
     step: Positive = 0.05  # [u] root mean square of an iteration's change
