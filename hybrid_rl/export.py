@@ -40,6 +40,7 @@ from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, who
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
+from hybrid_rl.drafts import replacing
 from hybrid_rl.errors import UsageError, install, printable
 from hybrid_rl.networks import Perceptron, precision
 from hybrid_rl.protocols import Controller
@@ -194,7 +195,8 @@ def main() -> None:
         print(_saved(out, trained.task, spec, net))
         return
     made = program(spec, controller, params, given["platforms"], trained.span)
-    out.write_bytes(made.serialize())
+    with replacing(out) as draft:
+        draft.write_bytes(made.serialize())
     print(f"{out}: {trained.task}, {given['mode']}, {', '.join(given['platforms'])}")
     print(f'  f = jax.jit(jax.export.deserialize(open("{out.name}", "rb").read()).call)')
     if len(made.in_avals) == 1:

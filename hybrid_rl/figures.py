@@ -34,7 +34,9 @@ from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
 from hybrid_rl.config import load
+from hybrid_rl.drafts import replacing
 from hybrid_rl.errors import UsageError, user_line
+from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.run.logs.records import json_value
 from hybrid_rl.run.machine.jax_settings import prepare
@@ -150,10 +152,11 @@ def save(figure: "Figure", numbers: dict[str, Any], out: Path) -> None:
     undated = {".pdf": {"CreationDate": None}, ".svg": {"Date": None}}.get(out.suffix)
     with _styled():
         dpi = min(DPI, MOST_PIXELS / figure.get_figwidth())
-        figure.savefig(out, dpi=dpi, metadata=undated)
+        with replacing(out) as draft:
+            figure.savefig(draft, dpi=dpi, metadata=undated)
     file, values = out.with_suffix(".json"), json_value(numbers)
     if not (file.exists() and _content(file) == values):
-        file.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
+        write_text(file, json.dumps(values, indent=1) + "\n")
 
 
 def _content(file: Path) -> Any:
@@ -228,7 +231,7 @@ def main() -> None:
     with _styled():
         figure, numbers = study.figure(**values)
     if table is not None and out.suffix == TABLE:
-        out.write_text(table(numbers), encoding="utf-8")
+        write_text(out, table(numbers))
         print(*study.summary(numbers), out, sep="\n")
         return
     save(figure, numbers, out)

@@ -1,6 +1,6 @@
 """Which layers import which, and the size of files.
 
-types, errors, fields, parts
+types, errors, drafts, fields, parts
       ^
 core, networks
       ^
@@ -23,16 +23,27 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PATTERNS = ("hybrid_rl/**/*.py", "envs/**/*.py", "thesis/*.py", "thesis/studies/*.py")
 FILES = sorted(file for pattern in PATTERNS for file in ROOT.glob(pattern))
-LAYER_FILES = {"types", "errors", "fields", "checks", "composition", "config", "overrides"}
-LAYER_FILES |= {"parts", "renamed", "trained"}
-SHARED = {"types", "fields", "protocols", "core", "networks"}
+LAYER_FILES = {
+    "types",
+    "drafts",
+    "errors",
+    "fields",
+    "checks",
+    "composition",
+    "config",
+    "overrides",
+}
+LAYER_FILES |= {"overrides", "parts", "renamed", "trained"}
+SHARED = {"types", "drafts", "fields", "protocols", "core", "networks"}
 CONFIG = {
-    *("types", "fields", "protocols", "errors", "parts", "networks", "envs", "training"),
+    *("types", "drafts", "fields", "protocols", "errors", "parts", "networks", "envs"),
+    "training",
     *("checks", "composition", "config", "overrides", "renamed"),
 }
 ALLOWED = {
     "types": set(),
     "errors": set(),
+    "drafts": set(),
     "fields": set(),
     "parts": {"errors", "fields"},  # judges names, and builds what they name
     "protocols": {"types", "fields", "protocols"},
@@ -40,7 +51,7 @@ ALLOWED = {
     "networks": {"types", "fields", "protocols", "core", "networks"},
     "envs": {"types", "fields", "protocols", "errors", "envs"},
     "training": {"errors", *SHARED, "envs", "data", "training"},
-    "archive": {"types", "protocols"},
+    "archive": {"types", "drafts", "protocols"},
     "data": {*SHARED, "parts", "archive"},
     "beliefs": {*SHARED, "archive"},
     "policies": {*SHARED, "archive"},

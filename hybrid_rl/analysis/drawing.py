@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hybrid_rl.drafts import replacing
 from hybrid_rl.envs.mujoco.offscreen import Canvas
 from hybrid_rl.run.logs.progress import Progress
 
@@ -54,14 +55,10 @@ def write(
     if out.suffix == ".png":
         shown = range(count // 2, count // 2 + 1)
     out.parent.mkdir(parents=True, exist_ok=True)
-    part = out.with_stem(f".{out.stem}.part")
     drawn = _counted(pictures(shown, out.suffix == ".png"), len(shown))
     to = {".mp4": _write_mp4, ".gif": _write_gif, ".png": _write_png}[out.suffix]
-    try:
-        to(part, drawn, fps)
-        part.replace(out)
-    finally:
-        part.unlink(missing_ok=True)
+    with replacing(out) as draft:
+        to(draft, drawn, fps)
     return out
 
 

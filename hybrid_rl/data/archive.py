@@ -19,6 +19,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from hybrid_rl.drafts import replacing
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import NAME, PyTree, Spec
 
@@ -51,7 +52,7 @@ def write(file: Path | str, task: str, spec: Spec, arrays: Mapping[str, np.ndarr
         "dt": np.array(spec.dt),
     }
     Path(file).parent.mkdir(parents=True, exist_ok=True)
-    with Path(file).open("wb") as out:
+    with replacing(Path(file)) as draft, draft.open("wb") as out:
         np.savez_compressed(out, **arrays, **header)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.data import archive
+from hybrid_rl.drafts import replacing
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.types import Spec
 
@@ -114,7 +115,8 @@ def save_numpy(out: Path, task: str, spec: Spec, net: Perceptron) -> Path:
         within=_within(net),
     )
     script = out.with_suffix(".py")
-    script.write_text(code, encoding="utf-8")
+    with replacing(script) as draft:
+        draft.write_text(code, encoding="utf-8")
     return script
 
 
@@ -148,7 +150,8 @@ def save_c(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
         arrays="\n".join(lines),
         layers="\n".join(layers),
     )
-    out.write_text(text, encoding="utf-8")
+    with replacing(out) as draft:
+        draft.write_text(text, encoding="utf-8")
     return f"{name}_act"
 
 
@@ -190,7 +193,8 @@ def save_onnx(out: Path, task: str, spec: Spec, net: Perceptron) -> None:
     model = helper.make_model(graph, ir_version=IR, opset_imports=opset, producer_name="hybrid_rl")
     helper.set_model_props(model, {"task": task, "dt": f"{float(spec.dt):g}"})
     onnx.checker.check_model(model, full_check=True)
-    out.write_bytes(model.SerializeToString())
+    with replacing(out) as draft:
+        draft.write_bytes(model.SerializeToString())
 
 
 def _function(node: Any, function: str, z: str, out: str) -> str:

@@ -10,9 +10,9 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
+from hybrid_rl.drafts import naming
 from hybrid_rl.networks import precision
 from hybrid_rl.run.checkpoints.store import Store
-from hybrid_rl.run.files import integrity
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row, flatten_keys
@@ -72,7 +72,7 @@ class Job:
             if output.on_row is not None:
                 more = {"run_dir": str(run_dir)} if len(self.runs) > 1 else {}
                 copies.append(output.on_row.of(more))
-            stack.enter_context(integrity.naming(run_dir))
+            stack.enter_context(naming(run_dir))
             logs.append(stack.enter_context(RunLog(run_dir, run.seeds, copies)))
         return logs
 

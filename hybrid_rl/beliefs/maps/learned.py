@@ -17,6 +17,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.data import archive
+from hybrid_rl.drafts import replacing
 from hybrid_rl.fields import FieldError, part
 
 FIELDS = ("f", "low", "high", "slope")
@@ -27,7 +28,7 @@ def save(file: Path | str, f: Any, low: Any, high: Any, slope: float) -> None:
     """Write a map: f [G, G] in the box from low [2] to high [2] [m]."""
     Path(file).parent.mkdir(parents=True, exist_ok=True)
     columns = {"f": f, "low": low, "high": high, "slope": slope}
-    with Path(file).open("wb") as out:
+    with replacing(Path(file)) as draft, draft.open("wb") as out:
         arrays: dict[str, Any] = {k: np.asarray(v, np.float32) for k, v in columns.items()}
         np.savez_compressed(out, **arrays)
 

@@ -25,6 +25,7 @@ from typing import Any
 
 import jax
 
+from hybrid_rl.drafts import sync
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run.checkpoints import leaves
 from hybrid_rl.run.files import integrity
@@ -208,7 +209,7 @@ def _rename(draft: Path, path: Path) -> Path:
     if os.path.lexists(path):
         path.rename(_free(path.parent, f"{path.name}.replaced"))
     draft.rename(path)
-    integrity.sync(path.parent)
+    sync(path.parent)
     return path
 
 

@@ -8,11 +8,9 @@ first difference. A folder without a manifest was never completed.
 import hashlib
 import json
 import os
-import secrets
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
+from hybrid_rl.drafts import replacing, sync
 from hybrid_rl.run.files.reading import from_json
 
 MANIFEST = "manifest.json"
@@ -71,36 +69,7 @@ def digest(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def sync(path: Path) -> None:
-    """Force a file, or the entries of a folder, to the disk."""
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
-
-
 def write_text(path: Path, text: str) -> None:
     """Replace the text of a file; a reader sees the old or the new text, never a part."""
-    draft = path.with_name(f".{path.name}.{secrets.token_hex(4)}.tmp")
-    with naming(path):
-        try:
-            with draft.open("x", encoding="utf-8") as file:  # never what lies there, nor a link
-                file.write(text)
-            sync(draft)
-            draft.replace(path)
-        except OSError:
-            draft.unlink(missing_ok=True)
-            raise
-        sync(path.parent)
-
-
-@contextmanager
-def naming(path: Path) -> Iterator[None]:
-    """Add `path` to an OSError that names no file, such as that of a full disk."""
-    try:
-        yield
-    except OSError as error:
-        if error.filename is None and error.errno is not None:
-            error.filename = str(path)
-        raise
+    with replacing(path) as draft, draft.open("x", encoding="utf-8") as file:
+        file.write(text)
