@@ -47,7 +47,7 @@ CASES = {  # method -> decisions, settings
 def rolled(monkeypatch):
     """Loops over a horizon are not unrolled: a long one compiles as fast as a short one."""
     for module in (adjoint, sampling):
-        monkeypatch.setattr(module, "scan_unroll", lambda length: 1)
+        monkeypatch.setattr(module, "scan_unroll", lambda *_: 1)
 
 
 @pytest.mark.usefixtures("rolled")
