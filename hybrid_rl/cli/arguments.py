@@ -234,6 +234,8 @@ def help_text(
 
 
 def _written(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()  # as it is typed
     return ",".join(value) if isinstance(value, list) else f"{value}"
 
 
