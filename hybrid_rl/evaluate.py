@@ -42,6 +42,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from hybrid_rl.analysis.curves import plural
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, one_of, read, whole
 from hybrid_rl.envs.adapters.external import External
@@ -135,12 +136,13 @@ def main() -> None:
 def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     """Print and write the table of one run or policy."""
     episodes, name = given["episodes"], given["run"] or given["policy"]
+    each = f"{plural(episodes, 'episode')} a seed"
     trained, changes = load_changed(given, changes)
     if given["precision"]:
         precision.choose(given["precision"])
     for note in trained.notes:
         print(note)
-    say(f"compiling, then {episodes} episodes a seed ...")  # of a planner, a minute
+    say(f"compiling, then {each} ...")  # of a planner, a minute
     got = evaluate(trained, given["mode"], episodes, _saying(trained.episode.steps))
     values = report(trained, given["mode"], got)
     values |= {"changes": changes, "precision": precision.current()}
@@ -155,9 +157,9 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     out = Path(given["run"]) / f"evaluation_{stem}.json"
     try:
         write_text(out, json.dumps(values, indent=1) + "\n")
-        print(f"{episodes} episodes a seed; written to {out}")
+        print(f"{each}; written to {out}")
     except OSError as error:  # the run of somebody else, say
-        print(f"{episodes} episodes a seed; not written: {out}: {error.strerror}")
+        print(f"{each}; not written: {out}: {error.strerror}")
 
 
 def _policy_alone(trained: Trained, given: dict[str, Any]) -> str:

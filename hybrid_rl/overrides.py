@@ -161,6 +161,7 @@ def near(config: DictConfig, path: str) -> str:
     name = THEIRS.get(name, name)
     siblings = select(raw, parent) if parent else [*raw, *GROUPS]
     siblings = siblings if isinstance(siblings, (dict, list)) else ()
+    siblings = [each for each in siblings if each != "_target_"]
     close = difflib.get_close_matches(name, siblings, cutoff=0.8)
     named = [each for each in reachable_keys(raw, raw) if each.endswith((f".{name}", f"_{name}"))]
     if named and not close:  # learning_rate: policy_learner.policy_learning_rate
@@ -289,11 +290,11 @@ def unknown(config: DictConfig, key: str) -> str:
     parent, _, name = key.rpartition(".")
     inside: Any = select(raw_values(root), parent) if parent else None
     theirs = str(_target(inside) or "hybrid_rl.").partition("hybrid_rl.")[0]  # a class of the user
-    close = near(config, key)
-    if close and (not theirs or close.startswith(f"{parent}.")):
+    if (close := near(config, key)) and (not theirs or close.startswith(f"{parent}.")):
         return f"{key}: unknown key; did you mean {close}?"
     if not isinstance(inside, dict):
         return f"{key}: unknown key; {SHOW}"
     names = ", ".join(each for each in inside if not each.startswith("_")) or "no keys"
     more = f"; a field of {theirs} must be in its YAML file, as {name}: VALUE" if theirs else ""
+    more = f"; {key} needs task=gymnasium" if key in ("env.id", "env.make") else more
     return f"{key}: unknown key; {parent} has {names}{more}"

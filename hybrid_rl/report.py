@@ -112,8 +112,8 @@ def _runs(runs: Sequence[RunFolder]) -> str:
             *(speed and round(speed), wall and clock(wall)),
         ]
 
-    note = "<p class='quiet'>Evaluation and training return at the end: interquartile mean over "
-    note += "seeds and 95% bootstrap band.</p>"
+    note = "<p class='quiet'>The last evaluation, and the training return over the last tenth of "
+    note += "the decisions: interquartile mean over seeds and 95% bootstrap band.</p>"
     return table(head, map(row, runs)) + note
 
 

@@ -236,7 +236,9 @@ def _curve(run_dir: Path) -> None:
         save(*learning_curves.figure(run_dir, EVALUATION), drawn)
     except OSError as error:
         say(f"{drawn}: not written ({error.strerror or error})")
-    title = f"{curves_picture.LABELS[EVALUATION]} ({drawn})"
+    seeds = len(lines[0].seeds)
+    mean = f", interquartile mean of {seeds} seeds" if seeds > 1 else ""
+    title = f"{curves_picture.LABELS[EVALUATION]}{mean} ({drawn})"
     one = curve.drawn(lines[0].x[known], lines[0].iqm[known], title, "decisions")
     say(one if len(lines) == 1 else title)
 
@@ -248,6 +250,8 @@ def _result(summary: Mapping[str, Any]) -> str:
         values = summary.get(each, [])
         known = [value for value in values if value is not None]
         text = f"{sum(known) / len(known):,.1f}" if known else "none yet"
+        if known and each == "final_return":
+            text += " over the last tenth"  # the rows above have that of the last episode
         if known and len(values) > 1:
             listed = ", ".join("-" if v is None else f"{v:,.1f}" for v in values)
             text += f" (mean of {len(known)} seeds: {listed})"

@@ -49,7 +49,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate run={trained} episodes=100000000000", 2, "00: their worlds would take "),
     ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
-    ("evaluate {trained}", 2, "unknown argument; give key=value"),
+    ("evaluate {trained}", 2, "trained: write run=/"),
     ("demonstrate", 2, "task, run: give one of them"),
     (
         "demonstrate task=hopper",
@@ -132,6 +132,7 @@ def test_the_other_commands_refuse(nothing_lost, folders, monkeypatch, capfd, gi
     ("line", "words"),
     [
         ("train num_envs=2.5", "num_envs=2.5: must be"),
+        ("train config_dir=nowhere", "config_dir=nowhere: no such folder"),
         ("evaluate run=nowhere", "run=nowhere: no run folder"),
     ],
 )

@@ -1,5 +1,6 @@
 """What --help prints, and what the arguments of a command declare."""
 
+import re
 import subprocess
 import sys
 from importlib import import_module
@@ -32,6 +33,7 @@ def test_every_command_explains_itself(name, flag, capsys):
     for argument in module.ARGUMENTS:
         assert f"  {argument.name}=" in printed
         assert argument.about in printed
+    assert not re.search("=(True|False) ", printed)  # typed in small letters
 
 
 def test_train_shows_the_keys_that_every_run_has(capsys):

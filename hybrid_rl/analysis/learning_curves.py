@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ARRAYS = ("x", "each", "iqm", "low", "high")  # of a curve
+FEW = 4  # seeds, of whose resamples more than 2.5% have the lowest one as their mean
 WIDTH = number(0, " of steps (or seconds), 0 or more")
 VALUE = number(what=" in the metric's unit")
 
@@ -91,7 +92,7 @@ def summary(numbers: dict[str, Any]) -> list[str]:
             ends += f" at {curve.x[last]:,.10g}"
         line = (
             f"{curve.task}, {curve.label}: {plural(len(curve.seeds), 'seed')}, "
-            f"last {curve.metric} {ends}, mean {spread(area(curve))}"
+            f"last {curve.metric} {ends}, mean over the run {spread(area(curve))}"
         )
         if threshold is not None:
             steps = steps_to(curve, threshold)
@@ -107,6 +108,10 @@ def summary(numbers: dict[str, Any]) -> list[str]:
                 f"{one.task}, {one.metric}: {one.label} ahead of {other.label} "
                 f"in {rate:.0%} [{low:.0%}, {high:.0%}] of pairs"
             )
+    if any(1 < len(curve.seeds) <= FEW for curve in drawn):
+        lines.append(
+            f"note: with {FEW} seeds or fewer an interval is their range, and not a 95% one"
+        )
     return lines + [f"note: {note}" for curve in drawn for note in curve.notes]
 
 

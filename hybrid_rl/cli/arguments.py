@@ -198,6 +198,8 @@ def _refusal(
         return f"{given}: write {as_pair(line, at)}"
     if "runs" in named and Path(given).exists():
         return f'{given}: unknown argument; quote the pattern: runs="GLOB"'
+    if "run" in named and Path(given).is_dir():
+        return f"{given}: write run={given}"
     keys = ", ".join([*named, *(f"{group}.*" for group in groups)])
     close = difflib.get_close_matches(name, named, n=1)
     hint = f" (did you mean {close[0]}?)" if close else ""
@@ -232,6 +234,8 @@ def help_text(
 
 
 def _written(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()  # as it is typed
     return ",".join(value) if isinstance(value, list) else f"{value}"
 
 

@@ -110,7 +110,7 @@ def _of_settings(line: str, given: Mapping[str, str]) -> str:
     of_part: Any = select(yaml.safe_load(text) or {}, part)
     if not isinstance(of_part, dict) or lacking not in of_part:
         remedy = f"add a field {lacking}, leave it out by '~{field[1]}', or take another part"
-        return f"{line}; the method sets {field[1]}: {remedy}"
+        return f"{line}; the method or a YAML file sets {field[1]}: {remedy}"
     lost = " ".join(f"'~{part}.{key}'" for key in of_part if key not in field[2].split(", "))
     return f"settings={name}: is not for this method: {line}; add {lost} to leave out what it lacks"
 
@@ -131,6 +131,9 @@ def _ordered(line: Sequence[str]) -> list[str]:
     Raises:
         UsageError: for what is neither key=value nor an option of Hydra's.
     """
+    for text in line:
+        if text.startswith("config_dir="):
+            overrides.search_path(text.partition("=")[2])  # refuses what is no folder
     line = [re.sub("^config_dir=", "--config-dir=", text) for text in line]  # as elsewhere
     renamed.check(line)
     check_choices(line)

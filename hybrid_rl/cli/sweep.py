@@ -80,7 +80,8 @@ def _outcome(summary: Any) -> Result:
     for name, called in (("final_eval", "evaluation"), ("final_return", "training return")):
         known = [value for value in summary.get(name) or () if value is not None]
         if known:
-            return {"line": f"{called} {sum(known) / len(known):,.1f}"}
+            over = f" (mean of {len(known)} seeds)" if len(known) > 1 else ""
+            return {"line": f"{called} {sum(known) / len(known):,.1f}{over}"}
     return {}
 
 

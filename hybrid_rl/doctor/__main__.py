@@ -4,9 +4,9 @@
 
 A line for each fault: what was seen, what it means, what to try. Fix the first one first: later
 ones may follow from it. The command reads metrics.jsonl, summary.json, and the replay memory and
-networks of the newest checkpoint, and runs new episodes with the policy, with random actions and
-with zero actions. It writes nothing. The page "My robot does not learn" of the documentation
-explains the checks, and how often they are right.
+networks of the newest checkpoint. It also runs new episodes with the policy, with random actions
+and with zero actions, but not in a Gymnasium environment. It writes nothing. The page
+"My robot does not learn" of the documentation explains the checks, and how often they are right.
 """
 
 if __name__ == "__main__":
@@ -24,13 +24,15 @@ from hybrid_rl.doctor import learned, observed, task
 from hybrid_rl.doctor.evidence import Evidence, of_each, read
 
 ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
-NOTHING = """{folder}: {count} checks, and nothing to see.
-They see neither what you want nor how hard it is; to see it:
-  python -m hybrid_rl.render run={folder}  what the robot does: is that what the reward pays?
+NOTHING = """{folder}: no fault found.
+The doctor does not know what you want, nor how hard it is. What to look at next:
+  python -m hybrid_rl.render run={folder}
+      what the robot does: is that what the reward pays?
   python -m hybrid_rl.evaluate run={folder} mode=policy
-                                           and mode=planner, if it has them: the worse is at fault
-  python -m hybrid_rl.report run={folder}  all curves; returns that still rise need more decisions
-The documentation's page "My robot does not learn" goes on."""
+      and mode=planner, if the run has both: the worse one is at fault
+  python -m hybrid_rl.report run={folder}
+      all curves; returns that still rise need more decisions
+More in the documentation, on the page "My robot does not learn"."""
 CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that page
     "numbers": learned.diverged,
     "silent sensor": observed.constant,
@@ -69,7 +71,7 @@ def main() -> None:
     for name, line in found.items():
         print(f"{name:{width}}  {line}")
     if not found:
-        print(NOTHING.format(folder=folder, count=len(CHECKS)))
+        print(NOTHING.format(folder=folder))
 
 
 if __name__ == "__main__":

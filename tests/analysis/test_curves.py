@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from hybrid_rl.analysis import long_table
-from hybrid_rl.analysis.curves import area, curves, improvement, iqm, steps_to
+from hybrid_rl.analysis.curves import area, band, curves, improvement, iqm, steps_to
+from hybrid_rl.analysis.learning_curves import FEW
 from hybrid_rl.analysis.results import find
 from hybrid_rl.errors import UsageError
 
@@ -266,3 +267,9 @@ def test_the_page_makes_a_table_of_what_stable_baselines_saves(tmp_path, monkeyp
     (got,) = long_table.read("sb3.csv", "eval/return", ["halfcheetah"])
     assert (got.label, sorted(got.seeds)) == ("SAC of SB3 (sb3.csv)", [3, 4])
     np.testing.assert_allclose(sorted(got.each.tolist()), [[1.5, 3], [1.5, 4]])
+
+
+def test_the_band_of_few_seeds_is_their_range():
+    for seeds in range(2, FEW + 1):
+        np.testing.assert_allclose(band(np.arange(seeds * 1.0)), [0, seeds - 1])
+    assert band(np.arange(FEW + 1.0))[0] > 0

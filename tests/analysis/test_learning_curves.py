@@ -230,11 +230,13 @@ def test_the_summary_compares_and_counts_who_reaches_the_threshold():
     one.each[2, -1] = np.nan
     lines = summary(numbers_of([one, two]) | {"threshold": 1500.0})
     assert lines[0].startswith("hopper, a: 3 seeds, last train/return 1,500 [")
-    assert " at 150,250, mean " in lines[0]
+    assert " at 150,250, mean over the run " in lines[0]
     assert lines[0].endswith(", 1,500 reached by 2 of 3")
     assert ", 1,500 reached by 3 of 3 at " in lines[1]
     assert lines[2].startswith("hopper, train/return: a ahead of b in 1")
-    assert lines[3:] == ["note: a note"]
+    few = "note: with 4 seeds or fewer an interval is their range, and not a 95% one"
+    assert lines[3:] == [few, "note: a note"]
+    assert all(len(summary(numbers_of([curve(seeds=n)]))) == 1 for n in (1, 5))
 
 
 def test_a_table_has_a_row_for_each_value_of_each_seed(tmp_path, capsys):

@@ -102,11 +102,13 @@ def test_a_key_or_a_part_is_for_the_methods_that_have_it(tmp_path, capfd, monkey
 
 
 def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):
-    line = ["-m", *SHORT, "seed=0,1", 'run_dir="it\'s"']
+    line = ["-m", *SHORT, "seed=0,2", "num_seeds=2", 'run_dir="it\'s"']
     assert call_train(*line) == 0
     for number in (0, 1):
         summary = json.loads((tmp_path / "it's" / str(number) / "summary.json").read_text())
-        assert summary["seeds"] == [number]
+        assert summary["seeds"] == [2 * number, 2 * number + 1]
+    means = re.findall(r"evaluation -\S+ \(mean of 2 seeds\)$", capfd.readouterr().out, re.M)
+    assert len(means) == 2  # of the table
 
 
 def test_the_same_command_continues_a_sweep_that_was_stopped(tmp_path, capfd, monkeypatch):

@@ -1,5 +1,7 @@
 """What a run prints: what to expect, how to go on, how it ended."""
 
+import itertools
+import json
 import shlex
 
 import numpy as np
@@ -60,10 +62,21 @@ def test_the_last_line_has_both_returns():
     values = {"final_eval": [-19.0, None, -20.0], "final_return": [-36.4, None, -36.4]}
     assert train._result(values) == (
         "evaluation -19.5 (mean of 2 seeds: -19.0, -, -20.0); "
-        "training return -36.4 (mean of 2 seeds: -36.4, -, -36.4)"
+        "training return -36.4 over the last tenth (mean of 2 seeds: -36.4, -, -36.4)"
     )
     one = {"final_eval": [1234.5], "final_return": [None]}
     assert train._result(one) == "evaluation 1,234.5; training return none yet"
+
+
+def test_the_curve_of_several_seeds_says_what_it_is(tmp_path, capsys):
+    rows = [
+        {"step": step, "seed": seed, "wall_s": step, "eval/return": seed * step}
+        for step, seed in itertools.product((100, 200, 300), range(3))
+    ]
+    (tmp_path / "metrics.jsonl").write_text("".join(f"{json.dumps(row)}\n" for row in rows))
+    (tmp_path / "config.yaml").write_text("task: hopper\nalgo: sac\nseed: 0\n")
+    train._curve(tmp_path)
+    assert "Evaluation return, interquartile mean of 3 seeds (" in capsys.readouterr().out
 
 
 def test_a_run_of_random_actions_or_without_evaluations_ends_with_a_line(
