@@ -12,7 +12,7 @@ from hybrid_rl import list as listed
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import offscreen
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 MAINS = {
     "demonstrate": demonstrate.main,

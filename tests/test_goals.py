@@ -18,7 +18,7 @@ from hybrid_rl.goals import aimed, retargeted
 from hybrid_rl.trained import Trained, load, read
 from scripts import new_goals
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 METHOD = ["algo=hybrid_stochastic", "learning=replay"]
 AT = ["reward=aim", "reward.quantity=position", "reward.target=0.5"]

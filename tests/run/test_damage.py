@@ -20,7 +20,7 @@ from hybrid_rl.run.files import integrity
 from hybrid_rl.run.logs import rows
 from hybrid_rl.run.machine import memory
 
-pytestmark = pytest.mark.turns(2)
+pytestmark = pytest.mark.turns(3)
 
 
 @pytest.fixture(scope="module")
