@@ -34,7 +34,7 @@ LAYER_FILES = {
     "overrides",
 }
 LAYER_FILES |= {"overrides", "parts", "renamed", "trained"}
-SHARED = {"types", "drafts", "fields", "protocols", "core", "networks"}
+SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
     *("types", "drafts", "fields", "protocols", "errors", "parts", "networks", "envs"),
     "training",
@@ -52,8 +52,8 @@ ALLOWED = {
     "envs": {"types", "fields", "protocols", "errors", "envs"},
     "training": {"errors", *SHARED, "envs", "data", "training"},
     "archive": {"types", "drafts", "protocols"},
-    "data": {*SHARED, "parts", "archive"},
-    "beliefs": {*SHARED, "archive"},
+    "data": {*SHARED, "drafts", "parts", "archive"},
+    "beliefs": {*SHARED, "drafts", "archive"},
     "policies": {*SHARED, "archive"},
     "renamed": {"errors"},
     "overrides": {"errors"},

@@ -33,6 +33,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, number, output, read, several, whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.networks.precision import PRECISIONS
+from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.machine.jax_settings import prepare
 
 EXPERIMENT = "thesis/fig_3_2_halfcheetah"
@@ -121,7 +122,7 @@ def main() -> None:
         for table in PARTS[part](settings | left, rounds):
             tables.append(table)
             numbers = {"machine": machine, "versions": provenance.versions(), "asked": asked}
-            out.write_text(json.dumps({**numbers, "tables": tables}, indent=1) + "\n")
+            write_text(out, json.dumps({**numbers, "tables": tables}, indent=1) + "\n")
     pictures = draw(tables, out.with_suffix(".png"))
     print(f"\n{out} and {', '.join(map(str, pictures))}")
 

@@ -30,6 +30,7 @@ from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import of_job, parse, quoted
 from hybrid_rl.run import together
 from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import new_folder, rowless
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
@@ -267,7 +268,7 @@ def _report(
             with suppress(OSError):  # it holds something, or is not there
                 Path(run_dir).rmdir()
         rows.append({"job": number, "overrides": labels[number], "run_dir": run_dir, **result})
-    (folder / "jobs.json").write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    write_text(folder / "jobs.json", json.dumps(rows, indent=1) + "\n")
     cells = [("job", "overrides", "run folder", "result")]
     for row in rows:
         line = f"failed ({row['code']}): {row['line']}" if row["code"] else row["line"]
