@@ -137,12 +137,9 @@ def _resume(
 
 
 def _fits(runs: Sequence[Run]) -> str:
-    """A line about the replay memory; raise UsageError if it, or the evaluations, do not fit."""
+    """A line about the replay memory; raise UsageError if it does not fit."""
     refuse_x64()
-    run, learners = runs[0], len(runs) * len(runs[0].seeds)
-    number, modes = run.config.eval_episodes, run.controllers.values()
-    memory.episodes("eval_episodes", number, learners, run.agent.episode, modes)
-    return memory.replay(run, learners)
+    return memory.replay(runs[0], len(runs) * len(runs[0].seeds))
 
 
 def _run(
