@@ -149,7 +149,12 @@ def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Pat
     """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob.
 
     key: the argument that named them.
+
+    Raises:
+        UsageError: if there is none.
     """
+    if not runs:
+        raise UsageError(f'{key}: not given; give {key}="PATTERN" of run folders')
     if isinstance(runs, (str, Path)):
         path = Path(runs).expanduser()
         matched = [path] if path.exists() else glob.glob(str(path), recursive=True)
