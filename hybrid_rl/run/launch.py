@@ -11,13 +11,13 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, whole
+from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, together
 from hybrid_rl.run import start as starting
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.job import Job, Output, written
@@ -161,8 +161,8 @@ def _run(
         progress.note("\n".join(notes))
         loop = job.loop()
         shelf = job.shelf(loop, logs)
-        duration = Duration(jax.default_backend() == "cpu", instead(config))
-        session = Session(loop, run.controllers, _schedule(config), shelf, progress, duration)
+        shorter = shorter_by(config) if jax.default_backend() == "cpu" else ""
+        session = Session(loop, run.controllers, _schedule(config), shelf, progress, shorter)
         if config.resume is None:
             session.begin(start)
         else:
@@ -261,6 +261,16 @@ def _progress(run: Run, label: str, visible: bool) -> Progress:
     steady = max(run.agent.changes())
     kind = Progress if visible else Silent
     return kind(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
+
+
+def shorter_by(config: DictConfig) -> str:
+    """settings=light where it makes a network smaller; fewer decisions for other methods."""
+    light: Any = OmegaConf.load(CONF / "settings" / "light.yaml")
+    for name in ("reward_model", "critic"):
+        part = config.get(name) or {}
+        if {*light[name]} <= {*part} and part.hidden != light[name].hidden:
+            return "settings=light"
+    return "a smaller total_steps"
 
 
 def _schedule(config: DictConfig) -> Schedule:

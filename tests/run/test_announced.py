@@ -53,7 +53,7 @@ def test_a_run_says_what_to_expect(tmp_path, capsys):
     result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
     printed = capsys.readouterr().out
     assert "random:" not in printed
-    assert printed.count("for the whole run, ") == 1
+    assert "takes less" not in printed  # of half an hour and more
     assert "301/301 (100%)" in printed
     assert result["finished"]
 
