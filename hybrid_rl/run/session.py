@@ -46,7 +46,7 @@ class Session:
     schedule: Schedule
     shelf: Shelf  # its folders
     progress: Progress
-    shorter: str = ""  # an override that makes a long run shorter; empty: nothing is said
+    shorter: str = ""  # an override that makes a long run shorter; empty: no note
     state: Any = None  # AgentState [S, ...], once begun
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
