@@ -98,7 +98,7 @@ def begin(
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
     """Continue what is built from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
-    with lock(folder.ensure_writable(run_dir, "run_dir"), "run_dir"):
+    with lock(run_dir, "run_dir"):
         return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
 
 
@@ -124,7 +124,7 @@ def _resume(
     with ExitStack() as stack:
         members, runs = [], []
         for run_dir in folders:
-            stack.enter_context(lock(folder.ensure_writable(run_dir, "resume"), "resume"))
+            stack.enter_context(lock(run_dir, "resume"))
             own = settings(run_dir)  # again, as another process may have continued the run
             with folder.blame_config(run_dir):
                 check(own)
