@@ -2,11 +2,10 @@
 
 import difflib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import fields
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import yaml
 from hydra.types import RunMode
@@ -16,7 +15,6 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields
 from hybrid_rl.errors import UsageError, install, relative
-from hybrid_rl.fields import Must
 from hybrid_rl.parts import part_class
 from hybrid_rl.training.episode import Episode
 
@@ -120,8 +118,10 @@ def explain(error: Exception) -> str:
     if isinstance(error, InterpolationKeyError):
         named = re.search(r"'([^']+)'", text)
         key = named[1] if named else "a key"
-        if key.startswith("env.") and (line := _of_other_tasks(error)):
-            return line
+        if key.startswith("env.") and error.parent_node is not None:
+            whole: Any = error.parent_node._get_root()
+            reads = f"which {whole.algo} reads ({error.full_key})"
+            return f"task={whole.task}: has no {key}, {reads}; choose another task"
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
     if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
         return f"{error.full_key}: refers to the part that it is in; give it another one"
@@ -143,37 +143,6 @@ def concerns(error: BaseException | None, override: str) -> bool:
     """Whether an error of Hydra's says that what an override changes is not there."""
     absent, key = _absent(error), override.partition("=")[0]
     return bool(absent) and f"{key}.".startswith(f"{absent}.")
-
-
-def _of_other_tasks(error: InterpolationKeyError) -> str:
-    """Which tasks have what a part of the method reads of the environment; "" if none has it."""
-    part: Any = error.parent_node
-    plain, whole = OmegaConf.to_container(part), part._get_root()
-    keys = re.findall(r"\$\{env\.(\w+)\}", str(plain))
-    tasks = [name for name in options("task") if {*keys} <= {*_env(name)}]
-    for method in _needed(OmegaConf.to_container(whole)):
-        tasks = [name for name in tasks if name in tasks_with(method)]
-    lacking = ", ".join(f"env.{key}" for key in keys if key not in whole.env)
-    reader = f"{whole.get('algo')} ({str(error.full_key).rpartition('.')[0]})"
-    line = f"task={whole.task}: has no {lacking}, which {reader} reads"
-    return f"{line}; choose one of {', '.join(tasks)}" if tasks else ""
-
-
-def _env(task: str) -> Mapping[str, Any]:
-    """The section `env` of a task file of the library, as far as it stands there."""
-    whole: Any = OmegaConf.load(file("task", task))
-    return whole.get("env") or {}
-
-
-def _needed(node: Any) -> set[str]:
-    """The methods that the parts in `node`, which is not resolved, need of the environment."""
-    if not isinstance(node, dict):
-        return set()
-    found = {method for child in node.values() for method in _needed(child)}
-    if node.get("world") == "${env}" and "_target_" in node:
-        kinds = {each.name: each.type for each in fields(part_class(node["_target_"]))}
-        found |= {each.has for each in get_args(kinds["world"]) if isinstance(each, Must)}
-    return found - {""}
 
 
 def _choice(word: str, known: Sequence[str]) -> str:
@@ -217,10 +186,9 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
     config: what was composed, with interpolations; roots: the keys that a run reads.
 
     Raises:
-        UsageError: in one line that names the file: keys that it lacks, or sets in vain; for an
-            experiment with fields of another task's world; for a choice that changes nothing.
+        UsageError: in one line that names the file: keys that it lacks, or sets in vain; for a
+            choice that changes nothing.
     """
-    _check_experiment(config, hydra)
     _refuse_idle(config, hydra, roots)
     file = chosen(hydra, "task")
     if file is None or CONF in file.parents or config.get("resume") is not None:
@@ -243,20 +211,6 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
         close = overrides.closest_hint(lost[0], [*read, *_root_keys(hydra, file)])
         raise UsageError(f"{name}: {lost[0]}: unknown key, which nothing reads{close}")
     return _changed(config, own, hydra, name)
-
-
-def _check_experiment(config: DictConfig, hydra: Any) -> None:
-    """Raise UsageError if the experiment sets fields that the world of the run does not have."""
-    file, choices = chosen(hydra, "experiment"), hydra.runtime.choices
-    text = file.read_text(encoding="utf-8") if file else ""
-    meant = re.search(r"override /task: (\S+)", text)
-    if meant is None or meant[1] == choices.task:
-        return
-    try:
-        check_fields(config.env, part_class(config.env._target_), "env.")
-    except UsageError as error:
-        line = f"experiment={choices.experiment}: is for task={meant[1]}; {error}"
-        raise UsageError(line) from error
 
 
 def _refuse_idle(config: DictConfig, hydra: Any, roots: Sequence[str]) -> None:

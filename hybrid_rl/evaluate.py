@@ -54,7 +54,6 @@ from hybrid_rl.run.evaluations import finish_episodes
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import members
 from hybrid_rl.run.logs.progress import say
-from hybrid_rl.run.machine import memory
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.host_loop import HostEvaluator
 from hybrid_rl.training.rollout import advance, begin, evaluation_keys
@@ -89,7 +88,6 @@ def evaluate(
     if mode not in trained.controllers:
         raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
     episode, controller = trained.episode, trained.controllers[mode]
-    memory.episodes("episodes", episodes, len(trained.seeds), episode, [controller])
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
     if isinstance(episode.env, External):
         decisions = count()

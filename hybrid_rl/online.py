@@ -228,7 +228,7 @@ class OnlineLearner:
         path = _free(folder)
         while self._waiting:
             self._advance()
-        with lock(run_folder.ensure_writable(path, "folder"), "folder"), self._lock:
+        with lock(path, "folder"), self._lock:
             values: Any = OmegaConf.to_container(self.config)
             store = Store(path / "checkpoints", self._loop, True, flatten_keys(values))
             store.known = set(checkpoint.steps(store.folder))

@@ -191,10 +191,8 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     """One run of the command; returns what summary.json holds. on_row: as of `train`."""
     typed = overrides.of_job(HydraConfig.get())
     members = together.expand_sweep(config, typed)
-    config = members[0].config
     output = launch.Output.of(on_row)
-    given = overrides.typed_values(typed)
-    summary = launch.train(members, given, interrupt.as_call, output)
+    summary = launch.train(members, overrides.typed_values(typed), interrupt.as_call, output)
     output.raise_problem()
     if summary["signal"] is None:
         _curve(Path(summary["run_dir"]))
@@ -209,10 +207,6 @@ def _job(config: DictConfig, on_row: OnRow | None = None) -> dict[str, Any]:
     if summary.get("diverged"):
         left = len(summary["seeds"]) - len(summary["diverged"])
         raise DivergenceError(divergence.line(summary["diverged"], left, None))
-    if config.resume is None and config.total_steps <= config.random_steps:
-        print(f"nothing but random actions: random_steps={config.random_steps}", flush=True)
-    if config.resume is None and "eval_modes" in given and not config.eval_modes:  # no task's
-        print("nothing was evaluated: eval_modes=[]", flush=True)
     return summary
 
 
@@ -230,9 +224,6 @@ def _curve(run_dir: Path) -> None:
         return
     drawn = run_dir / "curve.png"
     try:
-        for path in (drawn, drawn.with_suffix(".json")):
-            if path.is_symlink():  # of a run of somebody else
-                path.unlink()
         save(*learning_curves.figure(run_dir, EVALUATION), drawn)
     except OSError as error:
         say(f"{drawn}: not written ({error.strerror or error})")

@@ -207,12 +207,13 @@ def test_a_sweep_makes_a_folder_each(swept):
     assert [each["algo"] for each in values] == [folder.parent.name for folder in folders]
 
 
-def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path) -> None:
-    folder = tmp_path / "runs" / "pendulum" / "sac"
+def test_runs_that_begin_at_once_do_not_trip_over_each_other(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    config = OmegaConf.create({"task": "pendulum", "algo": "sac"})
     with ThreadPoolExecutor(16) as pool:
-        made = list(pool.map(lambda _: run_folder.ensure_writable(folder, "run_dir"), range(2000)))
-    assert set(made) == {folder}
-    assert not list(folder.iterdir())
+        made = list(pool.map(lambda _: run_folder.new_folder(config), range(300)))
+    assert len(set(made)) == 300
+    assert {*made} == {*Path("runs/pendulum/sac").iterdir()}
 
 
 def test_figures_draw_a_sweep(swept, monkeypatch, capsys):

@@ -34,12 +34,12 @@ USAGE = [  # overrides of train, words of the line
     ),
     (
         "task=pendulum algo=sac experiment=thesis/fig_3_2_hopper",
-        "experiment=thesis/fig_3_2_hopper: is for task=hopper; env.reward: Pendulum has no fields",
+        "env.reward: Pendulum has no fields",
     ),
     (
         "task=pendulum algo=localisation",
-        "task=pendulum: has no env.acceleration, env.drag, which localisation (free_body) reads; "
-        "choose one of contact_plane, sawyer_probe, sprk",
+        "task=pendulum: has no env.acceleration, which localisation reads "
+        "(free_body.acceleration); choose another task",
     ),
     (
         "task=pendulum algo=mppi policy=tanh_gaussian proposal=policy",
@@ -95,9 +95,9 @@ USAGE = [  # overrides of train, words of the line
     ("algo=SAC", "in `python -m hybrid_rl.list`; nearest: sac"),
     ("algo=nn_mppi planner=gradient", "planner: must be a group of keys; `python -m"),
     ("env=pendulum", "env=pendulum: must be a group of keys; did you mean task=pendulum?"),
-    ("planner=adjoint", "planner=adjoint: must be a part, a group of keys with _target_; another "),
-    ("controllers.full=${gradient}", "noisy; one of your own needs +controller@NAME=FILE, too"),
-    ("controllers.full=${controllers.full}", "controllers.full=${controllers.full}: must be a p"),
+    ("planner=adjoint", "planner: must be a group of keys; `python -m"),
+    ("controllers.full=gradient", "keys with _target_, as in 'controllers.full=${planner}'"),
+    ("controllers.full=${gradient}", "controllers.full: refers to gradient, which neither this "),
     ("total_steps 100", "total_steps: has no value; write total_steps=100"),
     ("task = pendulum", "task: has no value; write task=pendulum"),
     ("--task pendulum", "--task: unknown option; write task=pendulum"),
@@ -210,7 +210,6 @@ USAGE = [  # overrides of train, words of the line
     ("run_dir=", "run_dir=: is empty; give a folder, or leave it out"),
     ("total_steps=2147483648", "total_steps=2147483648: must be at most 2147483647: decisions"),
     ("total_steps=99999999999999999999", "must be at most 2147483647: decisions are counted in"),
-    ("eval_episodes=100000000000", "eval_episodes=100000000000: their worlds would take "),
     ("run_dir=/dev/null/run", "run_dir=/dev/null/run: cannot be written to (Not a directory)"),
 ]
 

@@ -172,7 +172,7 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
         (["study=toy"], "title: not given"),
         (["study=ergodic_coverage", "view=none"], "view=none: choose one of control, average"),
         (["study=bayesian_optimisation", "runs=nowhere/*"], "runs=nowhere/*: no run there"),
-        (["study=model_learning", "runs=nowhere/*"], "runs=nowhere/*: no run folder matches"),
+        (["study=model_learning", "runs=nowhere/*"], "runs=nowhere/*: no run there"),
     ],
 )
 def test_bad_usage_is_one_line_and_code_2(toy, tmp_path, monkeypatch, capsys, arguments, line):

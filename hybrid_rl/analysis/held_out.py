@@ -19,7 +19,8 @@ from jax import Array
 
 from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, iqm
-from hybrid_rl.analysis.recorded import labels, run_folders
+from hybrid_rl.analysis.recorded import labels
+from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
@@ -48,7 +49,7 @@ def figure(
     decisions: Annotated[int, "of each kind, drawn from the episodes", whole(10)] = 20000,
 ) -> tuple[Any, dict[str, Any]]:
     """Errors of each run on both kinds of decisions."""
-    folders = run_folders(runs)
+    folders = find(runs)
     trained = [restored(folder) for folder in folders]
     if len({run.task for run in trained}) > 1:
         raise UsageError(f"runs={runs}: the runs are of several tasks")

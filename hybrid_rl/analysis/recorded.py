@@ -1,6 +1,5 @@
 """All decisions of a run, from the replay memory in its folder, and labels of runs."""
 
-import glob
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,20 +28,6 @@ class Recorded(NamedTuple):
         """The decisions [S, T, ...], a Transition of NumPy arrays."""
         rows = self.memory.rows[:, : self.decisions, 0]
         return jax.tree.map(np.asarray, unpack(rows, self.run.agent.spec))
-
-
-def run_folders(pattern: str) -> list[Path]:
-    """The run folders that match a pattern, sorted.
-
-    Raises:
-        UsageError: if there is no pattern or no match.
-    """
-    if not pattern:
-        raise UsageError('runs: not given; give runs="PATTERN" of run folders')
-    folders = sorted(Path(path) for path in glob.glob(pattern))
-    if not folders:
-        raise UsageError(f"runs={pattern}: no run folder matches")
-    return folders
 
 
 def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:

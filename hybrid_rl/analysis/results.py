@@ -18,8 +18,8 @@ import yaml
 
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import Loader, lines, yaml_file
-from hybrid_rl.run.logs.records import COORDINATES, WORD, flatten_keys, row_of, summary_of
+from hybrid_rl.run.files.reading import Loader, json_file, lines, yaml_file
+from hybrid_rl.run.logs.records import COORDINATES, WORD, flatten_keys, row_of
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
@@ -85,7 +85,7 @@ class RunFolder:
     def summary(self) -> dict[str, Any]:
         """What summary.json holds; {} before there is one."""
         file = self.path / "summary.json"
-        return summary_of(file) if file.exists() else {}
+        return json_file(file) if file.exists() else {}
 
     def word(self, key: str) -> str:
         """The value at `key` as a word, of a part its class; "null" for null.
@@ -149,7 +149,12 @@ def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Pat
     """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob.
 
     key: the argument that named them.
+
+    Raises:
+        UsageError: if there is none.
     """
+    if not runs:
+        raise UsageError(f'{key}: not given; give {key}="PATTERN" of run folders')
     if isinstance(runs, (str, Path)):
         path = Path(runs).expanduser()
         matched = [path] if path.exists() else glob.glob(str(path), recursive=True)

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from hybrid_rl.analysis.recorded import run_folders
+from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import legend_below, line_styles, words
 from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Robot
@@ -29,7 +29,7 @@ def figure(
 ) -> tuple[Any, dict[str, Any]]:
     """Returns over minutes, a panel for each robot."""
     numbers: dict[str, Any] = {"robots": {}}
-    for path in run_folders(runs):
+    for path in find(runs):
         env = build_run(run_folder.read(path, "runs")).agent.episode.env
         if not isinstance(env, Robot):
             raise UsageError(f"runs={path}: is no run of task=robot")

@@ -1,9 +1,5 @@
-"""Tables of the benchmark as pictures of at most one screen, one for each part.
+"""Tables of the benchmark as pictures of at most one screen, one for each part."""
 
-python -c "from hybrid_rl.benchmark.picture import redraw; redraw('benchmark.json')"
-"""
-
-import json
 import math
 import re
 import textwrap
@@ -30,12 +26,6 @@ def draw(tables: Sequence[Table], out: Path) -> list[Path]:
         _picture([table for table in tables if table["part"] == part], path)
         paths.append(path)
     return paths
-
-
-def redraw(file: str | Path) -> list[Path]:
-    """The pictures of a benchmark's JSON, in the same folder."""
-    tables = json.loads(Path(file).read_text(encoding="utf-8"))["tables"]
-    return draw(tables, Path(file).with_suffix(".png"))
 
 
 def _picture(tables: Sequence[Table], out: Path) -> None:

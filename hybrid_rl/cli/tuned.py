@@ -22,7 +22,6 @@ from hybrid_rl.cli import study, sweep
 from hybrid_rl.composition import options
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
-from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.lock import lock
 
@@ -73,7 +72,7 @@ class Tuner(sweep.Sweeper):
         folder = Path(str(config.run_dir or self.config.hydra.sweep.dir))
         fixed = [each for each in fixed if not each.startswith("run_dir=")]
         kept = [each for each in arguments if not each.startswith("run_dir=")]
-        self.config.hydra.sweep.dir = str(run_folder.ensure_writable(folder, "run_dir"))
+        self.config.hydra.sweep.dir = str(folder)
         with (
             lock(folder, "run_dir"),
             study.open_study(folder, settings, space, kept, config.eval_every) as opened,

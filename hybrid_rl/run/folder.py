@@ -15,7 +15,6 @@ from datetime import datetime
 from glob import glob
 from itertools import chain
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
@@ -50,7 +49,7 @@ def claim_folder(config: DictConfig) -> Iterator[Path]:
     folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
     new = config.run_dir is None or not folder.exists()
     try:
-        with lock(ensure_writable(folder, "run_dir"), "run_dir"), _cleared(folder):
+        with lock(folder, "run_dir"), _cleared(folder):
             saved = checkpoint.steps(folder / "checkpoints")
             if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
                 line = f"run_dir={folder}: holds a run already; choose another"
@@ -92,31 +91,19 @@ def new_folder(config: DictConfig, suffix: str = "") -> Path:
     Raises:
         UsageError: if it cannot be written to.
     """
-    parent = ensure_writable(Path("runs") / config.task / config.algo, "run_dir")
+    parent = Path("runs") / config.task / config.algo
     stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}{suffix}"
     for number in range(10_000):
         folder = parent / (f"{stem}_{number}" if number else stem)
         try:
-            folder.mkdir()
+            folder.mkdir(parents=True)
         except FileExistsError:
             continue
+        except OSError as error:
+            line = f"run_dir={parent}: cannot be written to ({error.strerror})"
+            raise UsageError(line) from error
         return folder
     raise UsageError(f"run_dir=null: no free name left for {parent / stem}")
-
-
-def ensure_writable(folder: Path, key: str) -> Path:
-    """`folder`, created if it does not exist.
-
-    Raises:
-        UsageError: if it cannot be written to.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with TemporaryFile(dir=folder):  # its name is unique, as other runs may begin there too
-            pass
-    except OSError as error:
-        raise UsageError(f"{key}={folder}: cannot be written to ({error.strerror})") from error
-    return folder
 
 
 def write(folder: Path, config: DictConfig) -> None:
@@ -151,7 +138,6 @@ def read(folder: Path, key: str) -> DictConfig:
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
         raise UsageError(f"{path}: lacks {', '.join(missing)}{_of_another_commit(folder)}")
-    _check_seeds(folder, config)
     return config
 
 
@@ -186,20 +172,6 @@ def _of_summary(folder: Path, *keys: str) -> str | None:
     except (ValueError, KeyError, TypeError):
         return None
     return None if value is None else str(value)
-
-
-def _check_seeds(folder: Path, config: DictConfig) -> None:
-    """Raise UsageError if the newest checkpoint holds learners of other seeds."""
-    saved = checkpoint.meta(folder / "checkpoints").get("seeds")
-    first, number = config.seed, config.num_seeds
-    if saved is None or not (isinstance(first, int) and isinstance(number, int)):
-        return
-    if len(saved) != number or saved != list(range(first, first + number)):
-        listed = ", ".join(map(str, saved))
-        raise UsageError(
-            f"{folder / 'config.yaml'}: seed={first} num_seeds={number}: its checkpoint holds the "
-            f"learners of seed {listed}; put back seed={saved[0]} num_seeds={len(saved)}"
-        )
 
 
 @contextmanager

@@ -11,19 +11,20 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, whole
+from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, together
 from hybrid_rl.run import start as starting
 from hybrid_rl.run.checkpoints import checkpoint
-from hybrid_rl.run.duration import Duration, instead
 from hybrid_rl.run.files import integrity
 from hybrid_rl.run.files.lock import lock
+from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.run.job import Job, Output, written
 from hybrid_rl.run.logs import loggers
 from hybrid_rl.run.logs.progress import Progress, Silent
-from hybrid_rl.run.logs.records import changes, summary_of
+from hybrid_rl.run.logs.records import changes
 from hybrid_rl.run.machine import distributed, memory
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.run.schedule import Schedule
@@ -97,7 +98,7 @@ def begin(
 def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, Any]:
     """Continue what is built from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
-    with lock(folder.ensure_writable(run_dir, "run_dir"), "run_dir"):
+    with lock(run_dir, "run_dir"):
         return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
 
 
@@ -123,7 +124,7 @@ def _resume(
     with ExitStack() as stack:
         members, runs = [], []
         for run_dir in folders:
-            stack.enter_context(lock(folder.ensure_writable(run_dir, "resume"), "resume"))
+            stack.enter_context(lock(run_dir, "resume"))
             own = settings(run_dir)  # again, as another process may have continued the run
             with folder.blame_config(run_dir):
                 check(own)
@@ -137,12 +138,9 @@ def _resume(
 
 
 def _fits(runs: Sequence[Run]) -> str:
-    """A line about the replay memory; raise UsageError if it, or the evaluations, do not fit."""
+    """A line about the replay memory; raise UsageError if it does not fit."""
     refuse_x64()
-    run, learners = runs[0], len(runs) * len(runs[0].seeds)
-    number, modes = run.config.eval_episodes, run.controllers.values()
-    memory.episodes("eval_episodes", number, learners, run.agent.episode, modes)
-    return memory.replay(run, learners)
+    return memory.replay(runs[0], len(runs) * len(runs[0].seeds))
 
 
 def _run(
@@ -164,8 +162,8 @@ def _run(
         progress.note("\n".join(notes))
         loop = job.loop()
         shelf = job.shelf(loop, logs)
-        duration = Duration(jax.default_backend() == "cpu", instead(config))
-        session = Session(loop, run.controllers, _schedule(config), shelf, progress, duration)
+        shorter = shorter_by(config) if jax.default_backend() == "cpu" else ""
+        session = Session(loop, run.controllers, _schedule(config), shelf, progress, shorter)
         if config.resume is None:
             session.begin(start)
         else:
@@ -249,7 +247,7 @@ def _same(old: DictConfig, config: DictConfig) -> bool:
 def _done(config: DictConfig, run_dir: Path) -> dict[str, Any] | None:
     """summary.json of a run that has reached its end and has a checkpoint there; None else."""
     try:
-        summary = summary_of(run_dir / "summary.json") | {"run_dir": str(run_dir)}
+        summary = json_file(run_dir / "summary.json") | {"run_dir": str(run_dir)}
         done = summary["finished"] and summary["total_steps"] >= config.total_steps
         newest = run_dir / "checkpoints" / str(summary["total_steps"])
     except (OSError, ValueError, KeyError, TypeError):
@@ -264,6 +262,16 @@ def _progress(run: Run, label: str, visible: bool) -> Progress:
     steady = max(run.agent.changes())
     kind = Progress if visible else Silent
     return kind(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
+
+
+def shorter_by(config: DictConfig) -> str:
+    """settings=light where it makes a network smaller; fewer decisions for other methods."""
+    light: Any = OmegaConf.load(CONF / "settings" / "light.yaml")
+    for name in ("reward_model", "critic"):
+        part = config.get(name) or {}
+        if {*light[name]} <= {*part} and part.hidden != light[name].hidden:
+            return "settings=light"
+    return "a smaller total_steps"
 
 
 def _schedule(config: DictConfig) -> Schedule:

@@ -21,10 +21,9 @@ from hybrid_rl.protocols import Controller
 from hybrid_rl.run import divergence
 from hybrid_rl.run.checkpoints.store import Record
 from hybrid_rl.run.divergence import Diverged
-from hybrid_rl.run.duration import Duration
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.logs import rows
-from hybrid_rl.run.logs.progress import DRAWN, Progress
+from hybrid_rl.run.logs.progress import DRAWN, Progress, clock
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
@@ -34,6 +33,7 @@ from hybrid_rl.training.loop import Loop
 from hybrid_rl.types import Params
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
+LONG, SURE = 1800.0, 100  # [s] of a run; decisions after which its speed is known
 RETURNS = [f"{prefix}return" for prefix in EVALUATED.values()]  # the first of them is the result
 
 
@@ -46,7 +46,7 @@ class Session:
     schedule: Schedule
     shelf: Shelf  # its folders
     progress: Progress
-    duration: Duration
+    shorter: str = ""  # an override that makes a long run shorter; empty: no note
     state: Any = None  # AgentState [S, ...], once begun
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
@@ -178,13 +178,15 @@ class Session:
         self._show(say=False if self.record.unevaluated else None)
 
     def _count(self, decisions: int, seconds: float) -> None:
-        """Measure the speed of learning; print one estimate of the total time."""
+        """Measure the speed of learning; once it is known, say what makes a long run shorter."""
         self.recent.add(decisions, seconds)
         self.record.learning.add(decisions, seconds)
-        learners = self.diverged.left
-        left = (self.schedule.total_steps - self.step) * learners
-        if note := self.duration.after(decisions, seconds, learners, left, self.wall_s):
-            self.progress.note(note)
+        known, learners = self.record.learning, self.diverged.left
+        if self.shorter and known.rate and known.decisions >= SURE * learners:
+            left = (self.schedule.total_steps - self.step) * learners / known.rate
+            if left > LONG:
+                self.progress.note(f"about {clock(left)} left; {self.shorter} takes less")
+            self.shorter = ""
 
     def _record(self, metrics: rows.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""
@@ -268,9 +270,7 @@ class Session:
         self._continue(True)
         now = replace(self.record, wall_s=self.wall_s)
         with self.progress.doing("saving"):
-            notes = self.shelf.save(self.state, self.gathered, now, self.diverged.ends)
-        for note in notes:
-            self.progress.note(note)
+            self.shelf.save(self.state, self.gathered, now, self.diverged.ends)
         self.saved = self.step, self.record.unevaluated
 
     def _write(self, new: list[Row]) -> None:

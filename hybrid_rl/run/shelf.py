@@ -46,11 +46,9 @@ class Shelf:
         named = {"step": row["step"], "seed": self.loop.seeds[row["learner"]]}
         return named | {name: value for name, value in row.items() if name != "learner"}
 
-    def save(
-        self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End]
-    ) -> list[str]:
+    def save(self, state: Any, gathered: Gathered, record: Record, ends: Mapping[int, End]) -> None:
         """Write a checkpoint to each folder; as `Store.save`. ends: by the learner's number."""
-        notes, parts = [], gathered.split(len(self.logs))
+        parts = gathered.split(len(self.logs))
         for log, store, share, part in zip(
             self.logs, self.stores, self.shares(), parts, strict=True
         ):
@@ -61,8 +59,7 @@ class Shelf:
                 metrics_bytes=log.flush(),
                 ends=[end for s, end in ends.items() if share.start <= s < share.stop],
             )
-            notes += store.save(self._share(state, share), part, mine)
-        return notes
+            store.save(self._share(state, share), part, mine)
 
     def restore(self) -> tuple[Any, Gathered, Record, dict[int, End], list[str]]:
         """(state [S, ...], metrics since the last row, record, ends by learner, notes).

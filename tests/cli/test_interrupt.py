@@ -160,13 +160,13 @@ sys.exit(130)
 
 
 def test_an_unknown_backend_of_mujoco_is_one_line():
-    """Before mujoco is imported, which would be a traceback."""
+    """And not the traceback of mujoco."""
     given = os.environ | {"MUJOCO_GL": "foo"}
     done = subprocess.run(
         [sys.executable, "-c", BEGIN], cwd=ROOT, capture_output=True, text=True, env=given
     )
-    line = "hybrid_rl: MUJOCO_GL=foo: unset it, or choose egl or osmesa\n"
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", line)
+    line = "hybrid_rl: MUJOCO_GL=foo: cannot be loaded; unset it, or apt-get install "
+    assert (done.returncode, done.stdout, done.stderr.partition("libegl1")[0]) == (2, "", line)
 
 
 def test_a_backend_of_mujoco_that_cannot_be_loaded_is_one_line(monkeypatch, capsys):
@@ -176,8 +176,8 @@ def test_a_backend_of_mujoco_that_cannot_be_loaded_is_one_line(monkeypatch, caps
     monkeypatch.setitem(sys.modules, "mujoco", None)  # the next import of it fails
     with pytest.raises(SystemExit, match="2"):
         interrupt._check_graphics("OSMesa")
-    line = "MUJOCO_GL=OSMesa: libOSMesa is not installed; unset it, or apt-get install libosmesa6\n"
-    assert capsys.readouterr().err == f"hybrid_rl: {line}"
+    line = "hybrid_rl: MUJOCO_GL=OSMesa: cannot be loaded; unset it, or apt-get install libegl1"
+    assert capsys.readouterr().err.startswith(line)
 
 
 @pytest.mark.parametrize("number", WORDS)

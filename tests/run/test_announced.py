@@ -53,7 +53,7 @@ def test_a_run_says_what_to_expect(tmp_path, capsys):
     result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
     printed = capsys.readouterr().out
     assert "random:" not in printed
-    assert printed.count("for the whole run, ") == 1
+    assert "takes less" not in printed  # of half an hour and more
     assert "301/301 (100%)" in printed
     assert result["finished"]
 
@@ -77,21 +77,3 @@ def test_the_curve_of_several_seeds_says_what_it_is(tmp_path, capsys):
     (tmp_path / "config.yaml").write_text("task: hopper\nalgo: sac\nseed: 0\n")
     train._curve(tmp_path)
     assert "Evaluation return, interquartile mean of 3 seeds (" in capsys.readouterr().out
-
-
-def test_a_run_of_random_actions_or_without_evaluations_ends_with_a_line(
-    tmp_path, monkeypatch, capsys
-):
-    done = {"signal": None, "run_dir": str(tmp_path), "wall_s": 1.0, "seeds": [0]}
-    monkeypatch.setattr(train.launch, "train", lambda *_: done)
-    random = ["total_steps=1000", "random_steps=1000"]
-    assert call_train("task=pendulum", "algo=sac", *random, "eval_modes=[]") == 0
-    first, *rest = capsys.readouterr().out.splitlines()
-    assert first.startswith("evaluation none yet; training return none yet")
-    assert rest == [
-        "nothing but random actions: random_steps=1000",
-        "nothing was evaluated: eval_modes=[]",
-    ]
-    for others in (["task=pendulum", "algo=sac"], ["experiment=thesis/fig_5_6"]):  # it sets []
-        assert call_train(*others, "total_steps=1001") == 0
-        assert len(capsys.readouterr().out.splitlines()) == 1

@@ -169,7 +169,7 @@ def now(monkeypatch):
 
 
 def test_plain_lines_come_at_once_and_then_every_few_seconds(capsys, now):
-    with Progress(2000, start=1000, label="hopper sac") as shown:
+    with Progress(2000, label="hopper sac") as shown:
         shown.note("compiling ...")
         assert capsys.readouterr().out == "compiling ...\n"
         for step in range(1010, 1200, 10):  # one second each
@@ -230,7 +230,7 @@ def test_a_terminal_shows_a_bar():
     """In a pseudo-terminal of 60 columns, since nothing else is one."""
     code = (
         "from hybrid_rl.run.logs.progress import Progress\n"
-        "with Progress(2000, 0, 'hopper sac') as shown:\n"
+        "with Progress(2000, 'hopper sac') as shown:\n"
         "    shown.note('compiling [soon] ...')\n"
         "    for value in (-11.0, 10.0, -4.0):\n"
         "        shown.update(1000, {'train/return': 12.3, 'eval/return': value})\n"

@@ -28,7 +28,8 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis.curves import band, iqm
-from hybrid_rl.analysis.recorded import Recorded, read, run_folders
+from hybrid_rl.analysis.recorded import Recorded, read
+from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log, words
 from hybrid_rl.cli.arguments import whole
@@ -66,7 +67,7 @@ def figure(
     refit: Annotated[int, "Adam steps of a new model on all decisions", whole(0)] = 0,
 ) -> tuple[Any, dict[str, Any]]:
     """The picture and the numbers."""
-    folders = run_folders(runs)
+    folders = find(runs)
     if against not in [folder.name for folder in folders]:
         names = ", ".join(folder.name for folder in folders)
         raise UsageError(f"against={against}: no such run; choose one of {names}")

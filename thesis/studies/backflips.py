@@ -24,7 +24,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.analysis.recorded import read, run_folders
+from hybrid_rl.analysis.recorded import read
+from hybrid_rl.analysis.results import find
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import labels
 from hybrid_rl.envs.analytic.lander import Lander
@@ -70,7 +71,7 @@ def explored(pattern: str) -> list[Explored]:
     Raises:
         UsageError: for other runs than those of the experiment, or two with one label.
     """
-    each = sorted(map(of, run_folders(pattern)), key=lambda one: one[:2])
+    each = sorted(map(of, find(pattern)), key=lambda one: one[:2])
     for one, other in itertools.pairwise(each):
         if one[:2] == other[:2]:
             raise UsageError(f"runs={pattern}: two runs of {one.label}, {one.most} queries")

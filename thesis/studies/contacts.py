@@ -19,7 +19,8 @@ import numpy as np
 from contourpy import contour_generator  # a part of matplotlib
 from scipy import ndimage, stats
 
-from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read, run_folders
+from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read
+from hybrid_rl.analysis.results import find
 from hybrid_rl.core import poses
 from hybrid_rl.core.batching import repeat
 from hybrid_rl.errors import UsageError
@@ -48,7 +49,7 @@ class Trials(NamedTuple):
 
 def trials(pattern: str, names: str = "method") -> list[Trials]:
     """The trials of all runs that match, named by method or by folder, without its number."""
-    folders = run_folders(pattern)
+    folders = find(pattern)
     if names == "folder":
         words = [re.sub(r"^\d+_", "", path.name) for path in folders]
     else:

@@ -15,8 +15,8 @@ import numpy as np
 
 from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import plural
-from hybrid_rl.analysis.recorded import read, run_folders
-from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl.analysis.recorded import read
+from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.analysis.style import legend_below, line_styles, plain_log, words
 from hybrid_rl.errors import UsageError
 
@@ -29,7 +29,7 @@ EARLY = 5  # iterations of the thesis' claim about the arm
 
 def embedding(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Iterations of the carts, distances of the arms."""
-    folders = run_folders(pattern)
+    folders = find(pattern)
     numbers: dict[str, Any] = {CART: {}, ARM: {}}
     for folder in folders:
         run = RunFolder(folder)

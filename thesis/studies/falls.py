@@ -16,8 +16,8 @@ import jax
 import numpy as np
 from scipy.stats import norm
 
-from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read, run_folders
-from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read
+from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.config import build, load
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT, THRUST
 from hybrid_rl.errors import UsageError
@@ -48,7 +48,7 @@ def falls(pattern: str) -> list[Fall]:
     Raises:
         UsageError: for runs that cannot be compared.
     """
-    folders = run_folders(pattern)
+    folders = find(pattern)
     each = [of(read(path, "quadcopter_se3"), label) for path, label in _named(folders)]
     check_starts(each, folders)
     return each

@@ -25,7 +25,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis.curves import band, iqm, plural
-from hybrid_rl.analysis.recorded import run_folders
+from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
@@ -50,7 +50,7 @@ def figure(
     steps: Annotated[int, "decisions of each flight to a target", whole()] = 1200,
 ) -> tuple[Any, dict[str, Any]]:
     """Tracking over time and power loss, or the flights themselves if `updates` is 0."""
-    folders = run_folders(runs)
+    folders = find(runs)
     flights, dt = equal_size(read_all(folders)), QuadcopterSE3().spec.dt
     results: Results = {flight.label: cost(flight) for flight in flights}
     if updates:

@@ -18,8 +18,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.analysis.curves import band, curves, improvement, iqm
-from hybrid_rl.analysis.recorded import labels, run_folders
-from hybrid_rl.analysis.results import RunFolder
+from hybrid_rl.analysis.recorded import labels
+from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
@@ -49,7 +49,7 @@ class Row(NamedTuple):
 
 def queries(pattern: str, refit: int, at: Sequence[int]) -> dict[str, Any]:
     """Shares over demonstrations, as trained and after a refit of `refit` steps at N in `at`."""
-    folders = run_folders(pattern)
+    folders = find(pattern)
     configs = [_config(folder) for folder in folders]
     tasks = sorted({config.task for config in configs})
     if len(tasks) > 1:

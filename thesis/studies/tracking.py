@@ -21,7 +21,8 @@ from jax import Array
 
 from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, iqm, plural
-from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read, run_folders
+from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read
+from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import legend_below, line_styles, plain_log, words
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.errors import UsageError
@@ -67,7 +68,7 @@ class Track(NamedTuple):
 
 def tracking(pattern: str) -> tuple[Any, dict[str, Any]]:
     """Paths of the first trial, RMSE and lag of each method."""
-    folders = run_folders(pattern)
+    folders = find(pattern)
     runs = [read(folder, *ROBOTS) for folder in folders]
     tasks = {run.config.task for run in runs}
     if len(tasks) > 1:

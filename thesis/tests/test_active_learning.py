@@ -116,12 +116,13 @@ def test_bands_that_do_not_overlap_differ() -> None:
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["runs=nowhere/*"], "runs=nowhere/*: no run folder matches"),
+        (["runs=nowhere/*"], "runs=nowhere/*: no run there"),
         (["runs={}", "against=best"], "against=best: no such run; choose one of"),
     ],
 )
 def test_bad_arguments_are_one_line(tmp_path, capfd, arguments, line) -> None:
     (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "metrics.jsonl").write_text("{}\n")
     given = [argument.format(f"{tmp_path}/a") for argument in arguments]
     assert draw(*given, f"out={tmp_path}/f.png") == 2
     assert line in capfd.readouterr().err

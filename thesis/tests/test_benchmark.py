@@ -13,7 +13,7 @@ from tiny import call
 
 from hybrid_rl.benchmark import __main__ as benchmark
 from hybrid_rl.benchmark import others, ours, parts, picture, products
-from hybrid_rl.benchmark.picture import draw, redraw
+from hybrid_rl.benchmark.picture import draw
 from hybrid_rl.benchmark.race import Contestant, race
 from hybrid_rl.cli import command
 from hybrid_rl.envs.mujoco import mjcf, mjx_warp
@@ -150,9 +150,7 @@ def test_gradient_steps_beside_those_of_brax(tmp_path):
 def test_pictures_fit_a_screen_and_bars_begin_at_zero(tmp_path):
     """Those of the largest tables that there are; a part alone has the name that was asked for."""
     numbers = json.loads((ROOT / "docs" / "results" / "speed_h200.json").read_text())
-    file = tmp_path / "speed.json"
-    file.write_text(json.dumps(numbers))
-    pictures = redraw(file)
+    pictures = draw(numbers["tables"], tmp_path / "speed.png")
     assert [path.stem for path in pictures] == [
         f"speed_{p}" for p in ("loop", "plan", "physics", "act")
     ]

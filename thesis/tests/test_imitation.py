@@ -105,7 +105,7 @@ def test_files_are_joined(runs: Path, capfd: pytest.CaptureFixture[str]) -> None
     [
         (["at=9"], "at=9: "),
         (["at=x"], "at=x: must be whole numbers"),
-        (["runs=nowhere/*"], "runs=nowhere/*: no run folder matches"),
+        (["runs=nowhere/*"], "runs=nowhere/*: no run there"),
     ],
 )
 def test_bad_usage_is_one_line(

@@ -208,7 +208,7 @@ def test_tracks_become_numbers_and_a_picture(tmp_path, monkeypatch, capsys) -> N
         "exact": Track("exact", exact + 0.003, reference, action, rate, 0.0, 1 / 30),
     }
     of = SimpleNamespace(config=SimpleNamespace(task="sprk_sand"))
-    monkeypatch.setattr(tracking, "run_folders", lambda pattern: list(tracks))
+    monkeypatch.setattr(tracking, "find", lambda pattern: list(tracks))
     monkeypatch.setattr(tracking, "labels", lambda folders: folders)
     monkeypatch.setattr(tracking, "read", lambda folder, *tasks: of)
     monkeypatch.setattr(tracking, "of", lambda run, label: tracks[label])

@@ -69,10 +69,9 @@ class Store:
     settings: Mapping[str, Any]
     newest: int | None = None  # step of the checkpoint that was written or read last
     known: set[int] = field(default_factory=set)  # checkpoints that may be deleted
-    noted: set[Path] = field(default_factory=set)  # leftovers that a note has named
 
-    def save(self, state: Any, gathered: Gathered, record: Record) -> list[str]:
-        """Write a checkpoint of the run; a note for each new leftover that cannot be deleted.
+    def save(self, state: Any, gathered: Gathered, record: Record) -> None:
+        """Write a checkpoint of the run.
 
         Raises:
             CheckpointError: if it could not be written.
@@ -90,9 +89,6 @@ class Store:
         checkpoint.save(self.folder, step, leaves, meta, known=self.known)
         self.known.add(step)
         self.newest = step
-        stuck = [path for path in checkpoint.leftovers(self.folder) if path not in self.noted]
-        self.noted.update(stuck)
-        return [f"{path}: cannot be deleted, and is left there" for path in stuck]
 
     def restore(self, step: int | None = None) -> tuple[Any, Gathered, Record, list[str]]:
         """(state, metrics since the last row, record, notes) of the newest sound checkpoint.

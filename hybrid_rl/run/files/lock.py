@@ -21,7 +21,7 @@ NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)  # of so
 
 @contextmanager
 def lock(folder: Path, key: str) -> Iterator[Path]:
-    """`folder`, locked by this process until the end of the block.
+    """`folder`, made if it does not exist and locked by this process until the end of the block.
 
     key: the argument that named the folder.
 
@@ -46,6 +46,7 @@ def _open(path: Path, key: str) -> int:
     """A handle of the lock file at `path`, locked."""
     while True:
         try:
+            path.parent.mkdir(parents=True, exist_ok=True)
             handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
         except OSError as error:
             why = f"{LOCK} is a link" if path.is_symlink() else error.strerror

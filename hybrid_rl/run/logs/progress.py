@@ -55,16 +55,14 @@ class Progress:
 
     unit: of a step; steady: the step from which the speed is representative.
 
-    with Progress(total, start, "halfcheetah sac") as progress:
+    with Progress(total, "halfcheetah sac") as progress:
         with progress.doing("compiling"):
             ...
         progress.update(step, {"train/return": 12.0})
     """
 
-    def __init__(
-        self, total: int, start: int = 0, label: str = "", unit: str = "steps", steady: int = 0
-    ) -> None:
-        self.total, self.step, self.label = total, start, label
+    def __init__(self, total: int, label: str = "", unit: str = "steps", steady: int = 0) -> None:
+        self.total, self.step, self.label = total, 0, label
         self.unit, self.steady = unit, steady
         self._scalars: dict[str, tuple[float, int]] = {}  # name -> value, step
         self._drawn: list[float] = []  # values of DRAWN
