@@ -96,8 +96,7 @@ def _check_parts(config: DictConfig) -> None:
         named |= {f"{section}.{name}": node for name, node in config[section].items()}
     for key, node in named.items():
         if node is not None and not (isinstance(node, DictConfig) and "_target_" in node):
-            line = "must be a part, a group of keys with _target_"
-            raise UsageError(f"{key}={node}: {line}, as in 'controllers.full=${{planner}}'")
+            raise UsageError(f"{key}={node}: must be a part, a group of keys with _target_")
     if config.controllers.get("full") is None:
         raise UsageError("controllers.full=null: must be a part, as it acts in training")
 

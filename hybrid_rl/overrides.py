@@ -241,13 +241,15 @@ def refuse_new_keys(hydra: Any) -> None:
 def refuse_unused(
     composed: Sequence[DictConfig], overrides: Sequence[str], roots: Sequence[str]
 ) -> None:
-    """Raise UsageError for an override that none of the configurations reads.
+    """Raise UsageError for an override that none of the configurations reads, or a word for a part.
 
     composed: with their interpolations, one for each job of a sweep. roots: the keys
     that a run reads. A resumed run has settings of its own, so there nothing is refused here.
     """
     if any(config.resume is not None for config in composed):
         return
+    for config in composed:
+        _refuse_words(raw_values(config))
     typed = parse(text for text in overrides if not is_swept(text))
     each = [unused(config, typed, roots) for config in composed]
     for path in dict.fromkeys(path for lost in each for path in lost):
@@ -258,6 +260,23 @@ def refuse_unused(
             does, use = ("does", "it uses") if len(methods) == 1 else ("do", "what they use is")
             line = f"{path}: {', '.join(methods)} {does} not use it"
             raise UsageError(f"{line}; {use} {instead}" if instead else line)
+
+
+def _refuse_words(raw: dict[str, Any]) -> None:
+    """Raise UsageError for a controller that is a word, or names no part, with the parts' names."""
+    named = raw["controllers"] if isinstance(raw["controllers"], dict) else {}
+    for path in (f"controllers.{name}" for name in named):
+        at, node = source(raw, path), select(raw, path)
+        for _ in raw:  # at most once for each key: references may form a circle
+            if link := REFERENCE.fullmatch(str(node)):
+                at, node = source(raw, link[1]), select(raw, link[1])
+        if not (isinstance(node, str) or node is LACKING):
+            continue
+        parts = [name for name, part in raw.items() if ".controllers." in str(_target(part))]
+        typed = f"{path}=${{{at}}}" if node is LACKING else f"{at}={node}"
+        line = "must be a part, a group of keys with _target_; another one of the method's acts by"
+        more = "one of your own needs +controller@NAME=FILE, too"
+        raise UsageError(f"{typed}: {line} '{path}=${{NAME}}': {', '.join(parts)}; {more}")
 
 
 def _target(part: Any) -> Any:
