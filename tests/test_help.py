@@ -43,6 +43,7 @@ def test_train_shows_the_keys_that_every_run_has(capsys):
     for key in ("task=halfcheetah", "num_seeds=1 ", "total_steps=null", "resume=null", "run_dir="):
         (line,) = [each for each in printed.splitlines() if each.startswith(f"  {key}")]
         assert len(line.split()) > 3, "a key without its meaning"
+    assert "  schedule=null " in printed
     assert "--cfg job" in printed
     assert len(printed.splitlines()) < 60
 
