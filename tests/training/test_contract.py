@@ -173,6 +173,12 @@ def test_a_reward_without_a_learner_is_named_and_not_the_users_model():
         check(planner)
 
 
+def test_a_model_without_a_learner_is_named_in_a_planner_of_the_users_too():
+    agent = hr.Agent(hr.Episode(Pendulum(), 20), Planner(), {}, Replay().within(9, 1))
+    with pytest.raises(ValueError, match=r"^model=Line: Planner acts by it, and no learner of"):
+        agent.check(9)
+
+
 @dataclass(frozen=True)
 class Cost:
     """J, or with `wrong` a number for each state of the path."""
