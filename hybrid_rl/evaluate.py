@@ -44,9 +44,18 @@ from rich.table import Table
 
 from hybrid_rl.analysis.curves import plural
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, one_of, read, whole
+from hybrid_rl.cli.arguments import (
+    CHANGES,
+    CONFIG_DIR,
+    GOAL,
+    MODE,
+    POLICY,
+    Argument,
+    one_of,
+    read,
+    whole,
+)
 from hybrid_rl.envs.adapters.external import External
-from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import load_changed
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
@@ -67,7 +76,7 @@ ARGUMENTS = (
     CONFIG_DIR,
     Argument("precision", "", "of networks; empty: as in training", one_of("", *PRECISIONS)),
     Argument("episodes", 10, "episodes of each seed", whole()),
-    Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
+    Argument("mode", "full", "full: planner and policy; policy or planner: one alone", MODE),
 )
 
 
@@ -84,12 +93,10 @@ def evaluate(
     of decisions that every episode has made.
 
     Raises:
-        UsageError: for a mode that the method does not have.
+        UsageError: for a mode that the method does not have, or episodes that do not fit.
     """
-    if mode not in trained.controllers:
-        raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
+    _check(trained, mode, episodes)
     episode, controller = trained.episode, trained.controllers[mode]
-    memory.episodes("episodes", episodes, len(trained.seeds), episode, [controller])
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
     if isinstance(episode.env, External):
         decisions = count()
@@ -101,6 +108,12 @@ def evaluate(
     more = jax.vmap(partial(advance, episode, controller), (0, 0, None))
     more = partial(jax.jit(more, donate_argnums=1), trained.params)
     return finish_episodes(first(keys), more, episode.steps, on_decisions) or {}
+
+
+def _check(trained: Trained, mode: str, episodes: int) -> None:
+    """Raise UsageError as `evaluate`, before anything is compiled."""
+    controller, _ = trained.learner(mode=mode, world=True)
+    memory.episodes("episodes", episodes, len(trained.seeds), trained.episode, [controller])
 
 
 def report(trained: Trained, mode: str, got: dict[str, np.ndarray]) -> dict[str, Any]:
@@ -142,6 +155,7 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
         precision.choose(given["precision"])
     for note in trained.notes:
         print(note)
+    _check(trained, given["mode"], episodes)
     say(f"compiling, then {each} ...")  # of a planner, a minute
     got = evaluate(trained, given["mode"], episodes, _saying(trained.episode.steps))
     values = report(trained, given["mode"], got)

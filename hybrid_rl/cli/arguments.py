@@ -11,6 +11,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 from hybrid_rl import renamed
+from hybrid_rl.checks import MODES
 from hybrid_rl.errors import UsageError
 
 Kind = Callable[[str, str], Any]  # (name, text) -> value
@@ -102,6 +103,7 @@ class Argument:
     needed: str = ""  # what to give, for an argument that is required
 
 
+MODE = one_of(*MODES)  # who acts
 POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file")
 
 GOAL = (  # of commands that show a trained run in another world or on another goal
@@ -122,7 +124,9 @@ ROBOT = (  # of commands that show a trained robot, or a scripted expert
     Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
     *GOAL,
     CONFIG_DIR,
-    Argument("mode", "full", "of run or policy: full, policy or planner"),
+    Argument(
+        "mode", "full", "of run or policy: full, policy or planner", one_of(*MODES, "training")
+    ),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
 )
 ROBOT_CHANGES = {**CHANGES, "expert": "with task=T: a key of its expert"}
