@@ -44,6 +44,7 @@ def whole(least: int = 1, even: bool = False) -> Kind:
 
 def number(least: float = -math.inf, what: str = "") -> Kind:
     """A finite number; what: words that follow "a number" in the message."""
+    what = what or (f", {least:g} or more" if least > -math.inf else "")
 
     def kind(name: str, given: str) -> float:
         try:
@@ -72,7 +73,7 @@ def one_of(*known: str) -> Kind:
 
     def kind(name: str, given: str) -> str:
         if given not in known:
-            raise UsageError(f"{name}={given}: choose one of {', '.join(known)}")
+            raise UsageError(f"{name}={given}: choose one of {', '.join(filter(None, known))}")
         return given
 
     return kind
