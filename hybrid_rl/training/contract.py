@@ -29,6 +29,12 @@ ROLES = {  # kind of a part -> its methods and what they take
         "update": ("state", "params", "batch", "key"),
     },
 }
+OF_AGENT = {  # field of an Agent -> what such a part has, and how one is made
+    "episode": ("env", "Episode(env, steps)"),
+    "controller": ("act", "a controller, such as PolicyController(policy)"),
+    "learners": ("items", 'a dict, such as {"policy": SAC(policy, critic)}'),
+    "replay": ("within", "Replay()"),
+}
 MODEL = ("init", "lift", "step")  # what makes a part a model
 FIELDS = {  # of a learner, by its data
     "uniform": ("batch_size", "batches", "updates", "during_random"),
@@ -40,16 +46,22 @@ OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with par
 COLUMNS = ("step", "seed", "wall_s")  # of a row, beside its metrics
 
 
-def check_members(controller: Any, learners: Mapping[str, Any]) -> None:
+def check_members(agent: Any) -> None:
     """Check that parts of the user's have the methods and the fields of their roles.
 
     Raises:
         PartError: in one line, for what is missing or has another form.
-        ValueError: for two learners of one field of `Params`.
+        ValueError: for a part of another kind, or two learners of one field of `Params`.
     """
-    _check_members(controller, "controller")
+    for name, (has, must) in OF_AGENT.items():
+        part = getattr(agent, name)
+        mine = name == "controller" and of_user(part)
+        if not mine and (isinstance(part, type) or not hasattr(part, has)):
+            kind = part if isinstance(part, type) else type(part)
+            raise ValueError(f"Agent: {name} is {kind.__name__}; give {must}")
+    _check_members(agent.controller, "controller")
     owners: dict[str, str] = {}
-    for name, learner in learners.items():
+    for name, learner in agent.learners.items():
         _check_members(learner, "learner")
         for field in learner.owns:
             if field in owners:

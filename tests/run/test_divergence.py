@@ -29,7 +29,7 @@ def decision(reward):
 def diverged(capacity, rewards, reward=None):
     """The learners of a program, and their state after these decisions of one learner."""
     replay = Replay(capacity)
-    agent = Agent(Episode(Pendulum(), reward=reward), SimpleNamespace(), {}, replay, WORLDS)
+    agent = Agent(Episode(Pendulum(), reward=reward), SimpleNamespace(act=None), {}, replay, WORLDS)
     memory = replay.init(agent.spec, WORLDS)
     for reward in rewards:
         memory = replay.add(memory, decision(reward))
