@@ -74,7 +74,7 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """The configuration of these overrides with its interpolations; errors as `load`."""
     if isinstance(overrides, str):
-        raise UsageError(f'load("{overrides}"): give a list, load(["{overrides}"])')
+        raise UsageError(f'"{overrides}": give a list, {overrides.split()}')
     renamed.check(overrides)
     check_choices(overrides)
     more = [] if config_dir is None else [overriding.search_path(config_dir)]

@@ -34,7 +34,7 @@ from omegaconf import OmegaConf
 from hybrid_rl import config as configuration
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import CONFIG_DIR, Argument, flag, output, read, whole
+from hybrid_rl.cli.arguments import CONFIG_DIR, MODE, Argument, flag, output, read, whole
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.demonstrations import save
@@ -53,7 +53,7 @@ ARGUMENTS = (
     Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
     CONFIG_DIR,
     Argument("run", "", "instead: folder of a trained run"),
-    Argument("mode", "full", "of run=DIR: full, policy or planner"),
+    Argument("mode", "full", "of run=DIR: full, policy or planner", MODE),
     Argument("policy", "", "with run=DIR: the file for its policy's parameters"),
     Argument("models", False, "with policy=FILE: also model, reward, critic, to plan with", flag),
     Argument("learner", None, "with policy=FILE: its seed; empty: the first", whole(least=0)),

@@ -44,9 +44,18 @@ from rich.table import Table
 
 from hybrid_rl.analysis.curves import plural
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import CHANGES, CONFIG_DIR, GOAL, POLICY, Argument, one_of, read, whole
+from hybrid_rl.cli.arguments import (
+    CHANGES,
+    CONFIG_DIR,
+    GOAL,
+    MODE,
+    POLICY,
+    Argument,
+    one_of,
+    read,
+    whole,
+)
 from hybrid_rl.envs.adapters.external import External
-from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import load_changed
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
@@ -66,7 +75,7 @@ ARGUMENTS = (
     CONFIG_DIR,
     Argument("precision", "", "of networks; empty: as in training", one_of("", *PRECISIONS)),
     Argument("episodes", 10, "episodes of each seed", whole()),
-    Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
+    Argument("mode", "full", "full: planner and policy; policy or planner: one alone", MODE),
 )
 
 
@@ -85,8 +94,7 @@ def evaluate(
     Raises:
         UsageError: for a mode that the method does not have.
     """
-    if mode not in trained.controllers:
-        raise UsageError(f"mode={mode}: the run has {', '.join(trained.controllers)}")
+    trained.learner(mode=mode, world=True)  # refuses a mode that the run lacks
     episode, controller = trained.episode, trained.controllers[mode]
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
     if isinstance(episode.env, External):
@@ -140,6 +148,7 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
         precision.choose(given["precision"])
     for note in trained.notes:
         print(note)
+    trained.learner(mode=given["mode"], world=True)  # refuses a mode before anything is compiled
     say(f"compiling, then {each} ...")  # of a planner, a minute
     got = evaluate(trained, given["mode"], episodes, _saying(trained.episode.steps))
     values = report(trained, given["mode"], got)

@@ -224,6 +224,8 @@ def main() -> None:
     if trained is not None and isinstance(trained.episode.env, External):
         _outside(trained, given, out)
         return
+    if trained is not None:
+        trained.learner(given["seed"], given["mode"], world=True)  # refuses what it lacks
     say("compiling an episode ...")  # of a planner, a minute
     world, by, shown = _episode_of(given, changes, out, trained)
     if given["at"]:

@@ -24,7 +24,7 @@ from typing import Any
 import jax
 
 from hybrid_rl.cli import command
-from hybrid_rl.cli.arguments import Argument, flag, number, read
+from hybrid_rl.cli.arguments import MODE, Argument, flag, number, read
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
@@ -36,7 +36,7 @@ from hybrid_rl.training.actor import LOST, Actor
 HIGHER = 10  # priority of the robot's process, where the system allows it
 ARGUMENTS = (
     Argument("run", "", "folder of the run", needed="run=DIR, of a run of task=robot"),
-    Argument("mode", "full", "full: planner and policy together; policy or planner: one alone"),
+    Argument("mode", "full", "full: planner and policy; policy or planner: one alone", MODE),
     Argument("seconds", math.inf, "of motion", number(0.0)),
     Argument("learning", False, "true: rows for a learner", flag),
 )

@@ -268,7 +268,7 @@ def test_a_fault_of_ours_is_a_traceback_without_frames_of_hydra(tmp_path, monkey
     ("given", "words"),
     [
         (["task=pendulm"], "task=pendulm: unknown; choose one of ant, .*; did you mean pendulum?"),
-        ("task=pendulum", r'load\("task=pendulum"\): give a list, load\(\["task=pendulum"\]\)'),
+        ("task=ant seed=1", r"\"task=ant seed=1\": give a list, \['task=ant', 'seed=1'\]"),
         (["sed=3"], "sed: unknown key; did you mean seed?"),
     ],
 )

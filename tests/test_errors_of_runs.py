@@ -32,7 +32,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
     ("evaluate policy={trained}", 2, "is no .npz file; a run's folder is run="),
     ("evaluate run=nowhere", 2, "run=nowhere: no run folder there"),
     ("evaluate run={begun}", 2, "holds no checkpoint yet"),
-    ("evaluate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
+    ("evaluate run=nowhere mode=both", 2, "mode=both: choose one of full, policy, planner"),
     ("evaluate run={trained} mode=planner", 2, "mode=planner: the run has full, policy"),
     ("evaluate run={trained} episodes=0", 2, f"episodes=0: {COUNT}"),
     (
@@ -56,10 +56,12 @@ OTHERS = [  # command and its arguments, exit code, words of the line
         "task=hopper: has no scripted expert; give expert=babble or run=DIR",
     ),
     ("demonstrate task=aunt", 2, "task=aunt: unknown; choose one of"),
-    ("demonstrate run={trained} mode=both", 2, "mode=both: the run has full, policy"),
+    ("demonstrate run=nowhere mode=both", 2, "mode=both: choose one of full, policy, planner"),
     ("demonstrate run={trained} out=file.csv", 2, "out=file.csv: must end in .npz"),
     ("render run=nowhere", 2, "run=nowhere: no run folder there"),
     ("render run={trained} out=film.avi", 2, "out=film.avi: must end in .mp4, .gif, .png"),
+    ("render run=nowhere mode=plicy", 2, "mode=plicy: choose one of full, policy, planner, train"),
+    ("render run={trained} mode=planner", 2, "mode=planner: the run has full, policy"),
     ("render run={trained} mode=training", 2, "learns no belief over two coordinates, which"),
     ("figures runs=nowhere/*", 2, "runs=nowhere/*: no run there"),
     ("figures runs={trained} metric=train/reward", 2, "metric=train/reward: not in these runs"),
@@ -124,7 +126,9 @@ def test_the_other_commands_refuse(nothing_lost, folders, monkeypatch, capfd, gi
     monkeypatch.setattr(offscreen, "backend", lambda: "egl")
     name, *arguments = given.format(**folders).split()
     assert call(lambda: command.run(MAINS[name]), *arguments) == code
-    assert words in only_line(capfd)
+    out, err = capfd.readouterr()
+    assert (out, err.count("\n")) == ("", 1)  # nothing was compiled before
+    assert words in err
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from tiny import call, call_train
 
 from hybrid_rl import __main__ as commands
 from hybrid_rl.cli import arguments, command
-from hybrid_rl.cli.arguments import Argument, several, whole
+from hybrid_rl.cli.arguments import Argument, number, one_of, several, whole
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.machine.jax_settings import cache_folder
@@ -43,6 +43,7 @@ def test_train_shows_the_keys_that_every_run_has(capsys):
     for key in ("task=halfcheetah", "num_seeds=1 ", "total_steps=null", "resume=null", "run_dir="):
         (line,) = [each for each in printed.splitlines() if each.startswith(f"  {key}")]
         assert len(line.split()) > 3, "a key without its meaning"
+    assert "  schedule=null " in printed
     assert "--cfg job" in printed
     assert len(printed.splitlines()) < 60
 
@@ -65,6 +66,8 @@ def read(monkeypatch, *line):
     known = (
         Argument("sizes", 3, "how many", whole(least=2, even=True)),
         Argument("parts", ["a"], "which", several("a", "b")),
+        Argument("seconds", 3.0, "how long", number(0.0)),
+        Argument("kind", "", "which one", one_of("", "a", "b")),
         Argument("runs", "", "where", needed="runs=GLOB"),
     )
     monkeypatch.setattr(sys, "argv", ["hybrid_rl", *line])
@@ -73,9 +76,10 @@ def read(monkeypatch, *line):
 
 def test_arguments_are_parsed_as_declared(monkeypatch):
     values, changes = read(monkeypatch, "sizes=4", "parts=b,a", "env.x=1=2", "runs=r")
-    assert values == {"sizes": 4, "parts": ["b", "a"], "runs": "r"}
+    rest = {"seconds": 3.0, "kind": ""}
+    assert values == {"sizes": 4, "parts": ["b", "a"], "runs": "r", **rest}
     assert changes == {"env.x": "1=2"}
-    assert read(monkeypatch, "runs=r")[0] == {"sizes": 3, "parts": ["a"], "runs": "r"}
+    assert read(monkeypatch, "runs=r")[0] == {"sizes": 3, "parts": ["a"], "runs": "r", **rest}
 
 
 @pytest.mark.parametrize(
@@ -84,7 +88,9 @@ def test_arguments_are_parsed_as_declared(monkeypatch):
         ("", "runs: not given; give runs=GLOB"),
         ("sizes=5", "sizes=5: must be an even number"),
         ("parts=a,c", "parts=c: unknown; choose from a, b"),
-        ("sise=3", "give key=value with sizes, parts, runs, env.* (did you mean sizes?)"),
+        ("seconds=-1", "seconds=-1: must be a number, 0 or more"),
+        ("kind=c", "kind=c: choose one of a, b"),
+        ("sise=3", "give key=value with sizes, parts, seconds, kind, runs, env.* (did you mean si"),
         ("--runs r", "--runs: write runs=r"),
         ("runs = r", "runs: write runs=r"),
         ("runs =r", "runs: write runs=r"),

@@ -1,6 +1,7 @@
 """Positions of a MuJoCo scene, drawn without a display: an array, a video, a GIF, a still."""
 
 import contextlib
+import io
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -66,7 +67,8 @@ def draw_beside(
     scene: str, qpos: np.ndarray, out: Path, width: int = 640, height: int = 480
 ) -> None:
     """Writes a .png of one picture beside the other, for each row of qpos [frames, nq]."""
-    _write_png(out, [np.hstack(list(frames(scene, qpos, width, height)))], 0.0)
+    with replacing(out) as draft:
+        _write_png(draft, [np.hstack(list(frames(scene, qpos, width, height)))], 0.0)
 
 
 def frames(
@@ -88,10 +90,12 @@ def _counted(pictures: Iterable[np.ndarray], total: int) -> Iterator[np.ndarray]
 def _write_mp4(out: Path, pictures: Iterable[np.ndarray], fps: float) -> None:
     import imageio.v3 as iio
 
-    with iio.imopen(out, "w", plugin="pyav") as video:
+    made = io.BytesIO()  # as pyav does not close a file on a full disk
+    with iio.imopen(made, "w", plugin="pyav", extension=".mp4") as video:
         video.init_video_stream("libx264", fps=fps, pixel_format="yuv420p")
         for picture in pictures:
             video.write_frame(picture)
+    out.write_bytes(made.getvalue())
 
 
 def _write_gif(out: Path, pictures: Iterable[np.ndarray], fps: float) -> None:

@@ -11,6 +11,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 from hybrid_rl import renamed
+from hybrid_rl.checks import MODES
 from hybrid_rl.errors import UsageError
 
 Kind = Callable[[str, str], Any]  # (name, text) -> value
@@ -43,6 +44,7 @@ def whole(least: int = 1, even: bool = False) -> Kind:
 
 def number(least: float = -math.inf, what: str = "") -> Kind:
     """A finite number; what: words that follow "a number" in the message."""
+    what = what or (f", {least:g} or more" if least > -math.inf else "")
 
     def kind(name: str, given: str) -> float:
         try:
@@ -71,7 +73,7 @@ def one_of(*known: str) -> Kind:
 
     def kind(name: str, given: str) -> str:
         if given not in known:
-            raise UsageError(f"{name}={given}: choose one of {', '.join(known)}")
+            raise UsageError(f"{name}={given}: choose one of {', '.join(filter(None, known))}")
         return given
 
     return kind
@@ -102,6 +104,7 @@ class Argument:
     needed: str = ""  # what to give, for an argument that is required
 
 
+MODE = one_of(*MODES)  # who acts
 POLICY = Argument("policy", "", "instead: a trained policy, NAME of policies/ or a file")
 
 GOAL = (  # of commands that show a trained run in another world or on another goal
@@ -122,7 +125,9 @@ ROBOT = (  # of commands that show a trained robot, or a scripted expert
     Argument("expert", "", "with task=T: another of conf/expert, such as babble"),
     *GOAL,
     CONFIG_DIR,
-    Argument("mode", "full", "of run or policy: full, policy or planner"),
+    Argument(
+        "mode", "full", "of run or policy: full, policy or planner", one_of(*MODES, "training")
+    ),
     Argument("seed", None, "of run=DIR: a learner; of task=T: the first state", whole(least=0)),
 )
 ROBOT_CHANGES = {**CHANGES, "expert": "with task=T: a key of its expert"}

@@ -32,7 +32,7 @@ FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-cp", "--config-path", "-cn", "--config-name"), 1),
     **dict.fromkeys(("-i", "--info"), 1),
 }
-KEYS = (*configuration.READ, "settings", "experiment", "sweep")  # in the help
+KEYS = (*configuration.READ, "schedule", "settings", "experiment", "sweep")  # in the help
 MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
 # KEY.KEY=VALUE or GROUP=NAME, of one value
 OF_PART = re.compile(r"^((?!hydra|task|algo|settings|experiment)[\w.@]+)=(\[[^][()]*\]|[^][,(]+)$")

@@ -63,18 +63,18 @@ class Diverged:
 
     def _decision(self, s: int, end: End, state: Any, now: int) -> str:
         """What the world of learner s returned at `end`, if the memory still holds it."""
-        env = self.loop.agent.episode.env
-        name = f"{type(env).__module__}.{type(env).__name__}"
         agent, memory = self.loop.agent, jax.tree.map(lambda leaf: leaf[s], state.memory)
         made = agent.replay.recent(memory, agent.spec, (now - end["step"]) // agent.num_envs)
         if made is None:
-            return f"a fault of the world {name}"
+            return f"a fault of the world {_class_of(agent.episode.env)}"
         sound = np.isfinite(made.reward) & np.isfinite(made.next_obs).all(-1)
         e = int(np.argmin(sound))  # the environment
         obs, action, reward, after = (
             np.array2string(np.asarray(each[e]), precision=4, threshold=8, separator=", ")
             for each in (made.obs, made.action, made.reward, made.next_obs)
         )
+        of_reward = np.isfinite(made.next_obs[e]).all() and agent.episode.reward is not None
+        name = _class_of(agent.episode.reward if of_reward else agent.episode.env)
         what = f"at obs {obs}, action {action} gives reward {reward}, obs {after}"
         return " ".join(f"a fault of the world: {name} {what}".split())
 
@@ -85,6 +85,10 @@ class Diverged:
                 self._sound[s] = self.shelf.learner(s)
             state = self.loop.with_learner(state, s, self._sound[s])
         return state
+
+
+def _class_of(part: Any) -> str:
+    return f"{type(part).__module__}.{type(part).__name__}"
 
 
 def unsound(learners: Any, step: int) -> dict[int, tuple[int, str]]:

@@ -137,7 +137,7 @@ def read(folder: Path, key: str) -> DictConfig:
         )
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
-        raise UsageError(f"{path}: lacks {', '.join(missing)}{_of_another_commit(folder)}")
+        raise UsageError(f"{path}: lacks {', '.join(missing)}{of_another_commit(folder)}")
     return config
 
 
@@ -187,21 +187,26 @@ def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
     except PartError:  # a file of the user's own
         raise
     except (ConfigKeyError, ConfigAttributeError) as error:
-        line = f"{path}: lacks {error.full_key or error.key}{_of_another_commit(folder)}"
+        line = f"{path}: lacks {error.full_key or error.key}{of_another_commit(folder)}"
         raise UsageError(line) from error
     except (UsageError, MisfitError, OmegaConfBaseException) as error:
         if lacking:  # the others are of another configuration
             raise
         line = str(error).partition("\n")[0]
-        line = f"{path}: {line.removeprefix(f'{path}: ')}{_of_another_commit(folder)}"
+        line = f"{path}: {line.removeprefix(f'{path}: ')}{of_another_commit(folder)}"
         raise UsageError(line) from error
 
 
-def _of_another_commit(folder: Path) -> str:
+def of_another_commit(folder: Path) -> str:
     """The end of a line about a run that another commit of this version made; else empty."""
+    commit = other_commit(folder)
+    return f"; made at another commit: check out {commit}, or train again" if commit else ""
+
+
+def other_commit(folder: Path) -> str:
+    """The commit that made the run in `folder`; empty if it is this one, or not known."""
     commit = _of_summary(folder, "git_commit")
-    same = commit in (None, git_commit())
-    return "" if same else f"; made at another commit: check out {commit}, or train again"
+    return "" if commit in (None, git_commit()) else commit
 
 
 def members(folder: Path) -> dict[Path, dict[str, float]]:
@@ -260,7 +265,7 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
         parts.check(OmegaConf.to_container(config), folder)
     except ValueError as error:
         _check_version(folder, key, config)  # another one may have had such a part
-        raise UsageError(f"{path}: {error}{_of_another_commit(folder)}") from error
+        raise UsageError(f"{path}: {error}{of_another_commit(folder)}") from error
     defaults: Any = OmegaConf.load(CONF / "train.yaml")
     config.compile_cache = defaults.compile_cache
     return config

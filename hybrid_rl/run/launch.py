@@ -231,7 +231,8 @@ def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
     now = written(config)
     then = checkpoint.meta(run_dir / "checkpoints").get("settings", now)  # none may be readable
-    for key in OF_A_SESSION:
+    lowered = now["total_steps"] < then["total_steps"]  # its memory would not fit
+    for key in {*OF_A_SESSION} - ({"total_steps"} if lowered else set()):
         now.pop(key, None)
         then.pop(key, None)
     if changed := changes(then, now):

@@ -105,8 +105,9 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
     learners, memory = jax.tree.map(lambda leaf: leaf[numbers], (learners, memory))
     known = [name for learner in run.agent.learners.values() for name in learner.owns]
     line = f"begins with {_listed(known)} of {source} at step {step:,}; {words}"
+    made = f"; made at another commit, {commit}" if (commit := folder.other_commit(source)) else ""
     frozen = f"; frozen: {_listed(run.agent.frozen)}" if run.agent.frozen else ""
-    return run, Start(learners, memory, "\n".join([*notes, line + frozen]))
+    return run, Start(learners, memory, "\n".join([*notes, line + frozen + made]))
 
 
 def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
@@ -141,7 +142,10 @@ def _learners(
         world = ("env.", "episode.", "reward.")
         own = [line for line in lines if "." in line.split()[0] and not line.startswith(world)]
         what, detail = ", ".join((own or lines)[:2]), str(error).partition("this run: ")[2]
-        raise UsageError(f"{what}: parameters of run={source} do not fit ({detail})") from error
+        other = folder.of_another_commit(source)
+        raise UsageError(
+            f"{what}: parameters of run={source} do not fit ({detail}){other}"
+        ) from error
     return step, state.learners, notes
 
 

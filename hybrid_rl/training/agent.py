@@ -73,7 +73,7 @@ class Agent:
         if strange := [name for name in self.frozen if name not in self.learners]:
             known = ", ".join(self.learners) or "none"
             raise ValueError(f"freeze={strange}: the method's learners are {known}")
-        contract.check_members(self.controller, self.learners)
+        contract.check_members(self)
         for name, learner in self.learners.items():
             update_schedule(name, learner, self.num_envs)
 

@@ -29,6 +29,12 @@ ROLES = {  # kind of a part -> its methods and what they take
         "update": ("state", "params", "batch", "key"),
     },
 }
+OF_AGENT = {  # field of an Agent -> what such a part has, and how one is made
+    "episode": ("env", "Episode(env, steps)"),
+    "controller": ("act", "a controller, such as PolicyController(policy)"),
+    "learners": ("items", 'a dict, such as {"policy": SAC(policy, critic)}'),
+    "replay": ("within", "Replay()"),
+}
 MODEL = ("init", "lift", "step")  # what makes a part a model
 FIELDS = {  # of a learner, by its data
     "uniform": ("batch_size", "batches", "updates", "during_random"),
@@ -40,16 +46,22 @@ OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with par
 COLUMNS = ("step", "seed", "wall_s")  # of a row, beside its metrics
 
 
-def check_members(controller: Any, learners: Mapping[str, Any]) -> None:
+def check_members(agent: Any) -> None:
     """Check that parts of the user's have the methods and the fields of their roles.
 
     Raises:
         PartError: in one line, for what is missing or has another form.
-        ValueError: for two learners of one field of `Params`.
+        ValueError: for a part of another kind, or two learners of one field of `Params`.
     """
-    _check_members(controller, "controller")
+    for name, (has, must) in OF_AGENT.items():
+        part = getattr(agent, name)
+        mine = name == "controller" and of_user(part)
+        if not mine and (isinstance(part, type) or not hasattr(part, has)):
+            kind = part if isinstance(part, type) else type(part)
+            raise ValueError(f"Agent: {name} is {kind.__name__}; give {must}")
+    _check_members(agent.controller, "controller")
     owners: dict[str, str] = {}
-    for name, learner in learners.items():
+    for name, learner in agent.learners.items():
         _check_members(learner, "learner")
         for field in learner.owns:
             if field in owners:
@@ -92,7 +104,8 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         PartError: in one line: the file and line, what a method gives, and what it must give.
     """
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
-    check_owners(controllers, sum((each.owns for each in agent.learners.values()), ()), agent.spec)
+    owned = sum((each.owns for each in agent.learners.values()), ())
+    check_owners(controllers, owned, agent.spec)
     if not any(users([*controllers, *agent.learners.values()])):
         return
     key = jax.eval_shape(lambda: jax.random.key(0))
@@ -124,7 +137,19 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
             )
         _check_metrics(learner, "update", result[1], names)
         _check_state(learner, "update", states[name], result[0])
-    env = jax.eval_shape(agent.episode.reset, key)
+    try:
+        _check_controllers(controllers, agent, params, names)
+    except PartError as error:
+        if "NoneType" in str(error):  # perhaps what no learner gives
+            check_owners(controllers, owned, agent.spec, every=True)
+        raise
+
+
+def _check_controllers(
+    controllers: Iterable[Any], agent: Any, params: Params, names: dict[str, str]
+) -> None:
+    """Raise PartError unless controllers act, and objectives give numbers; names: of metrics."""
+    env = jax.eval_shape(agent.episode.reset, jax.random.key(0))
     for owner in (*agent.learners.values(), *controllers):
         _check_objectives(owner, agent, params, env)
     for controller in controllers:
@@ -137,25 +162,25 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
             _check_acting(each, agent, params, env, {**names} if each is controller else {})
 
 
-def check_owners(parts: Any, owned: Collection[str], spec: Spec) -> None:
+def check_owners(parts: Any, owned: Collection[str], spec: Spec, every: bool = False) -> None:
     """Check that what the library's parts of controllers act by has parameters.
 
     parts: any parts, in lists, dictionaries and each other. owned: the fields of Params that
-    learners give.
+    learners give. every: also what the user's parts act by, which may have parameters elsewhere.
 
     Raises:
         ValueError: for a policy, a model or the like that has parameters, which no learner gives.
     """
     if isinstance(parts, dict | list | tuple):
         for each in parts.values() if isinstance(parts, dict) else parts:
-            check_owners(each, owned, spec)
+            check_owners(each, owned, spec, every)
     if not is_dataclass(parts) or isinstance(parts, type):
         return
-    of_params = set() if of_user(parts) else OF_PARAMS - {*owned}
+    of_params = set() if of_user(parts) and not every else OF_PARAMS - {*owned}
     for name in (field.name for field in fields(parts)):
         part = getattr(parts, name)
         if name not in of_params or not hasattr(part, "init"):
-            check_owners(part, owned, spec)
+            check_owners(part, owned, spec, every)
             continue
         begin = partial(lambda part, key: part.init(key, spec), part)
         if jax.tree.leaves(shapes(part, "init", begin, jax.random.key(0))):

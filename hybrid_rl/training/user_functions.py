@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.indices import check as check_indices
-from hybrid_rl.errors import FAULTS, blame
+from hybrid_rl.errors import FAULTS, SourceOf, blame
 from hybrid_rl.training import pairs
 from hybrid_rl.types import Spec
 
@@ -26,6 +26,7 @@ def check(name: str, part: Any, spec: Spec) -> None:
         raise ValueError(f"{what}has no reward_of; a model of it is reward_model")
     if part is None or type(part).__module__.startswith("hybrid_rl."):
         return
+    SourceOf(part).takes(METHODS[name], "x", "u", "after")
     what += f"{METHODS[name]}: "
     call, rng, sizes = getattr(part, METHODS[name]), np.random.default_rng(0), (spec.obs, spec.act)
     x, u = (rng.normal(size=(2, size)).astype(np.float32) for size in sizes)

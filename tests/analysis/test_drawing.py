@@ -68,6 +68,28 @@ def test_a_gif_goes_round_at_no_more_than_its_speed(tmp_path, can_draw):
     assert centre(film[2], 0)[1] > centre(film[0], 0)[1] + 0.2
 
 
+@pytest.mark.parametrize("name", ["a.mp4", "a.gif", "a.png", "beside.png"])
+def test_a_full_disk_is_one_line_and_no_file(tmp_path, name):
+    """The system refuses files beyond 100 bytes."""
+    script = f"""
+import resource, signal
+from pathlib import Path
+import numpy as np
+from hybrid_rl.analysis import drawing
+from hybrid_rl.cli import command
+drawing.frames = lambda *_: iter(np.random.default_rng(0).integers(0, 255, (3, 48, 64, 3), "uint8"))
+draw = drawing.draw_beside if {name == "beside.png"} else drawing.draw
+given = ("", np.zeros((3, 1)), Path({str(tmp_path / name)!r}), 25)
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+command.run(lambda: draw(*given))
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stderr == f"hybrid_rl: [Errno 27] File too large: '{tmp_path / name}'\n"
+    assert [*tmp_path.iterdir()] == []
+
+
 def test_what_fails_halfway_leaves_nothing(tmp_path, monkeypatch, can_draw):
     if not can_draw:
         return

@@ -3,6 +3,8 @@
 import json
 import re
 import resource
+from types import SimpleNamespace
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -172,6 +174,15 @@ def test_learners_that_do_not_fit_are_counted(tmp_path, monkeypatch, capfd):
     assert 0 < fits < 16
     monkeypatch.chdir(tmp_path)
     assert call_train(*line[:-1], f"num_seeds={fits}", "run_dir=few", "total_steps=50") == 0
+
+
+def test_environments_of_which_no_learner_fits_are_named(monkeypatch):
+    monkeypatch.setattr(memory, "available", lambda: 2e5)
+    loop: Any = SimpleNamespace(
+        seeds=(0,), agent=SimpleNamespace(num_envs=10**9), memory=lambda _: 2e12
+    )
+    with pytest.raises(MemoryError, match=r"; fewer than num_envs=1000000000 may fit$"):
+        memory.check(loop, None)
 
 
 def test_what_cannot_be_deleted_stays(tmp_path):

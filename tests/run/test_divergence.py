@@ -26,10 +26,10 @@ def decision(reward):
     return Transition(obs, action, jnp.array([1.0, reward]), flags, flags, obs)
 
 
-def diverged(capacity, rewards):
+def diverged(capacity, rewards, reward=None):
     """The learners of a program, and their state after these decisions of one learner."""
     replay = Replay(capacity)
-    agent = Agent(Episode(Pendulum()), SimpleNamespace(), {}, replay, WORLDS)
+    agent = Agent(Episode(Pendulum(), reward=reward), SimpleNamespace(act=None), {}, replay, WORLDS)
     memory = replay.init(agent.spec, WORLDS)
     for reward in rewards:
         memory = replay.add(memory, decision(reward))
@@ -58,6 +58,13 @@ def test_a_reward_that_is_not_finite_is_the_worlds_and_its_decision_is_shown():
     assert divergence.line(ends, 0, 4).endswith(
         "; checkpoint 4 is whole: mend the world and resume it"
     )
+
+
+def test_a_reward_of_the_users_is_named_and_not_the_world():
+    paid = SimpleNamespace(reward_of=lambda x, u, after: x[0])
+    learners, state = diverged(100, [NAN], paid)
+    (end,) = learners.add({0: (2, "world/reward")}, state, 2).values()
+    assert end["world"].startswith("a fault of the world: types.SimpleNamespace at obs [ 0.5 ")
 
 
 def test_a_decision_that_the_memory_forgot_is_not_shown():

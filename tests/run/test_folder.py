@@ -150,6 +150,10 @@ def test_a_run_goes_on_only_with_the_settings_that_it_began_with(copied, capfd):
     assert "learning_rate was 0.0003 and is 3" in line
     assert "with resume only total_steps and precision" in line
     assert contents(copied) == before
+    path.write_text(text.replace("total_steps: 100", "total_steps: 60"))
+    (copied / "summary.json").unlink()  # as of a run that was stopped
+    assert call_train(f"resume={copied}") == 2
+    assert "total_steps was 100 and is 60; put it back" in only_line(capfd)
     path.write_text(text.replace("compile_cache: null", "compile_cache: elsewhere"))
     assert call_train(f"resume={copied}", "total_steps=150") == 0  # of this machine, not the run
 

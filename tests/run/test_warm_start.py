@@ -1,5 +1,6 @@
 """train run=DIR: a new run begins with what another one knows, as far as it is true there."""
 
+import json
 import shutil
 from types import SimpleNamespace
 
@@ -80,6 +81,14 @@ def test_it_begins_with_all_that_the_learners_know(source):
     assert made.policy.hidden == [16]
     assert "begins with model, reward, policy and critic of" in line
     assert "at step 300; memory: its last 200 decisions" in line
+
+
+def test_another_commit_is_named(source, tmp_path):
+    folder = shutil.copytree(source, tmp_path / "run")
+    (folder / "summary.json").write_text(json.dumps(summary_of(folder) | {"git_commit": "1a2b3c"}))
+    assert begun(folder, "total_steps=50")[-1].endswith("; made at another commit, 1a2b3c")
+    with pytest.raises(UsageError, match=r"do not fit .*; made at another commit: check out 1a2b"):
+        begun(folder, "policy.hidden=[8]")
 
 
 def test_the_memory_stays_where_it_is_true(source):

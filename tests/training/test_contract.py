@@ -173,6 +173,29 @@ def test_a_reward_without_a_learner_is_named_and_not_the_users_model():
         check(planner)
 
 
+def test_a_model_without_a_learner_is_named_in_a_planner_of_the_users_too():
+    agent = hr.Agent(hr.Episode(Pendulum(), 20), Planner(), {}, Replay().within(9, 1))
+    with pytest.raises(ValueError, match=r"^model=Line: Planner acts by it, and no learner of"):
+        agent.check(9)
+
+
+@pytest.mark.parametrize(
+    ("name", "part", "words"),
+    [
+        ("episode", Pendulum(), r"episode is Pendulum; give Episode\(env, steps\)"),
+        ("controller", RewardNetwork((4,)), "controller is RewardNetwork; give a controller, such"),
+        ("controller", SamplingController, "controller is SamplingController; give a controller"),
+        ("learners", [Fit()], "learners is list; give a dict, such as"),
+        ("replay", None, r"replay is NoneType; give Replay\(\)"),
+    ],
+)
+def test_a_part_of_another_kind_is_named_by_its_field(name, part, words):
+    given = {"episode": hr.Episode(Pendulum(), 20), "controller": Planner(), "replay": Replay()}
+    given |= {"learners": {"model": Fit()}, name: part}
+    with pytest.raises(ValueError, match=f"^Agent: {words}"):
+        hr.Agent(**given)
+
+
 @dataclass(frozen=True)
 class Cost:
     """J, or with `wrong` a number for each state of the path."""

@@ -29,7 +29,6 @@ GIVES = "it must be float32[]: sum it, or take its entry; a whole number is no f
         (lambda x, u, after: after[0] - u**2, f"gives float32[1]; {GIVES}"),
         (lambda x, u, after: 1, f"gives int32[]; {GIVES}"),
         (lambda x, u, after: None, f"gives NoneType; {GIVES}"),
-        (lambda x, u: x[0], "positional arguments but 3 were given"),
         (lambda x, u, after: 1.0 if x[0] > 0 else 0.0, "write jnp.where or jax.lax.cond"),
         (lambda x, u, after: x[3], "index 3 is out of bounds for axis 0 with size 3; JAX takes"),
         (
@@ -46,3 +45,14 @@ def test_what_is_paid_is_one_number(name, function, words):
     assert str(error.value).startswith(f"{name}=Mine: {method}: ")
     assert "\n" not in str(error.value)
     Episode(Pendulum(), **{name: Mine(**{method: lambda x, u, after: after[0] - u.sum()})})
+
+
+def test_a_method_that_takes_other_things_or_is_not_there_is_named():
+    def wrong(**given):
+        with pytest.raises(ValueError, match=r"test_user_functions\S*: Mine") as error:
+            Episode(Pendulum(), **given)
+        return str(error.value)
+
+    other: Any = Mine(reward_of=lambda x, u: x[0])
+    assert wrong(reward=other).endswith("(x, u): must be reward_of(self, x, u, after)")
+    assert wrong(constraint=other).endswith("has no excess; write def excess(self, x, u, after)")

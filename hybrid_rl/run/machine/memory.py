@@ -20,10 +20,12 @@ def check(loop: Loop, program: Any) -> None:
     """Raise MemoryError, with the number of learners that fit, if the program needs too much."""
     need, have = loop.memory(program), available()
     if need > have:
-        learners = len(loop.seeds)
+        learners, envs = len(loop.seeds), loop.agent.num_envs
+        fit = int(learners * have / need)
+        hint = f"about {fit} would fit" if fit else f"fewer than num_envs={envs} may fit"
         raise MemoryError(
             f"num_seeds={learners}: the program would take {need / 1e9:,.1f} GB of a device "
-            f"and there are {have / 1e9:,.1f} GB; about {int(learners * have / need)} would fit"
+            f"and there are {have / 1e9:,.1f} GB; {hint}"
         )
 
 
