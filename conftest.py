@@ -195,7 +195,7 @@ def composed_once():
 def merged_once():
     """Hydra merges the files of equal choices one time, and puts the values into a copy.
 
-    Files of this repository do not change meanwhile; the key has the texts of all others.
+    Files of this repository do not change meanwhile; of all others the key has the texts.
     """
     from hydra._internal import config_loader_impl as loader
     from hydra._internal.defaults_list import Overrides
@@ -203,16 +203,17 @@ def merged_once():
     Loader, lists, merged = loader.ConfigLoaderImpl, {}, {}  # the last by the id of a list
     make, merge = loader.create_defaults_list, Loader._compose_config_from_defaults_list
 
-    def texts(repo):
-        folders = [Path(each.path) for each in repo.get_sources() if each.scheme() == "file"]
+    def files(repo):
+        sources = repo.get_sources()
+        folders = [Path(each.path) for each in sources if each.scheme() == "file"]
         others = [each for each in folders if not each.is_relative_to(Path(__file__).parent)]
-        files = sorted(file for folder in others for file in folder.rglob("*.yaml"))
-        return [(file, file.read_bytes()) for file in files]
+        found = sorted(file for folder in others for file in folder.rglob("*.yaml"))
+        return [each.path for each in sources], [(file, file.read_bytes()) for file in found]
 
     def listed(repo, config_name, overrides_list, **options):
         values = Overrides(repo=repo, overrides_list=overrides_list).config_overrides
         chosen = [each for each in overrides_list if each not in values]
-        key = str((config_name, [each.input_line for each in chosen], options, texts(repo)))
+        key = str((config_name, [each.input_line for each in chosen], options, files(repo)))
         if key not in lists:
             lists[key] = make(repo, config_name, chosen, **options)
         return replace(lists[key], config_overrides=values)
