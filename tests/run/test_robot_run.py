@@ -43,21 +43,21 @@ def port():
 def test_a_run_on_a_robot(port, tmp_path, capfd):
     make = "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole"
     line = ["task=robot", make, f"env.kwargs={{port:{port}}}", "algo=sac", "policy.hidden=[8]"]
-    line += ["critic.hidden=[8]", "random_steps=20", "checkpoint_every=25", "log_every=25"]
+    line += ["critic.hidden=[8]", "random_steps=20", "checkpoint_every=50", "log_every=25"]
     folder, rows = tmp_path / "run", []
     line += ["policy_learner.batch_size=8", "episode.steps=30", f"run_dir={folder}"]
-    result = hybrid_rl.train([*line, "total_steps=50"], on_row=rows.append, progress=False)
+    result = hybrid_rl.train([*line, "total_steps=100"], on_row=rows.append, progress=False)
     assert result["finished"]
     means = [row for row in rows if "robot/late_s" in row]
-    assert [row["step"] for row in means] == [25, 50]
+    assert [row["step"] for row in means] == [25, 50, 75, 100]
     assert means[-1]["robot/updates_per_s"] > 0
-    result = hybrid_rl.train([f"resume={folder}", "total_steps=75"], progress=False)
-    assert result["total_steps"] == 75
+    result = hybrid_rl.train([f"resume={folder}", "total_steps=150"], progress=False)
+    assert result["total_steps"] == 150
     log, sound = RowLog(folder / "robot" / "rows", SPEC), 0
     while (row := log.read(sound)) is not None:
         assert np.abs(row["action"]).max() <= 1
         sound += 1
-    assert sound >= 75
+    assert sound >= 150
     assert set(examine(folder)) <= set(CHECKS)  # without episodes of its own
     moved = subprocess.run(
         [sys.executable, "-m", "hybrid_rl.robot", f"run={folder}", "seconds=1"],
