@@ -6,7 +6,9 @@ have them, too.
 
 import gc
 import os
+import pickle
 from contextlib import suppress
+from dataclasses import replace
 from functools import cache, partial
 from importlib.metadata import version
 from pathlib import Path
@@ -130,9 +132,9 @@ def few_contexts():
 
 @pytest.fixture(scope="session", autouse=True)
 def parsed_once():
-    """YAML of a text that was read before is not parsed again: 80 files for each composition."""
+    """YAML and references that were read before are not parsed again."""
     import yaml
-    from omegaconf import OmegaConf
+    from omegaconf import OmegaConf, base
     from omegaconf._utils import get_yaml_loader
 
     parsed, load = cache(partial(yaml.load, Loader=get_yaml_loader())), OmegaConf.load
@@ -151,6 +153,7 @@ def parsed_once():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(OmegaConf, "load", staticmethod(remembered))
+        patch.setattr(base, "parse", cache(base.parse))
         yield
 
 
@@ -185,6 +188,44 @@ def composed_once():
         patch.setattr(Hydra, "get_mode", mode_of)
         patch.setattr(defaults, "_create_interpolation_map", choices_of)
         patch.setattr(InputDefault, "_resolve_interpolation_impl", resolved)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def merged_once():
+    """Hydra merges the files of equal choices one time, and puts the values into a copy.
+
+    Files of this repository do not change meanwhile; of all others the key has the texts.
+    """
+    from hydra._internal import config_loader_impl as loader
+    from hydra._internal.defaults_list import Overrides
+
+    Loader, lists, merged = loader.ConfigLoaderImpl, {}, {}  # the last by the id of a list
+    make, merge = loader.create_defaults_list, Loader._compose_config_from_defaults_list
+
+    def files(repo):
+        sources = repo.get_sources()
+        folders = [Path(each.path) for each in sources if each.scheme() == "file"]
+        others = [each for each in folders if not each.is_relative_to(Path(__file__).parent)]
+        found = sorted(file for folder in others for file in folder.rglob("*.yaml"))
+        return [each.path for each in sources], [(file, file.read_bytes()) for file in found]
+
+    def listed(repo, config_name, overrides_list, **options):
+        values = Overrides(repo=repo, overrides_list=overrides_list).config_overrides
+        chosen = [each for each in overrides_list if each not in values]
+        key = str((config_name, [each.input_line for each in chosen], options, files(repo)))
+        if key not in lists:
+            lists[key] = make(repo, config_name, chosen, **options)
+        return replace(lists[key], config_overrides=values)
+
+    def copied(self, defaults, repo):
+        if id(defaults) not in merged:
+            merged[id(defaults)] = pickle.dumps(merge(self, defaults, repo))
+        return pickle.loads(merged[id(defaults)])
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(loader, "create_defaults_list", listed)
+        patch.setattr(Loader, "_compose_config_from_defaults_list", copied)
         yield
 
 

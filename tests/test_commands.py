@@ -251,10 +251,10 @@ def test_python_does_what_the_commands_do(tmp_path):
 @pytest.mark.parametrize(("given", "threads"), [({}, max(8, cores())), ({"NPROC": "3"}, 3)])
 def test_mjx_has_threads_enough_not_to_wait_for_itself(given, threads) -> None:
     code = (
-        "import jax; from pathlib import Path\n"
-        "from hybrid_rl import config; from hybrid_rl.run.machine.jax_settings import prepare\n"
-        "given = config.load(['physics=mjx', 'compile_cache=null'])\n"
-        "prepare(given); config.build(given); jax.devices()\n"
+        "import jax; from pathlib import Path; from types import SimpleNamespace\n"
+        "from hybrid_rl.run.machine.jax_settings import prepare\n"
+        "prepare(SimpleNamespace(physics='mjx', precision='float32', compile_cache=None))\n"
+        "jax.devices()\n"
         "names = [path.read_text() for path in Path('/proc/self/task').glob('*/comm')]\n"
         "print(sum('XLAEigen' in name for name in names))"
     )

@@ -5,13 +5,32 @@ import time
 import jax
 import numpy as np
 import pytest
+from programs import kept, shared
 
 import hybrid_rl
 from hybrid_rl import OnlineLearner
 from hybrid_rl.errors import DivergenceError, UsageError
+from hybrid_rl.training.robot_loop import RobotLoop
 
 METHOD = ["algo=sac", "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4"]
 METHOD += ["random_steps=0", "total_steps=100"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def programs():
+    """Learners of equal agents share what observes and what learns."""
+    halves = RobotLoop.halves
+
+    def remembered(self, state):
+        def made():
+            return halves(self, state), self.rows
+
+        found, self.rows = kept(made, "halves", self.agent, jax.config.jax_debug_nans)
+        return found
+
+    with shared(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(RobotLoop, "halves", remembered)
+        yield
 
 
 def made(learn="inline", *more):

@@ -93,7 +93,7 @@ def trained(tmp_path_factory):
     """A small run without a constraint."""
     folder = tmp_path_factory.mktemp("trained") / "run"
     method = ["algo=hybrid_stochastic", "learning=replay"]
-    run(folder, *method, "episode.steps=20", "total_steps=300")
+    run(folder, *method, "episode.steps=20", "total_steps=300", "eval_modes=[policy]")
     return folder
 
 

@@ -7,7 +7,6 @@ import pytest
 from worlds import BROKEN, LIFTED, OTHER, TOUCHING, make, reference, rollout
 
 from hybrid_rl.envs.hopper import Hopper
-from hybrid_rl.envs.mujoco import mjx_warp
 from hybrid_rl.envs.mujoco.physics import Physics
 
 pytestmark = pytest.mark.turns(2)
@@ -57,8 +56,16 @@ def test_nan_stays_in_its_lane(env):
     np.testing.assert_array_equal(obs[TOUCHING], obs[OTHER])
 
 
+@pytest.fixture(scope="module")
+def mjx_warp():
+    """The module: to import it takes 2 s, in every process that collects tests."""
+    from hybrid_rl.envs.mujoco import mjx_warp
+
+    return mjx_warp
+
+
 @pytest.fixture
-def small_lists(monkeypatch):
+def small_lists(mjx_warp, monkeypatch):
     """Lists of two constraint rows."""
     monkeypatch.setattr(mjx_warp, "capacities", lambda asset: (11, 2))
     mjx_warp.template.cache_clear()
@@ -66,7 +73,7 @@ def small_lists(monkeypatch):
     mjx_warp.template.cache_clear()
 
 
-def test_an_overflow_gives_nan(env, small_lists):
+def test_an_overflow_gives_nan(env, mjx_warp, small_lists):
     """MuJoCo Warp itself would drop contacts and continue."""
     state = env.reset(jax.random.key(0))
     fields = {
@@ -88,5 +95,5 @@ def test_an_overflow_gives_nan(env, small_lists):
         ("humanoid.xml", 138, 242),  # 12 capsules, 5 spheres on a floor, 109 pairs, 17 limits
     ],
 )
-def test_capacities(asset, contacts, rows):
+def test_capacities(mjx_warp, asset, contacts, rows):
     assert mjx_warp.capacities(asset) == (contacts, rows)

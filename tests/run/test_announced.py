@@ -45,10 +45,10 @@ def test_after_a_fault_of_the_world_it_says_how_to_go_on(
 
 
 def test_a_run_says_what_to_expect(tmp_path, capsys):
-    run(tmp_path / "a", "algo=sac", "total_steps=40", "random_steps=50")
-    line = "all 40 decisions are random, random_steps=50: set it lower, or total_steps higher"
+    run(tmp_path / "a", "algo=sac", "total_steps=20", "random_steps=20", "replay.capacity=20")
+    line = "all 20 decisions are random, random_steps=20: set it lower, or total_steps higher"
     assert line in capsys.readouterr().out
-    run(tmp_path / "c", "algo=sac", "total_steps=40")
+    run(tmp_path / "c", "algo=sac", "total_steps=40", "replay.capacity=20")  # the same program
     assert "the first 20 of 40 decisions are random, random_steps=20" in capsys.readouterr().out
     result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
     printed = capsys.readouterr().out

@@ -75,11 +75,15 @@ def test_native_physics_goes_on_bit_for_bit(tmp_path):
     assert interrupt.line(1, done).startswith("    1  same  ")
 
 
-def test_a_difference_is_found(whole, halves, tmp_path):
-    assert interrupt.difference(halves[0], whole) == "checkpoint 300 and 600"
-    assert "at step 300" in interrupt.difference(halves[0], halves[1])
-    edited = tmp_path / "edited"
-    shutil.copytree(whole, edited)
+def test_a_difference_is_found(whole, tmp_path):
+    edited = shutil.copytree(whole, tmp_path / "edited")
+    newest, before = (edited / "checkpoints" / step for step in ("600", "500"))
+    shutil.rmtree(newest)
+    assert interrupt.difference(edited, whole) == "checkpoint 500 and 600"
+    before.rename(newest)  # what had been learned then
+    assert interrupt.difference(edited, whole).endswith(" at step 600")
+    shutil.rmtree(newest)
+    shutil.copytree(whole / "checkpoints" / "600", newest)
     rows = (whole / "metrics.jsonl").read_text().splitlines(keepends=True)
     (edited / "metrics.jsonl").write_text("".join(rows[:-1]))
     assert interrupt.difference(edited, whole) == f"{len(rows) - 1} and {len(rows)} rows"

@@ -26,11 +26,12 @@ def rows(folder):
     }
 
 
-def on_two_devices(*overrides):
-    """The command's output on a host with two devices."""
+def on_two_devices(*runs):
+    """The output of runs of these overrides, one after another on a host with two devices."""
     flags = os.environ["XLA_FLAGS"] + " --xla_force_host_platform_device_count=2"
+    code = f"import hybrid_rl\nfor each in {runs}: hybrid_rl.train(each)"
     done = subprocess.run(
-        [sys.executable, "-m", "hybrid_rl.train", *overrides],
+        [sys.executable, "-c", code],
         env=os.environ | {"XLA_FLAGS": flags},
         capture_output=True,
         text=True,
@@ -49,15 +50,17 @@ def single(tmp_path_factory):
 
 def test_learners_on_two_devices_equal_those_on_one(single, tmp_path):
     """And a run on one device continues on two."""
-    output = on_two_devices(*TINY, *SHORT, f"run_dir={tmp_path / 'two'}")
+    whole = [*TINY, *SHORT, f"run_dir={tmp_path / 'two'}"]
+    output = on_two_devices(whole, [f"resume={single}", "total_steps=300"])
     assert "devices only" not in output
-    wanted, got = rows(single), rows(tmp_path / "two")
+    longer, got = rows(single), rows(tmp_path / "two")
+    assert summary_of(single)["total_steps"] == 300
+    wanted = {key: value for key, value in longer.items() if key[0] <= 200}
+    assert len(longer) > len(wanted) > 0
     assert wanted.keys() == got.keys()
     assert len({seed for _, seed, _ in got}) == 2
     for key, value in wanted.items():
         np.testing.assert_allclose(got[key], value, rtol=1e-3, atol=1e-3, err_msg=str(key))
-    on_two_devices(f"resume={single}", "total_steps=300")
-    assert summary_of(single)["total_steps"] == 300
 
 
 def test_learners_that_do_not_divide_are_reported(tmp_path, monkeypatch, capsys):
