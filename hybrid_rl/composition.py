@@ -118,16 +118,29 @@ def explain(error: Exception) -> str:
     if isinstance(error, InterpolationKeyError):
         named = re.search(r"'([^']+)'", text)
         key = named[1] if named else "a key"
-        if key.startswith("env.") and error.parent_node is not None:
-            whole: Any = error.parent_node._get_root()
-            reads = f"which {whole.algo} reads ({error.full_key})"
-            return f"task={whole.task}: has no {key}, {reads}; choose another task"
+        if key.startswith("env.") and (line := _of_other_tasks(error, key)):
+            return line
         return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
     if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
         return f"{error.full_key}: refers to the part that it is in; give it another one"
     if word := overrides.PLAIN.search(f"{text} {cause}"):
         return f"{word[1]}: must be a group of keys; {overrides.SHOW}"
     return _sentences(f"{text}\n{cause or ''}")
+
+
+def _of_other_tasks(error: InterpolationKeyError, key: str) -> str:
+    """Which tasks have what a part of the method reads of the environment; "" if none has it."""
+    part: Any = error.parent_node
+    read, whole = (
+        set(re.findall(r"\$\{env\.(\w+)\}", str(OmegaConf.to_container(part)))),
+        part._get_root(),
+    )
+    each: dict[str, Any] = {name: OmegaConf.load(file("task", name)) for name in options("task")}
+    having = ", ".join(name for name, task in each.items() if read <= {*(task.get("env") or {})})
+    reader = f"{whole.algo} ({error.full_key})"
+    return (
+        having and f"task={whole.task}: has no {key}, which {reader} reads; choose one of {having}"
+    )
 
 
 def _absent(error: BaseException | None) -> str:

@@ -38,8 +38,8 @@ USAGE = [  # overrides of train, words of the line
     ),
     (
         "task=pendulum algo=localisation",
-        "task=pendulum: has no env.acceleration, which localisation reads "
-        "(free_body.acceleration); choose another task",
+        "task=pendulum: has no env.acceleration, which localisation (free_body.acceleration) "
+        "reads; choose one of contact_plane, point_mass, sawyer_probe, sprk",
     ),
     (
         "task=pendulum algo=mppi policy=tanh_gaussian proposal=policy",
