@@ -131,16 +131,12 @@ def explain(error: Exception) -> str:
 def _of_other_tasks(error: InterpolationKeyError, key: str) -> str:
     """Which tasks have what a part of the method reads of the environment; "" if none has it."""
     part: Any = error.parent_node
-    read, whole = (
-        set(re.findall(r"\$\{env\.(\w+)\}", str(OmegaConf.to_container(part)))),
-        part._get_root(),
-    )
+    whole, text = part._get_root(), str(OmegaConf.to_container(part))
+    read = {*re.findall(r"\$\{env\.(\w+)\}", text)}
     each: dict[str, Any] = {name: OmegaConf.load(file("task", name)) for name in options("task")}
     having = ", ".join(name for name, task in each.items() if read <= {*(task.get("env") or {})})
-    reader = f"{whole.algo} ({error.full_key})"
-    return (
-        having and f"task={whole.task}: has no {key}, which {reader} reads; choose one of {having}"
-    )
+    line = f"task={whole.task}: has no {key}, which {whole.algo} ({error.full_key}) reads"
+    return f"{line}; choose one of {having}" if having else ""
 
 
 def _absent(error: BaseException | None) -> str:
