@@ -63,7 +63,8 @@ def test_the_built_scripts_are_those_of_the_sources_and_small(site):
 def test_decisions_and_returns_are_those_of_python(page, name):
     policy = robots.read(name)
     controller, params = policy.learner(mode="policy")
-    obs, returns = jax.jit(episodes, static_argnums=(0, 1))(policy.episode, controller, params)
+    played = jax.jit(episodes, static_argnums=(0, 1))(policy.episode, controller, params)
+    obs, rewards, returns = played
     script = f"""(() => {{
         const world = new robots.World(robots.mujoco, ROBOTS[{name!r}]);
         const got = Array.from({{length: {EPISODES}}}, (_, i) => world.episode(i, {EXACT}));
@@ -72,12 +73,13 @@ def test_decisions_and_returns_are_those_of_python(page, name):
     got = page.run(script)
     seen = np.array([each["seen"] for each in got])  # [N, k + 1, o]
     np.testing.assert_allclose(seen, obs, atol=1e-3)
+    np.testing.assert_allclose([each["rewards"] for each in got], rewards, atol=1e-3)
     ours, theirs = np.array([each["total"] for each in got]), np.asarray(returns)
     assert iqm(ours) == pytest.approx(iqm(theirs), rel=0.05)
 
 
-def episodes(episode: Episode, controller, params) -> tuple[Array, Array]:
-    """Observations [N, EXACT + 1, o] of the first decisions of the page's episodes, returns [N]."""
+def episodes(episode: Episode, controller, params) -> tuple[Array, Array, Array]:
+    """Observations [N, EXACT + 1, o], rewards [N, EXACT] of the first decisions, returns [N]."""
 
     def one(key):
         first = episode.reset(key)
@@ -86,10 +88,11 @@ def episodes(episode: Episode, controller, params) -> tuple[Array, Array]:
             action, *_ = controller.act(params, (), state.obs, jax.random.key(0))
             after = episode.step(state, action)
             after = jax.tree.map(lambda a, b: jnp.where(state.done, a, b), state, after)
-            return after, after.obs
+            return after, (after.obs, after.reward)
 
-        last, obs = jax.lax.scan(decide, first, length=episode.steps)
-        return jnp.concatenate([first.obs[None], obs[:EXACT]]), last.info["return"]
+        last, (obs, rewards) = jax.lax.scan(decide, first, length=episode.steps)
+        obs = jnp.concatenate([first.obs[None], obs[:EXACT]])
+        return obs, rewards[:EXACT], last.info["return"]
 
     return jax.vmap(one)(robots.keys()[:EPISODES])
 
