@@ -10,6 +10,7 @@ import pytest
 from jax import Array
 
 from hybrid_rl.analysis.curves import iqm
+from hybrid_rl.envs.mujoco.physics import Physics
 from hybrid_rl.training.episode import Episode
 from scripts.browser import __main__ as built
 from scripts.browser import robots
@@ -153,3 +154,18 @@ def test_a_function_becomes_statements():
     assert program.lines[-1] == f"const {out} = t4 + t5;"
     with pytest.raises(ValueError, match="sort: has no equivalent"):
         program.function(jnp.sort, ("x",), (np.zeros(3, np.float32),))
+
+
+def test_a_step_of_mujoco_names_the_fields_that_it_returns():
+    program = Program()
+    program.function(*_stepped(("subtree_com", "cfrc_ext")))
+    assert program.lines[-1].endswith('5, ["sensordata", "subtree_com", "cfrc_ext"]);')
+    with pytest.raises(ValueError, match=r"humanoid.xml: has sensors, which the page does not"):
+        program.function(*_stepped(()))  # those of accelerations would be of the last step
+
+
+def _stepped(reads: tuple[str, ...]):
+    """Arguments of `Program.function` for steps of the humanoid."""
+    physics = Physics("humanoid.xml", "native", reads=reads)
+    state = physics.reset(jnp.asarray(physics.model.qpos0, jnp.float32), jnp.zeros(23))
+    return lambda s, u: physics.step(s, u, 5), ("s", "u"), (state, state.ctrl)
