@@ -10,6 +10,7 @@ import pytest
 from jax import Array
 
 from hybrid_rl.analysis.curves import iqm
+from hybrid_rl.envs.mujoco.physics import Physics
 from hybrid_rl.training.episode import Episode
 from scripts.browser import __main__ as built
 from scripts.browser import robots
@@ -63,7 +64,8 @@ def test_the_built_scripts_are_those_of_the_sources_and_small(site):
 def test_decisions_and_returns_are_those_of_python(page, name):
     policy = robots.read(name)
     controller, params = policy.learner(mode="policy")
-    obs, returns = jax.jit(episodes, static_argnums=(0, 1))(policy.episode, controller, params)
+    played = jax.jit(episodes, static_argnums=(0, 1))(policy.episode, controller, params)
+    obs, rewards, returns = played
     script = f"""(() => {{
         const world = new robots.World(robots.mujoco, ROBOTS[{name!r}]);
         const got = Array.from({{length: {EPISODES}}}, (_, i) => world.episode(i, {EXACT}));
@@ -72,12 +74,13 @@ def test_decisions_and_returns_are_those_of_python(page, name):
     got = page.run(script)
     seen = np.array([each["seen"] for each in got])  # [N, k + 1, o]
     np.testing.assert_allclose(seen, obs, atol=1e-3)
+    np.testing.assert_allclose([each["rewards"] for each in got], rewards, atol=1e-3)
     ours, theirs = np.array([each["total"] for each in got]), np.asarray(returns)
     assert iqm(ours) == pytest.approx(iqm(theirs), rel=0.05)
 
 
-def episodes(episode: Episode, controller, params) -> tuple[Array, Array]:
-    """Observations [N, EXACT + 1, o] of the first decisions of the page's episodes, returns [N]."""
+def episodes(episode: Episode, controller, params) -> tuple[Array, Array, Array]:
+    """Observations [N, EXACT + 1, o], rewards [N, EXACT] of the first decisions, returns [N]."""
 
     def one(key):
         first = episode.reset(key)
@@ -86,10 +89,11 @@ def episodes(episode: Episode, controller, params) -> tuple[Array, Array]:
             action, *_ = controller.act(params, (), state.obs, jax.random.key(0))
             after = episode.step(state, action)
             after = jax.tree.map(lambda a, b: jnp.where(state.done, a, b), state, after)
-            return after, after.obs
+            return after, (after.obs, after.reward)
 
-        last, obs = jax.lax.scan(decide, first, length=episode.steps)
-        return jnp.concatenate([first.obs[None], obs[:EXACT]]), last.info["return"]
+        last, (obs, rewards) = jax.lax.scan(decide, first, length=episode.steps)
+        obs = jnp.concatenate([first.obs[None], obs[:EXACT]])
+        return obs, rewards[:EXACT], last.info["return"]
 
     return jax.vmap(one)(robots.keys()[:EPISODES])
 
@@ -150,3 +154,18 @@ def test_a_function_becomes_statements():
     assert program.lines[-1] == f"const {out} = t4 + t5;"
     with pytest.raises(ValueError, match="sort: has no equivalent"):
         program.function(jnp.sort, ("x",), (np.zeros(3, np.float32),))
+
+
+def test_a_step_of_mujoco_names_the_fields_that_it_returns():
+    program = Program()
+    program.function(*_stepped(("subtree_com", "cfrc_ext")))
+    assert program.lines[-1].endswith('5, ["sensordata", "subtree_com", "cfrc_ext"]);')
+    with pytest.raises(ValueError, match=r"humanoid.xml: has sensors, which the page does not"):
+        program.function(*_stepped(()))  # those of accelerations would be of the last step
+
+
+def _stepped(reads: tuple[str, ...]):
+    """Arguments of `Program.function` for steps of the humanoid."""
+    physics = Physics("humanoid.xml", "native", reads=reads)
+    state = physics.reset(jnp.asarray(physics.model.qpos0, jnp.float32), jnp.zeros(23))
+    return lambda s, u: physics.step(s, u, 5), ("s", "u"), (state, state.ctrl)

@@ -159,15 +159,17 @@ class Call(NamedTuple):
 
     asset: str
     steps: int
-    plain: bool  # neither reads nor fields
+    reads: Names
+    fields: Names
 
 
 def call_of(name: str) -> Call | None:
     """The call of this name; None for others' calls."""
     if not name.startswith(NAME):
         return None
-    asset, _, n, reads, fields = name.removeprefix(NAME).rsplit(":", 4)
-    return Call(asset, int(n), not reads + fields)
+    asset, _, n, *names = name.removeprefix(NAME).rsplit(":", 4)
+    reads, fields = (tuple(filter(None, each.split(","))) for each in names)
+    return Call(asset, int(n), reads, fields)
 
 
 def step(

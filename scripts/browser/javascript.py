@@ -7,9 +7,11 @@
 The function is traced, and each of its arrays becomes an array of JavaScript's expressions. What
 moves entries (slices, concatenations, ...) is done by JAX itself on the indices of these entries;
 what computes becomes a statement. MuJoCo's steps (`envs/mujoco/native.py`) become a call of
-`physics(x, n)`, with x = [qpos, qvel, act, warmstart, ctrl]. JavaScript computes in doubles.
+`physics(x, n, names)`, with x = [qpos, qvel, act, warmstart, ctrl] and the names of the fields of
+MjData, if any, that follow the state. JavaScript computes in doubles.
 """
 
+import json
 from collections.abc import Callable, Sequence
 from functools import reduce
 from typing import Any
@@ -18,7 +20,7 @@ import jax
 import numpy as np
 from jax.extend import core
 
-from hybrid_rl.envs.mujoco import native
+from hybrid_rl.envs.mujoco import mjcf, native
 
 MOVES = {
     *(
@@ -153,12 +155,19 @@ class Program:
         return self._entrywise(form, [x], x.shape)
 
     def _physics(self, target: str, x: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-        """The state after MuJoCo's steps."""
+        """The state after MuJoCo's steps, and the fields of MjData that the call reads."""
         called = native.call_of(target)
-        if called is None or not called.plain:
-            raise ValueError(f"{target}: is no plain step of MuJoCo")
+        if called is None or called.fields:
+            raise ValueError(f"{target}: is no step of a model of MuJoCo that stays as it is")
+        names = list(called.reads)
+        if mjcf.load(called.asset).nsensordata:
+            if not names:
+                raise ValueError(f"{called.asset}: has sensors, which the page does not read")
+            names = ["sensordata", *names]
         self.assets[called.asset] = None
-        y = self._statement(f"physics([{', '.join(_text(x))}], {called.steps})")
+        inputs = [f"[{', '.join(_text(x))}]", str(called.steps)]
+        inputs += [json.dumps(names)] if names else []
+        y = self._statement(f"physics({', '.join(inputs)})")
         return _symbols([f"{y}[{i}]" for i in range(shape[0])], shape)
 
     def _statement(self, expression: str) -> str:

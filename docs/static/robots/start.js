@@ -8,7 +8,7 @@
   button.type = "button";
   button.className = "robots-start";
   button.textContent = "▶ Run trained robots here";
-  button.title = "5 MB; they run in this page, without a server";
+  button.title = "6 MB; they run in this page, without a server";
   root.append(button);
   button.addEventListener("click", async () => {
     button.disabled = true;

@@ -53,8 +53,9 @@ export class World {
     Object.assign(this, { s, o, reward: 0, total: 0, ended: false, decisions: 0 });
   }
 
-  // The state after n steps from x = [qpos, qvel, act, warmstart, ctrl], in single precision.
-  physics = (x, n) => {
+  // The state after n steps from x = [qpos, qvel, act, warmstart, ctrl], and fields of mjData that
+  // MuJoCo then computes at this state; in single precision.
+  physics = (x, n, fields = []) => {
     const { model, data, mujoco } = this;
     const { nq, nv, na, nu } = model;
     let at = 0;
@@ -66,8 +67,9 @@ export class World {
     data.xfrc_applied.fill(0);
     if (this.push) this.pushed(this.push);
     for (let i = 0; i < n; i++) mujoco.mj_step(model, data);
-    const { qpos, qvel, act, qacc_warmstart } = data;
-    return [...qpos, ...qvel, ...act, ...qacc_warmstart].map(Math.fround);
+    if (fields.length) mujoco.mj_forward(model, data);
+    const after = ["qpos", "qvel", "act", "qacc_warmstart", ...fields];
+    return after.flatMap(name => [...data[name]]).map(Math.fround);
   };
 
   // Apply a force [N] at a point of a body, in world coordinates.
@@ -97,15 +99,17 @@ export class World {
     return this.definition.pose(this.s);
   }
 
-  // Observations of the first decisions, and the return, of an episode without a picture.
+  // Observations and rewards of the first decisions, and the return, of an episode not drawn.
   episode(start, kept = 0) {
     this.reset(start);
-    const seen = [this.o];
+    const seen = [this.o], rewards = [];
     while (!this.ended && this.decisions < this.definition.limit) {
       this.decide();
-      if (this.decisions <= kept) seen.push(this.o);
+      if (this.decisions > kept) continue;
+      seen.push(this.o);
+      rewards.push(this.reward);
     }
-    return { seen, total: this.total, decisions: this.decisions };
+    return { seen, rewards, total: this.total, decisions: this.decisions };
   }
 
   free() {
