@@ -70,11 +70,7 @@ TREE = """
 PAGES
 ```
 """
-ROBOTS = """
-```{container} robots
-![A trained ant walks](docs/ant_learned.gif)
-```
-"""  # before README's first picture; docs/static/robots/start.js lets robots run there
+ROBOTS = r"```{container} robots\n\g<0>\n```"  # README's first picture, where robots run on a click
 NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
 PAGES = {
     "Start": [
@@ -101,8 +97,8 @@ def copy() -> None:
     for name in AT_TOP:
         shutil.copy(ROOT / name, SOURCE / name)
     trees = "".join(tree(caption, pages) for caption, pages in PAGES.items())
-    text, *pictures = (ROOT / "README.md").read_text(encoding="utf-8").partition("\n![")
-    write("index.md", f"{text}{ROBOTS}{''.join(pictures)}{trees}")
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    write("index.md", re.sub(r"(?m)^!\[.*\)$", ROBOTS, text, count=1) + trees)
     if repository := os.environ.get("GITHUB_REPOSITORY"):
         for name in NOTEBOOKS:
             on_binder(f"{name}.ipynb", repository)
