@@ -116,5 +116,7 @@ def test_runs_become_two_figures(
     numbers = json.loads((tmp_path / "information.json").read_text())
     assert len(numbers["rows"]["minie, spacing 3"]["reference"]["iqm"]) == 3
     capfd.readouterr()
-    assert draw("view=backflips", "runs=.") == 2
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "metrics.jsonl").write_text('{"step": 1, "seed": 0, "wall_s": 1}\n')
+    assert draw("view=backflips", "runs=other") == 2
     assert "needs a run of experiment=thesis/fig_6_9" in only_line(capfd)

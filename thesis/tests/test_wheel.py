@@ -70,7 +70,7 @@ def test_the_wheel_holds_the_package_and_its_entry_for_hydra(wheel):
     sources = [*ROOT.glob("envs/**/*.*"), *ROOT.glob("conf/**/*.yaml"), RECORDED]
     for source in sources:
         assert "__pycache__" in source.parts or f"hybrid_rl/{source.relative_to(ROOT)}" in names
-    assert wheel.stat().st_size < 5e6  # [bytes], most of them in policies and demonstrations/
+    assert wheel.stat().st_size < 6e6  # [bytes], most of them in policies and demonstrations/
 
 
 def dist_of(wheel):
