@@ -54,20 +54,26 @@ def check_members(agent: Any) -> None:
         ValueError: for a part of another kind, or two learners of one field of `Params`.
     """
     for name, (has, must) in OF_AGENT.items():
-        part = getattr(agent, name)
-        mine = name == "controller" and of_user(part)
-        if not mine and (isinstance(part, type) or not hasattr(part, has)):
-            kind = part if isinstance(part, type) else type(part)
-            raise ValueError(f"Agent: {name} is {kind.__name__}; give {must}")
+        if not (name == "controller" and of_user(agent.controller)):
+            _check_kind(name, getattr(agent, name), has, must)
     _check_members(agent.controller, "controller")
     owners: dict[str, str] = {}
     for name, learner in agent.learners.items():
+        if not of_user(learner):
+            _check_kind(f"learners[{name!r}]", learner, "owns", "a learner, such as SAC")
         _check_members(learner, "learner")
         for field in learner.owns:
             if field in owners:
                 both = f"{owners[field]} and {name}"
                 raise ValueError(f"learners: {both} both learn params.{field}; keep one")
             owners[field] = name
+
+
+def _check_kind(name: str, part: Any, has: str, must: str) -> None:
+    """Raise ValueError for a class, or for a part that lacks what its kind has."""
+    if isinstance(part, type) or not hasattr(part, has):
+        kind = part if isinstance(part, type) else type(part)
+        raise ValueError(f"Agent: {name} is {kind.__name__}; give {must}")
 
 
 def _check_members(part: Any, role: str) -> None:

@@ -186,6 +186,7 @@ def test_a_model_without_a_learner_is_named_in_a_planner_of_the_users_too():
         ("controller", RewardNetwork((4,)), "controller is RewardNetwork; give a controller, such"),
         ("controller", SamplingController, "controller is SamplingController; give a controller"),
         ("learners", [Fit()], "learners is list; give a dict, such as"),
+        ("learners", {"a": RewardNetwork((4,))}, "learners..a.. is RewardNetwork; give a"),
         ("replay", None, r"replay is NoneType; give Replay\(\)"),
     ],
 )
