@@ -94,8 +94,7 @@ def evaluate(
     Raises:
         UsageError: for a mode that the method does not have.
     """
-    trained.learner(mode=mode, world=True)  # refuses a mode that the run lacks
-    episode, controller = trained.episode, trained.controllers[mode]
+    episode, (controller, _) = trained.episode, trained.learner(mode=mode, world=True)
     keys = jnp.stack([evaluation_keys(seed, episodes) for seed in trained.seeds])
     if isinstance(episode.env, External):
         decisions = count()

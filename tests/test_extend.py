@@ -192,7 +192,7 @@ def test_each_episode_of_a_crane_can_have_another_body(conf, tmp_path):
 
 
 def test_a_planner_is_one_file(conf, tmp_path):
-    """It trains by the files of the page, acts alone on the simulator, and logs its metric."""
+    """It trains by the files of the page and logs its metric; on the simulator it is traced."""
     code, fields, method = blocks("A planner of your own", HOWTO)
     (tmp_path / "refit.py").write_text(code)
     (conf / "controller").mkdir()

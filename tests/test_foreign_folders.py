@@ -121,8 +121,19 @@ def test_a_damaged_row_is_named_and_a_resumed_run_goes_on_without_it(folder, bad
 
 @pytest.mark.parametrize(
     "text",
-    ["[" * 100_000, '{"a":' * 100_000, "[1]"],
-    ids=range(3),
+    [
+        "[" * 100_000,
+        '{"a":' * 100_000,
+        "[1]",
+        '{"final_eval": 3}',
+        '{"seeds": "0"}',
+        '{"wall_s": NaN}',
+        '{"total_steps": "many"}',
+        '{"versions": null}',
+        '{"git_commit": 5}',
+        '{"diverged": [5]}',
+    ],
+    ids=range(10),
 )
 def test_a_damaged_summary_is_one_line(folder, capfd, text):
     (folder / "summary.json").write_text(text)

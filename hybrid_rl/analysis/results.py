@@ -18,8 +18,8 @@ import yaml
 
 from hybrid_rl.checks import SECTIONS
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run.files.reading import Loader, json_file, lines, yaml_file
-from hybrid_rl.run.logs.records import COORDINATES, WORD, flatten_keys, row_of
+from hybrid_rl.run.files.reading import Loader, lines, yaml_file
+from hybrid_rl.run.logs.records import COORDINATES, WORD, flatten_keys, row_of, summary_of
 
 NOT_METRICS = (*COORDINATES, WORD)  # of a row; every other name is a metric
 # Keys in which runs of the same settings may differ: which learners they hold, how long they run,
@@ -85,7 +85,7 @@ class RunFolder:
     def summary(self) -> dict[str, Any]:
         """What summary.json holds; {} before there is one."""
         file = self.path / "summary.json"
-        return json_file(file) if file.exists() else {}
+        return summary_of(file) if file.exists() else {}
 
     def word(self, key: str) -> str:
         """The value at `key` as a word, of a part its class; "null" for null.

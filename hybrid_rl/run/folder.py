@@ -138,6 +138,7 @@ def read(folder: Path, key: str) -> DictConfig:
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
         raise UsageError(f"{path}: lacks {', '.join(missing)}{of_another_commit(folder)}")
+    _check_seeds(folder, config)
     return config
 
 
@@ -172,6 +173,20 @@ def _of_summary(folder: Path, *keys: str) -> str | None:
     except (ValueError, KeyError, TypeError):
         return None
     return None if value is None else str(value)
+
+
+def _check_seeds(folder: Path, config: DictConfig) -> None:
+    """Raise UsageError if the newest checkpoint holds learners of other seeds."""
+    saved = checkpoint.meta(folder / "checkpoints").get("seeds")
+    first, number = config.seed, config.num_seeds
+    if saved is None or not (isinstance(first, int) and isinstance(number, int)):
+        return
+    if len(saved) != number or saved != list(range(first, first + number)):
+        listed = ", ".join(map(str, saved))
+        raise UsageError(
+            f"{folder / 'config.yaml'}: seed={first} num_seeds={number}: its checkpoint holds the "
+            f"learners of seed {listed}; put back seed={saved[0]} num_seeds={len(saved)}"
+        )
 
 
 @contextmanager

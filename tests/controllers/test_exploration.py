@@ -160,7 +160,7 @@ def test_the_lyapunov_function_decreases_under_the_regulator() -> None:
 
 
 def test_the_guard_keeps_the_state_in_its_level_set() -> None:
-    """There V stays below the level and corrections still act; in one without end V exceeds it."""
+    """V stays below the level while corrections still act; with an infinite level V exceeds it."""
     level, near = 100.0, 0.2 * START
     free = replace(KLE3, model=Exact(WORLD), gain=10.0, horizon=3)
     guarded = GuardedController(free, free.model, PI)

@@ -74,6 +74,18 @@ def without_physics(path):
     return "config.yaml: lacks physics"
 
 
+def other_seeds(path):
+    path.write_text(path.read_text().replace("num_seeds: 2", "num_seeds: 7"))
+    return (
+        "config.yaml: seed=0 num_seeds=7: its checkpoint holds the learners of seed 0, 1; put back"
+    )
+
+
+def edited_seed(path):
+    path.write_text(path.read_text().replace("\nseed: 0\n", "\nseed: 1\n"))
+    return "config.yaml: seed=1 num_seeds=2: its checkpoint holds the learners of seed 0, 1; put"
+
+
 def other_value(path):
     path.write_text(path.read_text().replace("num_envs: 1", "num_envs: 0"))
     return "config.yaml: num_envs=0: must be a whole number, 1 or more"
@@ -89,8 +101,8 @@ def other_module(path):
     return "config.yaml: env._target_=kettle.Pendulum: is no part of hybrid_rl; put its folder on"
 
 
-HARM = [broken_yaml, random_bytes, empty, a_word, without_env, without_physics]
-HARM += [other_value, other_network, other_module]
+HARM = [broken_yaml, random_bytes, empty, a_word, without_env, without_physics, other_seeds]
+HARM += [edited_seed, other_value, other_network, other_module]
 OF_RESUME = {other_network: "hidden was [16] and is [8]"}  # where its line is another one
 
 

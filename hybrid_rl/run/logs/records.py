@@ -1,16 +1,22 @@
-"""The rows of metrics.jsonl as they are read back, and the values of a run by their full keys."""
+"""What the records of a run hold, as they are read back: rows of metrics.jsonl, and summary.json.
+
+A line or a value that training does not write is damage, and is found here.
+"""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from types import NoneType
 from typing import Any
 
 import numpy as np
 
-from hybrid_rl.run.files.reading import from_json
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run.files.reading import from_json, json_file
 
 Row = dict[str, Any]
 COORDINATES = ("step", "seed", "wall_s")  # of a row; every other name but WORD is a metric
+END = ("seed", "step", "quantity")
 WORD = "diverged"  # of a row: the only value that is no number
 LARGE = 2**63  # no whole number of a row is as large
 
@@ -35,8 +41,44 @@ def row_of(line: bytes) -> Row | None:
     return row if sound else None
 
 
+def summary_of(file: Path) -> dict[str, Any]:
+    """What summary.json holds.
+
+    Raises:
+        UsageError: if it is damaged.
+    """
+    values = json_file(file)
+    if wrong := [key for key in SUMMARY if key in values and not SUMMARY[key](values[key])]:
+        raise UsageError(f"{file}: {wrong[0]} is not what training writes")
+    return values
+
+
 def _number(value: Any) -> bool:
     return type(value) in (int, float) and abs(value) < LARGE and math.isfinite(value)
+
+
+def _maybe(value: Any) -> bool:
+    return value is None or _number(value)
+
+
+def _all(each: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    """Whether a value is null, or a list of what `each` accepts."""
+    return lambda value: value is None or (isinstance(value, list) and all(map(each, value)))
+
+
+def _end(value: Any) -> bool:
+    """Whether a value says where a learner diverged."""
+    return isinstance(value, dict) and _number(value.get("step")) and {*END} <= {*value}
+
+
+SUMMARY = {  # key -> whether a value is one that training writes
+    **dict.fromkeys(("total_steps", "wall_s", "env_steps_per_s"), _maybe),
+    **dict.fromkeys(("final_eval", "final_return"), _all(_maybe)),
+    "seeds": lambda value: isinstance(value, list) and all(type(each) is int for each in value),
+    "diverged": _all(_end),
+    "versions": lambda value: isinstance(value, dict),
+    "git_commit": lambda value: isinstance(value, (str, NoneType)),
+}
 
 
 def changes(then: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
