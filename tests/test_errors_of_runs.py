@@ -46,6 +46,7 @@ OTHERS = [  # command and its arguments, exit code, words of the line
         "env.gravity=1: the env of task pendulum has no keys",
     ),
     ("evaluate policy=cartpole env.reward=up", 2, "env.reward=up: choose one of cos"),
+    ("evaluate run={trained} episodes=100000000000", 2, "00: their worlds would take "),
     ("evaluate run={trained} episodes=2.5", 2, f"episodes=2.5: {COUNT}"),
     ("evaluate run={trained} episode=3", 2, "episode=3: unknown argument; give key=value with run"),
     ("evaluate {trained}", 2, "trained: write run=/"),

@@ -137,9 +137,12 @@ def _resume(
 
 
 def _fits(runs: Sequence[Run]) -> str:
-    """A line about the replay memory; raise UsageError if it does not fit."""
+    """A line about the replay memory; raise UsageError if it, or the evaluations, do not fit."""
     refuse_x64()
-    return memory.replay(runs[0], len(runs) * len(runs[0].seeds))
+    run, learners = runs[0], len(runs) * len(runs[0].seeds)
+    number, modes = run.config.eval_episodes, run.controllers.values()
+    memory.episodes("eval_episodes", number, learners, run.agent.episode, modes)
+    return memory.replay(run, learners)
 
 
 def _run(

@@ -1,13 +1,21 @@
 """The memory that a run needs, and that the machine has."""
 
 import os
+from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import jax
 
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
+from hybrid_rl.protocols import Controller
+from hybrid_rl.run.checkpoints.checkpoint import nbytes
+from hybrid_rl.training import rollout
+from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
+
+MANY = 10_000  # episodes; fewer always fit
 
 
 def available() -> float:
@@ -26,6 +34,26 @@ def check(loop: Loop, program: Any) -> None:
         raise MemoryError(
             f"num_seeds={learners}: the program would take {need / 1e9:,.1f} GB of a device "
             f"and there are {have / 1e9:,.1f} GB; {hint}"
+        )
+
+
+def episodes(
+    key: str, number: int, seeds: int, episode: Episode, controllers: Iterable[Controller]
+) -> None:
+    """Raise UsageError if the worlds of `number` episodes of each seed, side by side, do not fit.
+
+    key: the argument that gave the number.
+    """
+    if number * seeds < MANY:
+        return  # tracing the reset of a robot takes a second
+    one = jax.eval_shape(lambda: jax.random.split(jax.random.key(0), 1))
+    begun = (jax.eval_shape(partial(rollout.begin, episode, each), one) for each in controllers)
+    sizes = map(nbytes, begun)
+    need, have = max(sizes, default=0) * number * seeds, available()
+    if need > have:
+        raise UsageError(
+            f"{key}={number}: their worlds would take {need / 1e9:,.1f} GB and there are "
+            f"{have / 1e9:,.1f} GB"
         )
 
 
