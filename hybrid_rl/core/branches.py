@@ -14,6 +14,7 @@ from flax import struct
 from jax import Array
 
 from hybrid_rl.core.batching import where
+from hybrid_rl.core.statistics import FLOOR
 from hybrid_rl.protocols import Policy, Reward, Trainable
 from hybrid_rl.types import Batch, Params
 
@@ -59,12 +60,19 @@ def begin(size: int, memory: int, n: int, m: int, steps: int) -> Branches:
 
 
 def extended(
-    branches: Branches, step: Transitions, start: Array, m: int, steps: int, key: Array
+    branches: Branches,
+    step: Transitions,
+    start: Array,
+    m: int,
+    steps: int,
+    key: Array,
+    margin: float | None = None,
 ) -> Branches:
     """The branches one decision later; those to start begin at `start` [B, n].
 
     At the first update they start at different ages, so that later a part of them restarts at each
-    update. The key is consumed.
+    update. With `margin` a branch ends, too, where an entry of its state is more than `margin`
+    times the range of this entry in `start` below or above that range. The key is consumed.
     """
     acting, moving, choosing, aging = jax.random.split(key, 4)
     x, age = start, jnp.zeros_like(branches.age)
@@ -78,12 +86,27 @@ def extended(
     flags = jnp.stack([made.reward, made.terminated], -1)
     rows = jnp.concatenate([made.obs, made.action, flags, made.next_obs], -1)
     slot = branches.count % len(branches.rows)
+    ended = made.terminated > 0.5
+    if margin is not None:
+        ended |= _far(made.next_obs, start, margin)
     return Branches(
         made.next_obs,
-        jnp.where(made.terminated > 0.5, steps, age + 1),
+        jnp.where(ended, steps, age + 1),
         jax.lax.dynamic_update_index_in_dim(branches.rows, rows, slot, 0),
         branches.count + 1,
     )
+
+
+def _far(x: Array, real: Array, margin: float) -> Array:
+    """Whether states x [B, n] leave the range of `real` [b, n], widened on both sides: [B].
+
+    Entries that are constant in `real`, to float32's precision, do not count.
+    """
+    low, high = real.min(0, keepdims=True), real.max(0, keepdims=True)
+    wide = high - low
+    varies = wide > FLOOR * jnp.maximum(jnp.abs(low), jnp.abs(high))
+    outside = (x < low - margin * wide) | (x > high + margin * wide)
+    return (outside & varies).any(-1)
 
 
 def sample_kept(branches: Branches, m: int, key: Array) -> Batch:

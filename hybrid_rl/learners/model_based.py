@@ -41,7 +41,8 @@ class ModelBased:
     """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model.
 
     Raises:
-        ValueError: for more value steps than steps, or a memory that batches do not fill.
+        ValueError: for more value steps than steps, a memory that batches do not fill, or a margin
+            without kept branches.
     """
 
     policy: LearnedPolicy
@@ -51,6 +52,7 @@ class ModelBased:
     steps: Natural = 5  # H; 0: the policy maximises the critic at the start states, as in SAC
     value_steps: int | None = None  # of the H decisions, at whose states the critic learns; None: H
     branch_steps: Natural = 20  # longest branch [decisions]; 0: starts at the states of the batch
+    branch_margin: Positive | None = None  # ranges beyond real states where one ends; None: none
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     policy_learning_rate: Positive = 3e-4
     critic_learning_rate: Positive = 3e-4
@@ -77,6 +79,9 @@ class ModelBased:
         if self.branch_memory % self.batch_size:
             words = f"must be 0 or a multiple of the batch, {self.batch_size}"
             raise FieldError(self, "branch_memory", words)
+        if self.branch_margin is not None and not (self.branch_steps and self.branch_memory):
+            words = "needs kept branches: branch_steps and branch_memory above 0"
+            raise FieldError(self, "branch_margin", words)
 
     @property
     def _value_steps(self) -> int:
@@ -157,7 +162,8 @@ class ModelBased:
         if kept is None:
             return None, branches.sample_fresh(step, batch.obs, m, self.branch_steps, drawing), key
         going_on, recalling = jax.random.split(drawing)
-        kept = branches.extended(kept, step, batch.obs, m, self.branch_steps, going_on)
+        going = kept, step, batch.obs, m, self.branch_steps, going_on
+        kept = branches.extended(*going, self.branch_margin)
         return kept, branches.sample_kept(kept, m, recalling), key
 
     def imagine(self, params: Params, batch: Batch, key: Array) -> Imagined:

@@ -15,13 +15,16 @@ B = 10
 def counting(x: Array, for_policy: Array, for_model: Array, key: Array) -> Batch:
     """x' = x + 1; action -x, reward x; the episode ends above 2.5."""
     ended = jnp.where(x[:, 0] > 2.5, 1.0, 0.0)
-    return Batch(x, -x, x[:, 0], ended, 0 * ended, x + 1)
+    return Batch(x, -x[:, :1], x[:, 0], ended, 0 * ended, x + 1)
 
 
-def recalled(start: float, steps: int, updates: int) -> Batch:
+def recalled(start: Array | float, steps: int, updates: int, margin: float | None = None) -> Batch:
     """Transitions after some updates, with eight in memory for each branch."""
-    kept, first = branches.begin(B, 8 * B, 1, 1, steps), jnp.full((B, 1), start)
-    extend = jax.jit(lambda kept, key: branches.extended(kept, counting, first, 1, steps, key))
+    first = jnp.broadcast_to(start, (B, jnp.shape(start)[-1] if jnp.ndim(start) else 1))
+    kept = branches.begin(B, 8 * B, first.shape[1], 1, steps)
+    extend = jax.jit(
+        lambda kept, key: branches.extended(kept, counting, first, 1, steps, key, margin)
+    )
     for key in jax.random.split(jax.random.key(3), updates):
         kept = extend(kept, key)
     return branches.sample_kept(kept, 1, jax.random.key(4))
@@ -53,3 +56,12 @@ def test_forgotten_branches_start_again() -> None:
     kept = branches.extended(kept, counting, first - 20, 1, 4, jax.random.key(5))
     batch = branches.sample_kept(kept, 1, jax.random.key(4))
     np.testing.assert_array_equal(batch.obs, -29)
+
+
+def test_a_branch_ends_outside_of_the_real_range() -> None:
+    """Starts from -9 to -8, margin 1.5: it ends above -6.5. A constant entry does not count."""
+    first = jnp.stack([jnp.linspace(-9, -8, B), jnp.full(B, 5.0)], -1)
+    assert recalled(first, 20, 30).obs[:, 0].max() > 0
+    near = recalled(first, 20, 30, margin=1.5)
+    assert -7.5 < near.obs[:, 0].max() <= -6.5
+    assert near.obs[:, 1].max() > 5

@@ -211,6 +211,7 @@ def test_the_critic_learns_the_imagined_returns(
         ({"steps": -1}, "steps=-1: must be a whole number"),
         ({"steps": 3, "value_steps": 4}, "value_steps=4: must be a whole number from 0 to steps=3"),
         ({"branch_memory": 300}, "branch_memory=300: must be 0 or a multiple of the batch, 256"),
+        ({"branch_memory": 0, "branch_margin": 1.0}, "branch_margin=1.0: needs kept branches"),
     ],
 )
 def test_bad_fields(given: dict, line: str) -> None:
