@@ -103,7 +103,7 @@ def test_a_key_or_a_part_is_for_the_methods_that_have_it(tmp_path, capfd, monkey
     assert "target=mixture: for job 1, 2 alone; the others have no such key" in out
 
 
-def test_a_sweep_may_be_imported_before_hydra_looks_for_its_plugins(tmp_path, monkeypatch):
+def test_a_sweep_may_be_imported_before_hydra_searches_for_plugins(tmp_path, monkeypatch):
     """Hydra then executes the modules of its own sweepers again: there are two of each class."""
     monkeypatch.setattr(train, "_job", lambda config: None)
     importlib.import_module("hybrid_rl.cli.sweep")
