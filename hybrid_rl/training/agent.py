@@ -93,7 +93,7 @@ class Agent:
         for part in self.learners.values():
             if (check := getattr(part, "check", None)) is not None:
                 check(longest)
-        check_fit([self.controller, *controllers], self)
+        check_fit([self.controller, *controllers, *self.learners.values()], self)
         jax.eval_shape(lambda: self.controller.init(self.spec))
 
     def starts(self) -> dict[str, int]:

@@ -1,4 +1,4 @@
-"""What the library's parts of controllers act by must have parameters, those that are learned."""
+"""What controllers and learners of the library use must have the parameters that are learned."""
 
 from collections.abc import Collection, Iterator
 from dataclasses import fields, is_dataclass
@@ -24,7 +24,7 @@ def check_owners(parts: Any, owned: Collection[str], spec: Spec, every: bool = F
     Raises:
         ValueError: for a policy, a model or the like that has parameters, which no learner gives.
     """
-    for owner, name, part in _acted_by(parts):
+    for owner, name, part in _used(parts):
         if name in owned or (of_user(owner) and not every):
             continue
         if _parameters(part, spec):
@@ -34,9 +34,9 @@ def check_owners(parts: Any, owned: Collection[str], spec: Spec, every: bool = F
 
 
 def check_fit(parts: Any, agent: Any) -> None:
-    """Check that what the library's parts of controllers act by has the learned parameters.
+    """Check that what the library's parts of controllers and learners use has such parameters.
 
-    parts: as in `check_owners`. agent: the Agent whose learners learn them.
+    parts: as in `check_owners`. agent: the Agent whose learners learn the parameters.
 
     Raises:
         ValueError: for a policy, a model or the like whose parameters have other shapes.
@@ -45,16 +45,16 @@ def check_fit(parts: Any, agent: Any) -> None:
     for learner in agent.learners.values():
         state = jax.eval_shape(partial(agent._first, learner), jax.random.key(0))
         learned |= jax.eval_shape(learner.params, state)
-        model = learner.model if "model" in learner.owns else model
+        model = getattr(learner, "model", None) if "model" in learner.owns else model
     spec = lifted_spec(model, agent.spec)
-    for owner, name, part in _acted_by(parts):
+    for owner, name, part in _used(parts):
         if name not in learned or of_user(owner) or of_user(part):
             continue
         needs, has = _parameters(part, spec), leaves(learned[name])
         for at in needs:
             if needs[at] != has.get(at):
                 differ = f"{needs[at]} in it and {has.get(at)} in the learner's"
-                line = f"{type(owner).__name__} acts by it, but {at} is {differ}"
+                line = f"{type(owner).__name__} uses it, but {at} is {differ}"
                 raise ValueError(f"{name}={type(part).__name__}: {line}; give both the same {name}")
 
 
@@ -63,11 +63,11 @@ def _parameters(part: Any, spec: Spec) -> dict[str, str]:
     return leaves(shapes(part, "init", lambda key: part.init(key, spec), jax.random.key(0)))
 
 
-def _acted_by(parts: Any) -> Iterator[tuple[Any, str, Any]]:
-    """(owner, field, part) of what `parts` act by, which may have parameters."""
+def _used(parts: Any) -> Iterator[tuple[Any, str, Any]]:
+    """(owner, field, part) of what `parts` use, which may have parameters."""
     if isinstance(parts, dict | list | tuple):
         for each in parts.values() if isinstance(parts, dict) else parts:
-            yield from _acted_by(each)
+            yield from _used(each)
     if not is_dataclass(parts) or isinstance(parts, type | SavedPolicy):
         return
     for name in (field.name for field in fields(parts)):
@@ -75,4 +75,4 @@ def _acted_by(parts: Any) -> Iterator[tuple[Any, str, Any]]:
         if name in OF_PARAMS and hasattr(part, "init"):
             yield parts, name, part
         else:
-            yield from _acted_by(part)
+            yield from _used(part)
