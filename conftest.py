@@ -26,6 +26,8 @@ if version("jaxlib").startswith("0.10."):  # later releases abort at unknown fla
         "--xla_cpu_use_fusion_emitters=false",
         "--xla_cpu_parallel_codegen_split_count=1",
     ]
+# What fixtures replace inside of Hydra and OmegaConf, to save time, is as in these releases.
+KNOWN = version("hydra-core").startswith("1.3.") and version("omegaconf").startswith("2.3.")
 SETTINGS = {
     "JAX_PLATFORMS": "cpu",
     "JAX_NUMPY_RANK_PROMOTION": "raise",
@@ -105,7 +107,7 @@ def small_programs():
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="session", autouse=version("jax").startswith("0.10."))
 def few_contexts():
     """Programs of a thread share an MLIR context, ten each, as in JAX 0.11; one takes 2 to 4 ms.
 
@@ -125,12 +127,11 @@ def few_contexts():
         return kept.context
 
     with pytest.MonkeyPatch.context() as patch:
-        if version("jax").startswith("0.10."):
-            patch.setattr(mlir, "make_ir_context", context)
+        patch.setattr(mlir, "make_ir_context", context)
         yield
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="session", autouse=KNOWN)
 def parsed_once():
     """YAML and references that were read before are not parsed again."""
     import yaml
@@ -157,7 +158,7 @@ def parsed_once():
         yield
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="session", autouse=KNOWN)
 def composed_once():
     """Hydra composes a command's configuration one time, and resolves no name that is fixed.
 
@@ -191,7 +192,7 @@ def composed_once():
         yield
 
 
-@pytest.fixture(scope="session", autouse=True)
+@pytest.fixture(scope="session", autouse=KNOWN)
 def merged_once():
     """Hydra merges the files of equal choices one time, and puts the values into a copy.
 
@@ -219,9 +220,9 @@ def merged_once():
         return replace(lists[key], config_overrides=values)
 
     def copied(self, defaults, repo):
-        if id(defaults) not in merged:
-            merged[id(defaults)] = pickle.dumps(merge(self, defaults, repo))
-        return pickle.loads(merged[id(defaults)])
+        if id(defaults) not in merged:  # the list is kept, so that no other one has its id
+            merged[id(defaults)] = defaults, pickle.dumps(merge(self, defaults, repo))
+        return pickle.loads(merged[id(defaults)][1])
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(loader, "create_defaults_list", listed)

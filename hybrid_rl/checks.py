@@ -1,4 +1,4 @@
-"""Checks of a configuration: counts, choices, kinds of values; of parts: what learns them."""
+"""Checks of a configuration: counts, choices, kinds of values, fields of parts."""
 
 import inspect
 import math

@@ -90,7 +90,8 @@ def curves(
     groups: dict[Key, list[Learner]] = {}
     notes: dict[Key, list[str]] = {}
     for key, (members, settings) in _grouped(folders, x, group).items():
-        every = [each for run in members for each in learners(run, metric, _time(x))]
+        time = x if x in TIMES else "step"
+        every = [each for run in members for each in learners(run, metric, time)]
         groups[key] = [each for each in every if each.counts]
         notes[key] = [*settings, *_without_metric(metric, every), *_truncated(members)]
     if not any(np.isfinite(each.y).any() for members in groups.values() for each in members):
@@ -186,10 +187,6 @@ def _lines(notes: dict[Key, list[str]], drawn: list[Key]) -> dict[Key, list[str]
     lines = {key: [f"{', '.join(key)}: {note}" for note in notes[key]] for key in sorted(notes)}
     lines[drawn[0]] += [line for key in lines if key not in drawn for line in lines[key]]
     return lines
-
-
-def _time(x: str) -> str:
-    return x if x in TIMES else "step"
 
 
 def _grouped(

@@ -144,7 +144,7 @@ def _ordered(line: Sequence[str]) -> list[str]:
             follow -= 1
             found.append(at)
         elif name.startswith("-"):
-            flags = [flag for flag in FLAGS if flag == name or flag.startswith(f"{name}")]
+            flags = [flag for flag in FLAGS if flag.startswith(name)]
             if not flags:
                 raise UsageError(f"{text}: unknown option; write {arguments.as_pair(line, at)}")
             if flags[0] in NO_FLAGS:

@@ -17,6 +17,7 @@ from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
+from hydra.core.plugins import Plugins
 from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
@@ -86,13 +87,17 @@ def _outcome(summary: Any) -> Result:
     return {}
 
 
-class Sweeper(BasicSweeper):
+class Sweeper:
     """Checks, runs and reports every combination of the given values."""
+
+    def __init__(self, max_batch_size: int | None = None, params: Any = None) -> None:
+        self.max_batch_size, self.params = max_batch_size, params or {}
 
     def setup(self, *, hydra_context: Any, task_function: Any, config: DictConfig) -> None:
         """Get from Hydra what to run, and by which launcher."""
         self.task = Task(task_function)
-        super().setup(hydra_context=hydra_context, task_function=self.task, config=config)
+        self.hydra_context, self.config = hydra_context, config
+        self.launcher = Plugins.instance().instantiate_launcher(hydra_context, self.task, config)
 
     def sweep(self, arguments: list[str]) -> Any:
         """Run all jobs; end the process with the highest exit code if one failed.
@@ -100,11 +105,8 @@ class Sweeper(BasicSweeper):
         Raises:
             UsageError: if one of them, or the launcher, cannot run; then none runs.
         """
-        assert self.config is not None
-        assert self.launcher is not None
-        assert self.hydra_context is not None
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
-        (jobs,) = self.split_arguments(self._parsed(arguments), None)
+        jobs = jobs_of(self._parsed(arguments))
         self.task.labels = labels(jobs)
         fit, notes = self._fitting(jobs)
         jobs, configs = [*fit], [*fit.values()]
@@ -128,9 +130,8 @@ class Sweeper(BasicSweeper):
 
     def _parsed(self, arguments: Sequence[str]) -> list[Override]:
         """The overrides of the command line and of hydra.sweeper.params."""
-        assert self.hydra_context is not None
         parser = OverridesParser.create(config_loader=self.hydra_context.config_loader)
-        return parser.parse_overrides([*self._parse_config(), *arguments])
+        return parser.parse_overrides([*(f"{k}={v}" for k, v in self.params.items()), *arguments])
 
     def _fitting(
         self, jobs: Sequence[Sequence[str]]
@@ -166,8 +167,6 @@ class Sweeper(BasicSweeper):
 
     def _composed(self, number: int, overrides: Sequence[str]) -> DictConfig:
         """The configuration of a job, with Hydra's own; UsageError if there is none."""
-        assert self.config is not None
-        assert self.hydra_context is not None
         loader = self.hydra_context.config_loader
         try:
             return loader.load_sweep_config(self.config, list(overrides))
@@ -181,7 +180,6 @@ class Sweeper(BasicSweeper):
 
         Jobs that run elsewhere are built with the physics that needs no GPU here.
         """
-        assert self.config is not None
         composed = [(config, configuration.take_hydra(config)) for config in configs]
         for note in configuration.check_overrides(composed):
             print(note, flush=True)
@@ -243,6 +241,15 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             raise UsageError(f"run_dir={folder}: holds a run already; choose another")
         complete.append([*mine, f"run_dir={quoted(str(folder))}"])
     return complete
+
+
+def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
+    """The overrides of each job: every combination of the values.
+
+    Raises:
+        HydraException: for a range, which only a search can sweep.
+    """
+    return BasicSweeper.split_arguments([*parsed], None)[0]
 
 
 def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:

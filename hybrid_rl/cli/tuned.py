@@ -59,7 +59,6 @@ class Tuner(sweep.Sweeper):
         Raises:
             UsageError: if one of them cannot run, or the settings are wrong; then none runs.
         """
-        assert self.config is not None
         settings = self._settings()
         parsed = self._parsed(arguments)
         fixed, space = self._split(parsed)
@@ -88,7 +87,6 @@ class Tuner(sweep.Sweeper):
             sys.exit(worst)
 
     def _settings(self) -> study.Settings:
-        assert self.config is not None
         if not sweep.here(self.config.hydra):
             line = "hydra/sweeper=tuned: its trials run in this process"
             raise UsageError(f"{line}; leave hydra/launcher out")
@@ -121,8 +119,8 @@ class Tuner(sweep.Sweeper):
                 space[each.get_key_element()] = study.distribution(each)
         if not space:
             raise UsageError(f"hydra/sweeper=tuned: no key has several values; {HINT}")
-        (jobs,) = self.split_arguments([e for e in parsed if not e.is_sweep_override()], None)
-        return list(jobs[0]), space
+        (fixed,) = sweep.jobs_of([each for each in parsed if not each.is_sweep_override()])
+        return fixed, space
 
     def _watch(self, job: DictConfig) -> study.Watch:
         """What gets the rows of the trial that runs, whose configuration is `job`."""
@@ -132,7 +130,6 @@ class Tuner(sweep.Sweeper):
 
     def _run(self, opened: study.Study, folder: Path, fixed: list[str]) -> None:
         """Run the next trial."""
-        assert self.launcher is not None
         trial = self._trial = opened.ask()
         if opened.known(trial):
             return

@@ -81,15 +81,16 @@ class RefitsController:
             mu, sigma = fit
             e = jax.random.normal(key, (self.samples - len(own), *mu.shape))
             v = jnp.concatenate([own, jnp.clip(mu[None] + sigma[None] * e, -1, 1)])
-            S, best = jax.lax.top_k(score(v), self.elites)
+            S, J = score(v)
+            S, best = jax.lax.top_k(S, self.elites)
             w = sampling.weights(S[:, None], self.temperature, normalise=True)[:, 0]
             mu = jnp.einsum("k,ktm->tm", w, v[best])
             variance = jnp.einsum("k,ktm->tm", w, (v[best] - mu[None]) ** 2)
-            return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), S[0]
+            return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), J[best[0]]
 
         first = state.plan, jnp.full_like(state.plan, self.spread)
-        (plan, sigma), best = jax.lax.scan(refit, first, jax.random.split(drawing, self.refits))
-        metrics = {"planner/planned_return": best[-1], "planner/spread": sigma[0].mean()}
+        (plan, sigma), J = jax.lax.scan(refit, first, jax.random.split(drawing, self.refits))
+        metrics = {"planner/planned_return": J[-1], "planner/spread": sigma[0].mean()}
         after = RefitsState(sampling.shift(plan), state.carries, plan[0], memory)
         return plan[0], after, metrics
 
@@ -116,8 +117,8 @@ class RefitsController:
             jax.vmap(proposal.shaped)(noise),
         ).path.u
 
-    def _score(self, params: Params, value: Return, x: Array, v: Array) -> Array:
-        """S [] of a plan v [T, m] from x [n]."""
+    def _score(self, params: Params, value: Return, x: Array, v: Array) -> tuple[Array, Array]:
+        """S [] and J [] of a plan v [T, m] from x [n]."""
 
         def forward(x: Array, u: Array) -> tuple[Array, tuple[Array, Array]]:
             after, apart, _ = predict_members(self.model, params.model, x, u)
@@ -126,4 +127,4 @@ class RefitsController:
         _, (xs, apart) = jax.lax.scan(forward, x, v, unroll=adjoint.scan_unroll(len(v), x))
         J = value(Path(prepend(x, xs), v))
         score = J - self.disagreement_price * apart.sum()
-        return jnp.where(jnp.isfinite(score), score, -jnp.inf)
+        return jnp.where(jnp.isfinite(score), score, -jnp.inf), J

@@ -143,10 +143,7 @@ class SamplingController:
         """
         if self.policy is None or isinstance(x, EnvState):
             return {}
-
-        def compare() -> dict[str, Array]:
-            return self._comparison(params, x, plan, to_go)
-
+        compare = partial(self._comparison, params, x, plan, to_go)
         decisions = params.decisions
         if self.agreement_every == 1 or decisions is None:
             return compare()

@@ -75,11 +75,10 @@ def extended(
     times the range of this entry in `start` below or above that range. The key is consumed.
     """
     acting, moving, choosing, aging = jax.random.split(key, 4)
-    x, age = start, jnp.zeros_like(branches.age)
-    first = jax.random.randint(aging, age.shape, 0, steps)
     new = branches.age >= steps
-    age = jnp.where(new, jnp.where(branches.count == 0, first, age), branches.age)
-    x = where(new, x, branches.x)
+    first = jax.random.randint(aging, new.shape, 0, steps)
+    age = jnp.where(new, jnp.where(branches.count == 0, first, 0), branches.age)
+    x = where(new, start, branches.x)
     for_policy = jax.random.normal(acting, (len(x), m))
     for_model = jax.random.normal(moving, x.shape)
     made = step(x, for_policy, for_model, choosing)

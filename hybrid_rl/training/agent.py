@@ -17,6 +17,7 @@ from hybrid_rl.training import contract
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
+from hybrid_rl.training.owners import check_fit
 from hybrid_rl.training.rollout import act
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
@@ -92,7 +93,7 @@ class Agent:
         for part in self.learners.values():
             if (check := getattr(part, "check", None)) is not None:
                 check(longest)
-            jax.eval_shape(lambda part=part: self._first(part, jax.random.key(0)))
+        check_fit([self.controller, *controllers, *self.learners.values()], self)
         jax.eval_shape(lambda: self.controller.init(self.spec))
 
     def starts(self) -> dict[str, int]:

@@ -7,8 +7,7 @@ with a part of the user's, controllers and learners are traced, and compared wit
 one line that begins with the user's file, as in `envs.contract` for worlds.
 """
 
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import fields, is_dataclass
+from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import Any
 
@@ -18,7 +17,8 @@ import jax.numpy as jnp
 from hybrid_rl.core import lifting
 from hybrid_rl.core.batching import repeat
 from hybrid_rl.errors import PartError, SourceOf
-from hybrid_rl.training.traced import call, of_user, parts, shapes, trace, users, words
+from hybrid_rl.training.owners import check_owners
+from hybrid_rl.training.traced import call, leaves, of_user, parts, shapes, trace, users, words
 from hybrid_rl.types import EnvState, Params, Path, Spec
 
 ROLES = {  # kind of a part -> its methods and what they take
@@ -42,7 +42,6 @@ FIELDS = {  # of a learner, by its data
 }
 OWNED = tuple(name for name in Params._fields if name not in ("decisions", "world"))
 OF_WORLD = ("world/reward", "world/obs", "world/action")
-OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with parts of their own
 COLUMNS = ("step", "seed", "wall_s")  # of a row, beside its metrics
 
 
@@ -168,33 +167,6 @@ def _check_controllers(
             _check_acting(each, agent, params, env, {**names} if each is controller else {})
 
 
-def check_owners(parts: Any, owned: Collection[str], spec: Spec, every: bool = False) -> None:
-    """Check that what the library's parts of controllers act by has parameters.
-
-    parts: any parts, in lists, dictionaries and each other. owned: the fields of Params that
-    learners give. every: also what the user's parts act by, which may have parameters elsewhere.
-
-    Raises:
-        ValueError: for a policy, a model or the like that has parameters, which no learner gives.
-    """
-    if isinstance(parts, dict | list | tuple):
-        for each in parts.values() if isinstance(parts, dict) else parts:
-            check_owners(each, owned, spec, every)
-    if not is_dataclass(parts) or isinstance(parts, type):
-        return
-    of_params = set() if of_user(parts) and not every else OF_PARAMS - {*owned}
-    for name in (field.name for field in fields(parts)):
-        part = getattr(parts, name)
-        if name not in of_params or not hasattr(part, "init"):
-            check_owners(part, owned, spec, every)
-            continue
-        begin = partial(lambda part, key: part.init(key, spec), part)
-        if jax.tree.leaves(shapes(part, "init", begin, jax.random.key(0))):
-            line = f"{type(parts).__name__} acts by it, and no learner of this method trains it"
-            remedy = f"leave {name}= out, or choose a method that learns a {name}"
-            raise ValueError(f"{name}={type(part).__name__}: {line}; {remedy}")
-
-
 def _check_model(part: Any, spec: Spec, key: Any) -> None:
     """Raise PartError unless `lift` and `step` of a model give planning states [n]."""
     obs, u = (jax.ShapeDtypeStruct((size,), jnp.float32) for size in (spec.obs, spec.act))
@@ -203,7 +175,7 @@ def _check_model(part: Any, spec: Spec, key: Any) -> None:
     after = shapes(part, "step", part.step, params, x, u)
     if getattr(x, "ndim", 1) != 1:
         raise PartError(f"{SourceOf(part).at('lift')}: returned {words(x)}; it must be float32[n]")
-    if _leaves(x) != _leaves(after):
+    if leaves(x) != leaves(after):
         must = f"it must be {words(x)}, as lift returned"
         raise PartError(f"{SourceOf(part).at('step')}: returned {words(after)}; {must}")
 
@@ -261,7 +233,7 @@ def _check_objectives(owner: Any, agent: Any, params: Params, env: EnvState) -> 
 
 def _check_state(part: Any, method: str, before: Any, after: Any) -> None:
     """Raise PartError unless a state is as `init` gave it, in structure, shapes and types."""
-    one, two = _leaves(before), _leaves(after)
+    one, two = leaves(before), leaves(after)
     at = SourceOf(part).at(method)
     if one == two and jax.tree.structure(before) != jax.tree.structure(after):
         raise PartError(f"{at}: returned a state of another structure than init")
@@ -286,12 +258,6 @@ def _check_metrics(part: Any, method: str, metrics: Any, names: dict[str, str]) 
             line = f"metric {name}: {names[name] or 'every row'} has it, too; write mine/{name}"
             raise PartError(f"{SourceOf(part).at(method)}: {line}")
         names[name] = type(part).__name__
-
-
-def _leaves(tree: Any) -> dict[str, str]:
-    """Path of each leaf -> its type, such as float32[2]."""
-    paths = jax.tree_util.tree_leaves_with_path(tree)
-    return {jax.tree_util.keystr(path): words(leaf) for path, leaf in paths}
 
 
 def _returned(result: Any, must: str) -> str:

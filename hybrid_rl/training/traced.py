@@ -106,3 +106,9 @@ def words(value: Any) -> str:
     if hasattr(value, "shape") and hasattr(value, "dtype"):
         return f"{value.dtype}{list(value.shape)}"
     return "None" if value is None else f"a {type(value).__name__}"
+
+
+def leaves(tree: Any) -> dict[str, str]:
+    """Path of each leaf -> its type, such as float32[2]."""
+    paths = jax.tree_util.tree_leaves_with_path(tree)
+    return {jax.tree_util.keystr(path): words(leaf) for path, leaf in paths}

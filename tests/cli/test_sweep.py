@@ -1,5 +1,6 @@
 """A sweep: checked first, all of it run, a table at the end."""
 
+import importlib
 import json
 import os
 import re
@@ -10,6 +11,7 @@ import time
 from contextlib import suppress
 
 import pytest
+from hydra._internal.core_plugins import basic_sweeper
 from hydra.errors import MissingConfigException
 from tiny import CONF, TINY, call_train, summary_of
 
@@ -99,6 +101,15 @@ def test_a_key_or_a_part_is_for_the_methods_that_have_it(tmp_path, capfd, monkey
     out = capfd.readouterr().out
     assert "explorer.horizon=4: for job 2 alone; the others have no such key" in out
     assert "target=mixture: for job 1, 2 alone; the others have no such key" in out
+
+
+def test_a_sweep_may_be_imported_before_hydra_searches_for_plugins(tmp_path, monkeypatch):
+    """Hydra then executes the modules of its own sweepers again: there are two of each class."""
+    monkeypatch.setattr(train, "_job", lambda config: None)
+    importlib.import_module("hybrid_rl.cli.sweep")
+    importlib.reload(basic_sweeper)
+    assert call_train("-m", CONF, "algo=sac", "seed=0,1") == 0
+    assert [row["code"] for row in table(tmp_path)] == [0, 0]
 
 
 def test_jobs_with_one_run_dir_have_folders_in_it(tmp_path, capfd):

@@ -67,6 +67,14 @@ def test_disagreement_costs_its_price() -> None:
     assert abs(float(still[0])) < 0.1 < 0.5 < float(moving[0])
 
 
+def test_the_planned_return_is_that_of_the_objective_without_the_price() -> None:
+    """Of the only candidate, from rest: J = 0.1 u_0 + 0.1 (u_0 + u_1)."""
+    one: dict[str, Any] = {"horizon": 2, "samples": 1, "elites": 1, "refits": 1}
+    u, state, metrics = act(RefitsController(Doubted(), Speed(), **one, disagreement_price=9.0))
+    wanted = 0.2 * float(u[0]) + 0.1 * float(state.plan[0, 0])
+    assert float(metrics["planner/planned_return"]) == pytest.approx(wanted, abs=1e-6)
+
+
 def test_candidates_whose_prediction_is_not_finite_rank_last() -> None:
     """J rises with u up to 0.2, beyond which the model gives NaN."""
     u, state, _ = act(RefitsController(Breaking(), Speed(), horizon=2))

@@ -1,4 +1,4 @@
-"""A run on a stand-in robot in processes of their own: it learns, goes on, and acts."""
+"""A run on a stand-in robot in processes of their own; what a run on a robot refuses."""
 
 import os
 import re
@@ -11,18 +11,20 @@ import pytest
 from tiny import call, only_line
 
 import hybrid_rl
-from hybrid_rl import evaluate, robot
+from hybrid_rl import config, evaluate, robot
 from hybrid_rl.cli import command
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.doctor.__main__ import CHECKS, examine
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
+from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.training.robot_process import RobotProcess
 from hybrid_rl.types import Spec
 
 pytestmark = pytest.mark.turns(3)
+LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
 SPEC = Spec(Cartpole.obs, len(Cartpole.low), Cartpole.dt)
 
 
@@ -41,8 +43,7 @@ def port():
 
 
 def test_a_run_on_a_robot(port, tmp_path, capfd):
-    make = "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole"
-    line = ["task=robot", make, f"env.kwargs={{port:{port}}}", "algo=sac", "policy.hidden=[8]"]
+    line = [*LINE, f"env.kwargs={{port:{port}}}", "policy.hidden=[8]"]
     line += ["critic.hidden=[8]", "random_steps=20", "checkpoint_every=50", "log_every=25"]
     folder, rows = tmp_path / "run", []
     line += ["policy_learner.batch_size=8", "episode.steps=30", f"run_dir={folder}"]
@@ -84,3 +85,28 @@ def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):
         assert call(lambda: command.run(robot.main), f"run={tmp_path}") == 2
         assert f"is being written by process {os.getpid()} on" in only_line(capfd)
     assert not RobotProcess(Robot(Cartpole), files).alive()
+
+
+@pytest.mark.parametrize(
+    ("missing", "line"),
+    [("reward", "lacks reward"), ("dt", "lacks dt"), ("low", "lacks low")],
+)
+def test_what_a_class_lacks_is_named(missing, line):
+    names = {name: getattr(Cartpole, name) for name in dir(Cartpole) if name[:2] != "__"}
+    del names[missing]
+    with pytest.raises(UsageError, match=line):
+        Robot(make=type("Lacking", (), names))
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["task=robot", "algo=sac"], "give MODULE:CLASS of your robot"),
+        ([*LINE, "env.stale=0"], r"env\.stale=0: must be above 0"),
+        ([*LINE, "env.past_actions=-1"], "must be a whole number, 0 or more"),
+        ([*LINE, "episode.delay=1"], "put a Gymnasium wrapper around"),
+    ],
+)
+def test_values_that_a_robot_cannot_have_are_refused(words, line):
+    with pytest.raises(UsageError, match=line):
+        config.build(config.load(words))

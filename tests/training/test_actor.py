@@ -2,7 +2,7 @@
 
 import threading
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import ClassVar
 
@@ -127,6 +127,27 @@ def test_past_actions_end_the_observation(agent, tmp_path):
     for one, two, three in triples:
         past = [float(two["action"][0]), float(one["action"][0])]
         assert three["obs"][4:].tolist() == past
+
+
+@dataclass(frozen=True)
+class Remembering:
+    """Acts by the number of its decisions in this episode."""
+
+    def init(self, spec):
+        return jnp.zeros(spec.act)
+
+    def act(self, params, state, obs, key):
+        return state, state + 0.05, {}
+
+    def greedy(self):
+        return self
+
+
+def test_an_episode_begins_with_a_controller_that_remembers_nothing(agent, tmp_path):
+    _, rows = moved(replace(agent, controller=Remembering()), tmp_path, Counting)
+    first = {row["episode"]: float(row["action"][0]) for row in reversed(rows)}
+    assert len(first) > 3
+    assert max(first.values()) < 0.4  # a missed deadline leaves decisions out
 
 
 def test_it_ends_without_a_learner(agent, tmp_path):
@@ -267,32 +288,8 @@ def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
     assert program.learned > 0
 
 
-@pytest.mark.parametrize(
-    ("missing", "line"),
-    [("reward", "lacks reward"), ("dt", "lacks dt"), ("low", "lacks low")],
-)
-def test_what_a_class_lacks_is_named(missing, line):
-    names = {name: value for name, value in vars(Counting).items() if name != missing}
-    with pytest.raises(UsageError, match=line):
-        Robot(make=type("Lacking", (), names))
-
-
 @pytest.mark.parametrize("word", ["num_seeds=2", "num_envs=2"])
 def test_one_robot_has_one_learner(word):
     run = config.build(config.load([*LINE, word]))
     with pytest.raises(UsageError, match="one robot has one learner"):
         loop_of(run.agent, run.seeds, 20)
-
-
-@pytest.mark.parametrize(
-    ("words", "line"),
-    [
-        (["task=robot", "algo=sac"], "give MODULE:CLASS of your robot"),
-        ([*LINE, "env.stale=0"], r"env\.stale=0: must be above 0"),
-        ([*LINE, "env.past_actions=-1"], "must be a whole number, 0 or more"),
-        ([*LINE, "episode.delay=1"], "put a Gymnasium wrapper around"),
-    ],
-)
-def test_refusals(words, line):
-    with pytest.raises(UsageError, match=line):
-        config.build(config.load(words))

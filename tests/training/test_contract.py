@@ -10,11 +10,16 @@ import numpy as np
 import pytest
 
 import hybrid_rl as hr
+from hybrid_rl import config
+from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
+from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
-from hybrid_rl.errors import PartError
+from hybrid_rl.errors import PartError, UsageError
+from hybrid_rl.learners.sac import SAC
 from hybrid_rl.objectives.predicted_return import PredictedReturn
+from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.rewards.network import RewardNetwork
 
@@ -177,6 +182,28 @@ def test_a_model_without_a_learner_is_named_in_a_planner_of_the_users_too():
     agent = hr.Agent(hr.Episode(Pendulum(), 20), Planner(), {}, Replay().within(9, 1))
     with pytest.raises(ValueError, match=r"^model=Line: Planner acts by it, and no learner of"):
         agent.check(9)
+
+
+def test_a_policy_of_another_form_than_its_learner_trains_is_named():
+    """Flax's own error names a parameter and no part, in a traceback."""
+    learner = SAC(TanhGaussian((8,)), EnsembleQ((8,)))
+    agent = hr.Agent(
+        hr.Episode(Pendulum(), 20),
+        PolicyController(TanhGaussian((4,))),
+        {"policy": learner},
+        Replay().within(9, 1),
+    )
+    words = r"^policy=TanhGaussian: PolicyController uses it, but \S+ is float32\[4\] in it and fl"
+    with pytest.raises(ValueError, match=words):
+        agent.check(9)
+    replace(agent, controller=PolicyController(learner.policy)).check(9)
+
+
+def test_a_model_of_another_form_than_its_learner_trains_is_named_in_a_run():
+    """That of the learner of the policy, which learns in the model."""
+    other = "policy_learner.model={_target_: hybrid_rl.models.gaussian.Gaussian, hidden: [4]}"
+    with pytest.raises(UsageError, match=r"^model=Gaussian: ModelBased uses it, but \S+ is float"):
+        config.build(config.load([other]))
 
 
 @pytest.mark.parametrize(

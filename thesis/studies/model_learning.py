@@ -26,6 +26,7 @@ from jax import Array
 
 from hybrid_rl.analysis.curves import band, iqm, plural
 from hybrid_rl.analysis.results import find
+from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
@@ -152,9 +153,9 @@ def reported(values: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     """The numbers of one method: mean and deviation of costs; IQM and band of the rest."""
     numbers: dict[str, Any] = {"trials": len(next(iter(values.values())))}
     for name in [n for n in ("power_loss", "norm_of_u", "furthest") if n in values]:
-        numbers[name] = [_rounded(values[name].mean()), _rounded(values[name].std())]
+        numbers[name] = [values[name].mean(), values[name].std()]
     if "lost" in values:
-        numbers["kept_hover"] = _rounded(1 - values["lost"].mean())
+        numbers["kept_hover"] = 1 - values["lost"].mean()
     if "error" in values:
         numbers["error"] = _banded(values["error"])
     if "distance" in values:
@@ -163,18 +164,13 @@ def reported(values: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
         for mark in MARKS:
             if round(mark / dt) < distance.shape[1]:
                 numbers[f"distance_after_{mark:g}_s"] = _banded(distance[:, round(mark / dt)])
-        numbers["turned_over_tracking"] = _rounded(values["turned_over"].mean())
-    return numbers
+        numbers["turned_over_tracking"] = values["turned_over"].mean()
+    return rounded(numbers)
 
 
-def _banded(each: np.ndarray) -> list[float]:
+def _banded(each: np.ndarray) -> list[Any]:
     """IQM over trials [S], and its band."""
-    return [_rounded(iqm(each)), *map(_rounded, band(each))]
-
-
-def _rounded(value: Any) -> float:
-    """Four significant digits."""
-    return float(f"{value:.4g}")
+    return [iqm(each), *band(each)]
 
 
 def named(label: str) -> str:
