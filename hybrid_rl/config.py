@@ -73,8 +73,10 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """The configuration of these overrides with its interpolations; errors as `load`."""
-    if isinstance(overrides, str):
-        raise UsageError(f'"{overrides}": give a list, {overrides.split()}')
+    if isinstance(overrides, str | Mapping):
+        pairs = {} if isinstance(overrides, str) else overrides
+        words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
+        raise UsageError(f'"{overrides}": give a list, {words}')
     renamed.check(overrides)
     check_choices(overrides)
     more = [] if config_dir is None else [overriding.search_path(config_dir)]

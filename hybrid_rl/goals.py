@@ -8,7 +8,7 @@
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
 maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
-without a learned model keeps its policy, which knows nothing of the reward.
+without a learned model keeps its policy, which knows nothing of the reward; a note says so.
 
 `constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
 `gradient` keeps it, for the new reward or for that of the training.
@@ -127,10 +127,15 @@ def aimed(
     changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
     episode, controllers, before = configuration.acting(changed)
+    notes = trained.notes
+    if "planner" not in goal:
+        unaware = f"what acts knows nothing of {' '.join(overrides)}"
+        notes = (*notes, f"{trained.task}: there is no learned model to plan with; {unaware}")
     now = replace(
         trained,
         episode=episode,
         controllers={**trained.controllers, **controllers},
+        notes=notes,
         config=changed,
     )
     return now, before

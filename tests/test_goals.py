@@ -130,7 +130,10 @@ def test_a_file_with_models_plans_as_the_run_does(
     goals = [retargeted(each, ["planner=gradient", *SMALL]) for each in (known, of_file)]
     assert all(goal.controllers["full"].objective.critic for goal in goals)
     np.testing.assert_allclose(*(goal.policy()(obs) for goal in goals), atol=0.02)
-    assert set(retargeted(read(str(bare)), AT).controllers) == {"full", "policy"}
+    unaware = retargeted(read(str(bare)), AT)
+    assert set(unaware.controllers) == {"full", "policy"}
+    assert unaware.notes[-1].endswith(f"what acts knows nothing of {' '.join(AT)}")
+    assert goals[1].notes == of_file.notes
 
 
 def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
@@ -174,6 +177,17 @@ def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
             assert "alone" not in shown
     alone = np.mean(each["policy"]["returns"])
     assert line == f"the policy alone: {alone:,.1f} (mode=policy)"
+
+
+def test_a_return_that_is_not_finite_is_one_line_and_no_file(
+    trained: Path, capfd, monkeypatch
+) -> None:
+    monkeypatch.setattr(evaluate, "evaluate", lambda *_: {"return": np.array([[1.0, np.nan]])})
+    given = (f"run={trained}", "mode=policy", "reward=speed")
+    assert call(lambda: command.run(evaluate.main), *given) == 2
+    line = "a return is not finite: see reward=speed and the controller's actions"
+    assert line in only_line(capfd)
+    assert not [*trained.glob("evaluation_policy_reward=speed*")]
 
 
 @pytest.mark.parametrize(
