@@ -178,7 +178,7 @@ def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Cont
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
-    """The episodes of `config`, the controllers without exploration, and what learns before them.
+    """The episodes of `config`, its controllers, and what learns before them.
 
     Raises:
         UsageError: for a value out of range.
@@ -188,7 +188,7 @@ def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imaginat
         parts = _on_this_machine(config)
         episode, _, controllers = _acting(parts)
         before = _instantiate(parts.get("imagine"), "imagine")
-    return episode, {mode: each.greedy() for mode, each in controllers.items()}, before
+    return episode, controllers, before
 
 
 def episodes(config: DictConfig) -> Episode:

@@ -38,15 +38,20 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
 from hybrid_rl.composition import CONF, check_choices, explain
+from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import search_path, value_of
 from hybrid_rl.parts import part_class
+from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained, load_named
+from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.contract import check_controllers
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import compile_lowered
+from hybrid_rl.training.traced import users
 from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
@@ -134,7 +139,7 @@ def aimed(
     now = replace(
         trained,
         episode=episode,
-        controllers={**trained.controllers, **controllers},
+        controllers={**trained.controllers, **_greedy(trained, episode, controllers)},
         notes=notes,
         config=changed,
     )
@@ -148,10 +153,25 @@ def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
         key, _, value = text.partition("=")
         OmegaConf.update(config, key.replace("planner", "controllers.full", 1), value_of(value))
     try:
-        controllers = configuration.acting(config)[1]
+        episode, controllers, _ = configuration.acting(config)
     except UsageError as error:
         raise UsageError(str(error).replace("controllers.full.", "planner.", 1)) from error
-    return replace(trained, controllers=controllers, config=config)
+    return replace(trained, controllers=_greedy(trained, episode, controllers), config=config)
+
+
+def _greedy(
+    trained: Trained, episode: Episode, controllers: Mapping[str, Controller]
+) -> dict[str, Controller]:
+    """The controllers without exploration.
+
+    Raises:
+        PartError: for one of the user's that cannot act.
+    """
+    if any(users([*controllers.values()])):
+        agent = Agent(episode, next(iter(controllers.values())), {}, Replay())
+        one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
+        check_controllers(controllers.values(), agent, one, {})
+    return {mode: each.greedy() for mode, each in controllers.items()}
 
 
 def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:

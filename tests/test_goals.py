@@ -92,6 +92,33 @@ def test_keys_of_the_planner_of_the_run_change_alone(known: Trained) -> None:
         retargeted(read("halfcheetah"), ["planner.horizon=2"])
 
 
+PUSH = """from dataclasses import dataclass
+import jax.numpy as jnp
+
+@dataclass(frozen=True)
+class Push:
+    objective: object
+    def init(self, spec): return ()
+    def act(self, params, state, obs, key): return jnp.zeros(2), state, {}
+"""
+
+
+def test_a_planner_of_the_users_is_checked_before_it_acts(known, tmp_path, monkeypatch) -> None:
+    """As before a run that trains: for its methods, and for what they return."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "controller").mkdir()
+    gives = r"Push\.act: returned the action float32\[2\]; it must be float32\[1\] in"
+    for name, more, words in (
+        ("push", "", "Push has no greedy; write def greedy"),
+        ("push_on", "    def greedy(self): return self\n", gives),
+    ):
+        (tmp_path / f"{name}.py").write_text(PUSH + more)
+        (tmp_path / "controller" / "own.yaml").write_text(f"_target_: {name}.Push\n")
+        with pytest.raises(UsageError, match=rf"^{name}\.py:\d+: {words}"):
+            retargeted(known, [*AT, "planner=own"], tmp_path)
+
+
 def test_a_policy_has_proposals_for_any_planner() -> None:
     """Its file has none; they are its roll-outs at several strengths."""
     goal = ["reward=speed", "planner.samples=4", "planner.horizon=2"]
