@@ -2,7 +2,7 @@
 
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -198,15 +198,18 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
         UsageError: in one line that names the file: keys that it lacks, or sets in vain; for a
             choice that changes nothing.
     """
+    raw, file = overrides.raw_values(config), chosen(hydra, "task")
+    if config.get("resume") is None:
+        _refuse_nameless(raw, chosen(hydra, "algo"), "algo")
     _refuse_idle(config, hydra, roots)
-    file = chosen(hydra, "task")
     if file is None or CONF in file.parents or config.get("resume") is not None:
         return None
-    raw, name = overrides.raw_values(config), relative(file)
+    name = relative(file)
     if isinstance(raw.get("task"), dict):
         raise UsageError(f"{name}: its first line must be {GLOBAL}")
     if lacking := [key for key in OF_A_TASK if raw.get(key) is None]:
         raise UsageError(f"{name}: lacks {', '.join(lacking)}; {INHERIT}")
+    _refuse_nameless(raw, file, "task")
     if "_target_" not in raw["env"]:
         raise UsageError(f"{name}: env lacks _target_; write _target_: MODULE.CLASS")
     try:
@@ -220,6 +223,17 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
         close = overrides.closest_hint(lost[0], [*read, *_root_keys(hydra, file)])
         raise UsageError(f"{name}: {lost[0]}: unknown key, which nothing reads{close}")
     return _changed(config, own, hydra, name)
+
+
+def _refuse_nameless(raw: Mapping[str, Any], file: Path | None, group: str) -> None:
+    """Raise UsageError for a user's file of a task or a method that does not name its runs.
+
+    They would have the name, and the folder, of what the file begins with.
+    """
+    if file is None or {CONF, THESIS} & {*file.parents} or isinstance(raw.get(group), dict):
+        return
+    if group not in OmegaConf.load(file):
+        raise UsageError(f"{relative(file)}: lacks {group}: {file.stem}, the name of its runs")
 
 
 def _refuse_idle(config: DictConfig, hydra: Any, roots: Sequence[str]) -> None:

@@ -73,8 +73,10 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
     """The configuration of these overrides with its interpolations; errors as `load`."""
-    if isinstance(overrides, str):
-        raise UsageError(f'"{overrides}": give a list, {overrides.split()}')
+    if isinstance(overrides, str | Mapping):
+        pairs = {} if isinstance(overrides, str) else overrides
+        words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
+        raise UsageError(f'"{overrides}": give a list, {words}')
     renamed.check(overrides)
     check_choices(overrides)
     more = [] if config_dir is None else [overriding.search_path(config_dir)]
@@ -176,7 +178,7 @@ def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Cont
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
-    """The episodes of `config`, the controllers without exploration, and what learns before them.
+    """The episodes of `config`, its controllers, and what learns before them.
 
     Raises:
         UsageError: for a value out of range.
@@ -186,7 +188,7 @@ def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imaginat
         parts = _on_this_machine(config)
         episode, _, controllers = _acting(parts)
         before = _instantiate(parts.get("imagine"), "imagine")
-    return episode, {mode: each.greedy() for mode, each in controllers.items()}, before
+    return episode, controllers, before
 
 
 def episodes(config: DictConfig) -> Episode:

@@ -56,6 +56,7 @@ from hybrid_rl.cli.arguments import (
     whole,
 )
 from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import load_changed
 from hybrid_rl.networks import precision
 from hybrid_rl.networks.precision import PRECISIONS
@@ -163,6 +164,9 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     where = "".join(f", {key}={value}" for key, value in changes.items())
     print(f"{name}, mode {given['mode']}, step {trained.step:,}{where}")  # whole, also in a pipe
     Console().print(_table(values))
+    if not np.isfinite(got["return"]).all():
+        paid = f"reward={given['reward']}" if given["reward"] else "the world's rewards"
+        raise UsageError(f"{name}: a return is not finite: see {paid} and the controller's actions")
     if line := _policy_alone(trained, given):
         print(line)
     if not given["run"]:

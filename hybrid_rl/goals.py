@@ -8,7 +8,7 @@
 
 `reward=NAME` is one of conf/reward, or one of yours. The environment pays it, and a planner
 maximises it in the learned model, from roll-outs of the policy (conf/retarget.yaml). A method
-without a learned model keeps its policy, which knows nothing of the reward.
+without a learned model keeps its policy, which knows nothing of the reward; a note says so.
 
 `constraint=NAME` is one of conf/constraint. The environment counts its violations, and the planner
 `gradient` keeps it, for the new reward or for that of the training.
@@ -38,15 +38,20 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
 from hybrid_rl.composition import CONF, check_choices, explain
+from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import search_path, value_of
 from hybrid_rl.parts import part_class
+from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained, load_named
+from hybrid_rl.training.agent import Agent
+from hybrid_rl.training.contract import check_controllers
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
 from hybrid_rl.training.loop import compile_lowered
+from hybrid_rl.training.traced import users
 from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
@@ -127,10 +132,15 @@ def aimed(
     changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
     OmegaConf.resolve(changed)
     episode, controllers, before = configuration.acting(changed)
+    notes = trained.notes
+    if "planner" not in goal:
+        unaware = f"what acts knows nothing of {' '.join(overrides)}"
+        notes = (*notes, f"{trained.task}: there is no learned model to plan with; {unaware}")
     now = replace(
         trained,
         episode=episode,
-        controllers={**trained.controllers, **controllers},
+        controllers={**trained.controllers, **_greedy(trained, episode, controllers)},
+        notes=notes,
         config=changed,
     )
     return now, before
@@ -143,10 +153,25 @@ def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
         key, _, value = text.partition("=")
         OmegaConf.update(config, key.replace("planner", "controllers.full", 1), value_of(value))
     try:
-        controllers = configuration.acting(config)[1]
+        episode, controllers, _ = configuration.acting(config)
     except UsageError as error:
         raise UsageError(str(error).replace("controllers.full.", "planner.", 1)) from error
-    return replace(trained, controllers=controllers, config=config)
+    return replace(trained, controllers=_greedy(trained, episode, controllers), config=config)
+
+
+def _greedy(
+    trained: Trained, episode: Episode, controllers: Mapping[str, Controller]
+) -> dict[str, Controller]:
+    """The controllers without exploration.
+
+    Raises:
+        PartError: for one of the user's that cannot act.
+    """
+    if any(users([*controllers.values()])):
+        agent = Agent(episode, next(iter(controllers.values())), {}, Replay())
+        one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
+        check_controllers(controllers.values(), agent, one, {})
+    return {mode: each.greedy() for mode, each in controllers.items()}
 
 
 def by_learner(trained: Trained, one: Callable[[Params, Array], Any]) -> Any:

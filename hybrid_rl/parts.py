@@ -124,6 +124,8 @@ def _made(node: Any, near: Path | None, where: str) -> Any:
 def _source(target: Any, near: Path | None) -> Path:
     """The file of the module of a `_target_`; ValueError if it names no part."""
     *names, name = str(target).split(".")
+    if not names and ":" in name:  # as in env.make
+        raise ValueError(f"write {name.replace(':', '.')}")
     if not (names and all(each.isidentifier() for each in (*names, name))):
         raise ValueError(OTHER)
     if names[0] == "hybrid_rl":

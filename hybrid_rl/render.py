@@ -221,6 +221,8 @@ def main() -> None:
         _training(Path(given["run"]), given["seed"], given["episode_steps"], out, width, height)
         return
     trained = None if given["task"] else load_changed(given, changes)[0]
+    for note in trained.notes if trained is not None else ():
+        print(note)
     if trained is not None and isinstance(trained.episode.env, External):
         _outside(trained, given, out)
         return

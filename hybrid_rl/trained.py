@@ -10,7 +10,7 @@ the policy as in config.yaml of the run, and with the command, the seed and the 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -53,12 +53,12 @@ class Trained:
     task: str
     episode: Episode
     controllers: dict[str, Controller]  # mode -> controller without exploration
-    params: Params  # [S, ...]
+    params: Params = field(repr=False)  # [S, ...]
     seeds: tuple[int, ...]
     step: int  # decisions of each learner
     notes: tuple[str, ...]  # on how it was made
-    config: DictConfig | None = None  # of the run; env and episode at least
-    agent: Agent | None = None  # of the run; None: of a policy's file
+    config: DictConfig | None = field(default=None, repr=False)  # at least env, episode
+    agent: Agent | None = field(default=None, repr=False)  # of the run; None: of a policy's file
 
     def policy(self, seed: int | None = None, mode: str = "full", key: int = 0) -> "TrainedPolicy":
         """Observations to actions, as the learner of `seed` acts; None is the first.

@@ -134,6 +134,25 @@ def test_ends_and_lengths():
     assert line.endswith("episode.steps=50")
 
 
+@pytest.mark.parametrize(
+    ("sign", "rows", "limits", "speaks"),
+    [
+        (-1, [], 0, True),
+        (1, [], 0, False),
+        (-1, [{"world/success": 1}], 0, False),
+        (-1, [], 0.1, False),
+    ],
+)
+def test_a_task_that_pays_for_an_early_end_has_a_line(sign, rows, limits, speaks):
+    given = evidence(*oscillator())
+    over = np.random.default_rng(0).uniform(size=given.made.reward.shape)
+    flags = {"terminated": 1.0 * (over > 0.9), "truncated": 1.0 * (over < limits)}
+    made = given.made._replace(reward=sign * (1 + over), **flags)
+    line = task.ends(replace(given, made=made, folder=SimpleNamespace(rows=rows)))
+    assert bool(line) == speaks
+    assert not speaks or line.startswith("nearly every reward is negative, and ")
+
+
 def test_a_reward_that_is_constant_or_hides_is_noticed():
     x, action = oscillator()
     given = partial(evidence, x, action)

@@ -92,6 +92,33 @@ def test_keys_of_the_planner_of_the_run_change_alone(known: Trained) -> None:
         retargeted(read("halfcheetah"), ["planner.horizon=2"])
 
 
+PUSH = """from dataclasses import dataclass
+import jax.numpy as jnp
+
+@dataclass(frozen=True)
+class Push:
+    objective: object
+    def init(self, spec): return ()
+    def act(self, params, state, obs, key): return jnp.zeros(2), state, {}
+"""
+
+
+def test_a_planner_of_the_users_is_checked_before_it_acts(known, tmp_path, monkeypatch) -> None:
+    """As before a run that trains: for its methods, and for what they return."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "controller").mkdir()
+    gives = r"Push\.act: returned the action float32\[2\]; it must be float32\[1\] in"
+    for name, more, words in (
+        ("push", "", "Push has no greedy; write def greedy"),
+        ("push_on", "    def greedy(self): return self\n", gives),
+    ):
+        (tmp_path / f"{name}.py").write_text(PUSH + more)
+        (tmp_path / "controller" / "own.yaml").write_text(f"_target_: {name}.Push\n")
+        with pytest.raises(UsageError, match=rf"^{name}\.py:\d+: {words}"):
+            retargeted(known, [*AT, "planner=own"], tmp_path)
+
+
 def test_a_policy_has_proposals_for_any_planner() -> None:
     """Its file has none; they are its roll-outs at several strengths."""
     goal = ["reward=speed", "planner.samples=4", "planner.horizon=2"]
@@ -130,7 +157,10 @@ def test_a_file_with_models_plans_as_the_run_does(
     goals = [retargeted(each, ["planner=gradient", *SMALL]) for each in (known, of_file)]
     assert all(goal.controllers["full"].objective.critic for goal in goals)
     np.testing.assert_allclose(*(goal.policy()(obs) for goal in goals), atol=0.02)
-    assert set(retargeted(read(str(bare)), AT).controllers) == {"full", "policy"}
+    unaware = retargeted(read(str(bare)), AT)
+    assert set(unaware.controllers) == {"full", "policy"}
+    assert unaware.notes[-1].endswith(f"what acts knows nothing of {' '.join(AT)}")
+    assert goals[1].notes == of_file.notes
 
 
 def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
@@ -174,6 +204,17 @@ def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
             assert "alone" not in shown
     alone = np.mean(each["policy"]["returns"])
     assert line == f"the policy alone: {alone:,.1f} (mode=policy)"
+
+
+def test_a_return_that_is_not_finite_is_one_line_and_no_file(
+    trained: Path, capfd, monkeypatch
+) -> None:
+    monkeypatch.setattr(evaluate, "evaluate", lambda *_: {"return": np.array([[1.0, np.nan]])})
+    given = (f"run={trained}", "mode=policy", "reward=speed")
+    assert call(lambda: command.run(evaluate.main), *given) == 2
+    line = "a return is not finite: see reward=speed and the controller's actions"
+    assert line in only_line(capfd)
+    assert not [*trained.glob("evaluation_policy_reward=speed*")]
 
 
 @pytest.mark.parametrize(

@@ -65,6 +65,7 @@ def trained(monkeypatch):
         params=Params(policy=jnp.array([[1.0], [0.0]])),
         seeds=(3, 4),
         step=7000,
+        notes=("of two learners",),
     )
     run.learner = partial(Trained.learner, run)
     monkeypatch.setattr("hybrid_rl.goals.load_named", lambda given: run)
@@ -98,8 +99,9 @@ def test_the_command_writes_a_video_in_real_time(trained, tmp_path, monkeypatch,
     out = tmp_path / "video.mp4"
     assert iio.immeta(out, plugin="pyav")["fps"] == pytest.approx(10)
     assert len(iio.imread(out, plugin="pyav")) == 6
-    printed = capsys.readouterr().out.splitlines()[-1]
-    assert printed == f"{out}: 5 decisions, return 5.0, step 7,000"
+    first, *_, last = capsys.readouterr().out.splitlines()
+    assert first == "of two learners"
+    assert last == f"{out}: 5 decisions, return 5.0, step 7,000"
 
 
 def test_the_expert_of_a_task_is_drawn_too(tmp_path, monkeypatch, capsys, can_draw):

@@ -10,15 +10,18 @@ from hybrid_rl.doctor.limits import (
     ENOUGH,
     ERRORS,
     FIRST,
+    MOSTLY,
     OFFSET,
     PAID,
     SAME,
+    SOME,
     START,
 )
+from hybrid_rl.types import Transition
 
 
 def ends(run: Evidence) -> str | None:
-    """Terminations at one and the same decision, or at the first one."""
+    """Terminations at one and the same decision, at the first one, or where decisions cost."""
     if run.made is None:
         return None
     k, t = np.nonzero(run.made.terminated)
@@ -37,7 +40,22 @@ def ends(run: Evidence) -> str | None:
             "that is returned as `terminated`, and the learner takes what follows for worth 0; "
             "leave it to episode.steps, or return it as `truncated`"
         )
-    return None
+    return _costly(run, run.made)
+
+
+def _costly(run: Evidence, made: Transition) -> str | None:
+    """Rewards that are negative, in a task that ends no other way: then an early end is best."""
+    newest = slice(-made.reward.shape[1] // 4, None)
+    ended = int(made.terminated[:, newest].sum())
+    whole = ended + int(made.truncated[:, newest].sum())
+    known = any("world/success" in row for row in run.rows)  # the end may be the goal
+    if known or ended < max(SOME, MOSTLY * whole) or (made.reward < 0).mean() < MOSTLY:
+        return None
+    return (
+        f"nearly every reward is negative, and {ended:,} of the last {whole:,} episodes were "
+        "terminated: the sooner one ends, the less it costs; unless the end is the goal, add "
+        "a constant to the reward, or charge the end"
+    )
 
 
 def _lengths(run: Evidence, k: np.ndarray, t: np.ndarray) -> list[int]:

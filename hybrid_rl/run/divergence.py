@@ -51,7 +51,8 @@ class Diverged:
             if of_world(end["quantity"]):
                 end["world"] = self._decision(s, end, state, now)
             elif end["quantity"].startswith("eval/") and s not in unsound(state.learners, now):
-                end["world"] = "all that was learned is finite: see the world's rewards"
+                blame = "the world's rewards and the controller's actions"
+                end["world"] = f"all that was learned is finite: see {blame}"
         self.ends |= new
         return new
 

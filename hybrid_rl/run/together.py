@@ -49,7 +49,8 @@ def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None
     """The runs of these overrides, or what is resolved; errors of `inherited`, `expand_sweep`."""
     if isinstance(texts, DictConfig):
         return [Member(texts, {})]
-    words = texts if isinstance(texts, str) else inherited.add_choices(texts)  # text is refused
+    refused = isinstance(texts, str | Mapping)
+    words = texts if refused else inherited.add_choices(texts)
     return expand_sweep(configuration.compose_raw(words, config_dir), texts)
 
 

@@ -143,14 +143,14 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
         _check_metrics(learner, "update", result[1], names)
         _check_state(learner, "update", states[name], result[0])
     try:
-        _check_controllers(controllers, agent, params, names)
+        check_controllers(controllers, agent, params, names)
     except PartError as error:
         if "NoneType" in str(error):  # perhaps what no learner gives
             check_owners(controllers, owned, agent.spec, every=True)
         raise
 
 
-def _check_controllers(
+def check_controllers(
     controllers: Iterable[Any], agent: Any, params: Params, names: dict[str, str]
 ) -> None:
     """Raise PartError unless controllers act, and objectives give numbers; names: of metrics."""

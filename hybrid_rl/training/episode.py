@@ -21,6 +21,7 @@ from hybrid_rl.core.batching import when_any, where
 from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
+from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.training import user_functions
@@ -128,7 +129,10 @@ class Episode:
         return sensor_noise.begin(state, self._std, jax.random.fold_in(key, 5), SENSED)
 
     def step(self, state: EnvState, action: Array) -> EnvState:
-        """One decision with action [m]."""
+        """One decision with action [m]; UsageError for another shape."""
+        if jnp.shape(action) != (self.spec.act,):
+            shape, right = list(jnp.shape(action)), [self.spec.act]
+            raise UsageError(f"the action is {shape}; it must be {right}; vmap steps many")
         if self.delay:
             late = jnp.concatenate((state.info["late"], action[None]))
             action, state = late[0], state.replace(info={**state.info, "late": late[1:]})

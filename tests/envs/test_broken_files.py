@@ -43,6 +43,7 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "gain: float\n    mass: float",
         r"env\.mass: is missing; W in w\.py has no default for it",
     ),
+    ("a colon, as in env.make", "yaml", "w.W", '"w:W"', r"env\._target_=w:W: write w\.W"),
     ("no such class", "yaml", "w.W", "w.V", r"env\._target_=w\.V: w\.py has no class V"),
     (
         "no such module",
@@ -71,6 +72,13 @@ FILES = [  # of Python and YAML: what is wrong, file, replaced, by what, the who
         "# @package _global_\n",
         "",
         r"my_conf/task/broken\.yaml: its first line must be # @package _global_",
+    ),
+    (
+        "the name of another task",
+        "yaml",
+        "task: broken\n",
+        "defaults: [/task@_global_: pendulum, _self_]\n",
+        r"my_conf/task/broken\.yaml: lacks task: broken, the name of its runs",
     ),
     ("no task", "yaml", "task: broken\n", "", r"my_conf/task/broken\.yaml: lacks task; set .*"),
     (
@@ -134,6 +142,16 @@ def test_files_that_make_no_run_are_refused_in_a_line(folder, file, old, new, li
     texts[file] = changed(texts[file], old, new)
     write(folder, texts["py"], texts["yaml"])
     refused(line, lambda: config.build(config.load(["task=broken", "algo=sac"], "my_conf")))
+
+
+def test_a_method_that_does_not_name_its_runs_is_refused(folder):
+    """They would lie among those of what it begins with, and share their curve."""
+    (folder / "my_conf" / "algo").mkdir()
+    method = "# @package _global_\ndefaults: [/algo@_global_: sac, _self_]\n"
+    for text in (method, method.replace("algo@_global_: sac", "family@_global_: hybrid")):
+        (folder / "my_conf" / "algo" / "own.yaml").write_text(text)
+        line = r"my_conf/algo/own\.yaml: lacks algo: own, the name of its runs"
+        refused(line, lambda: config.load(["task=pendulum", "algo=own"], "my_conf"))
 
 
 def test_a_field_that_the_file_of_a_task_lacks_is_no_other_parts(folder):

@@ -84,3 +84,9 @@ def test_what_was_learned_is_to_blame_where_it_failed_first_or_acted(bad):
         "checkpoint: begin again with a lower learning rate"
     )
     assert ends[0]["quantity"] in ("sac/q", "world/action")
+
+
+def test_a_return_by_sound_learners_is_a_fault_of_what_acted_or_paid():
+    learners, state = diverged(100, [-1] * 5)
+    (end,) = learners.add({0: (10, "eval/return")}, state, 10).values()
+    assert end["world"].endswith("see the world's rewards and the controller's actions")

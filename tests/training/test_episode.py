@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from jax import Array
 
+from hybrid_rl.errors import UsageError
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState, Spec
 
@@ -168,3 +169,11 @@ def test_actions_arrive_with_noise() -> None:
 def test_wrong_numbers_raise(fields, message) -> None:
     with pytest.raises(ValueError, match=message):
         Episode(Counter(), **fields)
+
+
+@pytest.mark.parametrize("action", [jnp.zeros(()), jnp.zeros(2), jnp.zeros((3, 1))])
+def test_an_action_of_another_shape_is_refused(action: Array) -> None:
+    """A world would take its first entry, or broadcast."""
+    episode = Episode(Counter())
+    with pytest.raises(UsageError, match=r"^the action is \[.*\]; it must be \[1\]; vmap steps"):
+        episode.step(episode.reset(jax.random.key(0)), action)
