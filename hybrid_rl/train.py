@@ -84,8 +84,8 @@ class Result(dict[str, Any]):
 @overload
 def train(
     method: Sequence[str] | DictConfig = (),
-    given: Mapping[str, str] = launch.NOTHING,
     *,
+    given: Mapping[str, str] = launch.NOTHING,
     config_dir: str | Path | None = None,
     on_row: OnRow | None = None,
     progress: bool = True,
@@ -112,8 +112,8 @@ def train(
 
 def train(
     method: Sequence[str] | DictConfig | Agent = (),
-    given: Mapping[str, str] = launch.NOTHING,
     *,
+    given: Mapping[str, str] = launch.NOTHING,
     on_row: OnRow | None = None,
     progress: bool = True,
     **settings: Any,

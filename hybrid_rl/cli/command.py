@@ -7,6 +7,7 @@ SIGTERM; 1 any other failure.
 import inspect
 import os
 import re
+import select as polling
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -182,11 +183,23 @@ def _of_each(texts: Sequence[str]) -> list[str]:
 
 def report(error: BaseException) -> NoReturn:
     """End the process with one line and the right code, or with a traceback for a fault of ours."""
+    if isinstance(error, BrokenPipeError) and _unread():
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes at its end
+        sys.exit(1)
     result = diagnosis(error)
     if result is None:
         traceback.print_exception(error)  # begins where it was caught, without Hydra's frames
         sys.exit(1)
     _fail(*result)
+
+
+def _unread() -> bool:
+    """Whether nothing reads the output any more, as in `| head`."""
+    if not hasattr(polling, "poll"):  # Windows
+        return False
+    poll = polling.poll()
+    poll.register(sys.stdout.fileno(), 0)
+    return any(event & polling.POLLERR for _, event in poll.poll(0))
 
 
 def diagnosis(error: BaseException) -> tuple[int, str] | None:

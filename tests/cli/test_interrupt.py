@@ -232,3 +232,12 @@ def test_a_notebook_is_asked_too_and_keeps_its_handlers():
     assert asked == [signal.SIGINT]
     assert signal.getsignal(signal.SIGINT) is before
     assert not interrupt.installed()
+
+
+def test_output_that_nobody_reads_ends_in_silence():
+    """As in `| head`."""
+    process = start("-m", "hybrid_rl.list")
+    process.stdout.close()
+    process.stdout = None
+    assert process.communicate(timeout=60)[1] == ""
+    assert process.returncode == 1
