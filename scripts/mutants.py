@@ -144,8 +144,8 @@ MUTANTS = {
     ),
     f"a {SENTENCE} on a page": Mutant(
         "docs/results/chapter5.md",
-        "So the printed step is as good",
-        "The printed step does well",
+        "The printed step is as good",
+        "The printed step does as well",
         "",
     ),
 }

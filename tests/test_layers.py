@@ -1,4 +1,4 @@
-"""Which layers import which, and the size of files.
+"""Which layers import which, the size of files, and the bugs that scripts/mutants.py plants.
 
 types, errors, drafts, fields, parts
       ^
@@ -19,6 +19,8 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+
+from scripts.mutants import MUTANTS
 
 ROOT = Path(__file__).resolve().parents[1]
 PATTERNS = ("hybrid_rl/**/*.py", "envs/**/*.py", "thesis/*.py", "thesis/studies/*.py")
@@ -177,3 +179,10 @@ def test_importing_the_package_imports_no_heavy_module():
     assert done.returncode == 0, done.stderr
     heavy = {"jax", "flax", "numpy", "mujoco", "brax", "hydra", "matplotlib"}
     assert not heavy & set(done.stdout.split())
+
+
+@pytest.mark.parametrize("name", MUTANTS)
+def test_a_bug_to_plant_finds_its_text_and_its_tests(name):
+    mutant = MUTANTS[name]
+    assert mutant.old in (ROOT / mutant.file).read_text(encoding="utf-8")
+    assert all((ROOT / tests).exists() for tests in mutant.tests.split())

@@ -7,19 +7,34 @@ from hybrid_rl.core import statistics
 
 
 def test_the_first_batches_have_equal_weights() -> None:
-    """After ten batches, mean and standard deviation are those of all rows together."""
+    """After ten batches, mean, standard deviation and magnitude are those of all rows together."""
     rows = np.random.default_rng(0).normal([1.0, -5.0], [2.0, 0.1], size=(10, 64, 2))
     stats = statistics.init(2)
     for batch in rows:
         stats = statistics.update(stats, jnp.float32(batch))
     np.testing.assert_allclose(stats.mean, rows.reshape(-1, 2).mean(0), rtol=1e-4)
     np.testing.assert_allclose(stats.std, rows.reshape(-1, 2).std(0), rtol=1e-3)
+    magnitude = np.sqrt((rows.reshape(-1, 2) ** 2).mean(0))
+    np.testing.assert_allclose(stats.magnitude, magnitude, rtol=1e-3)
+
+
+def test_later_batches_are_weighted_by_the_rate() -> None:
+    """With rate 1/2 each batch has as much weight as all before it."""
+    rows = np.random.default_rng(0).normal(1.0, 2.0, size=(5, 64, 1)) + np.arange(5)[:, None, None]
+    stats = statistics.init(1)
+    for batch in rows:
+        stats = statistics.update(stats, jnp.float32(batch), rate=0.5)
+    w = np.repeat(np.array([1, 1, 2, 4, 8]) / 16 / 64, 64)
+    mean = w @ rows.reshape(-1)
+    np.testing.assert_allclose(stats.mean[0], mean, rtol=1e-5)
+    np.testing.assert_allclose(stats.std[0] ** 2, w @ (rows.reshape(-1) - mean) ** 2, rtol=1e-5)
 
 
 def test_denormalise_is_the_inverse_of_normalise() -> None:
-    """Also for an entry that never changes, which stays finite."""
-    batch = jnp.float32([[1.0, 7.0], [3.0, 7.0]])
-    stats = statistics.update(statistics.init(2), batch)
+    """Also for entries that never change, which stay finite; without data it changes nothing."""
+    batch = jnp.float32([[1.0, 7.0, 0.0], [3.0, 7.0, 0.0]])
+    np.testing.assert_array_equal(statistics.normalise(statistics.init(3), batch), batch)
+    stats = statistics.update(statistics.init(3), batch)
     for x in batch:
         white = statistics.normalise(stats, x)
         assert jnp.isfinite(white).all()

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rotation import share
 
 from hybrid_rl.composition import options
 from hybrid_rl.list import FIRST
@@ -141,7 +140,8 @@ def program(path):
     return long.sub(lambda found: f"{found[1]}{min(int(found[2]), 400)}", code)
 
 
-@pytest.mark.parametrize("path", share(NOTEBOOKS, len(NOTEBOOKS)), ids=lambda path: path.stem)
+@pytest.mark.turns(len(NOTEBOOKS))
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path, tmp_path):
     """One for each commit; `make docs` runs all of them in Jupyter."""
     code = program(path)

@@ -4,7 +4,6 @@ import page_commands as commands
 import pytest
 import small
 import test_methods
-from rotation import share
 
 from hybrid_rl import config
 
@@ -29,8 +28,9 @@ def test_other_commands_have_the_arguments_of_the_page(page):
     commands.check_arguments(page)
 
 
-def test_training_commands_learn_in_a_small_size(tmp_path):
-    """One command for each pair of task and method; a twentieth of the pairs for each commit."""
+@pytest.fixture(scope="module")
+def pairs():
+    """One command for each pair of task and method: task, method, words."""
     found = {}
     for job, *_ in commands.combinations([*commands.LIBRARY, *commands.RESULTS]):
         elsewhere = {"task=playground", "task=robot"} & set(job)  # not installed; test_robot_run.py
@@ -39,8 +39,14 @@ def test_training_commands_learn_in_a_small_size(tmp_path):
         if not sweeps_methods(job) and not elsewhere:
             whole = commands.composed(job)
             found.setdefault((whole.task, whole.algo), job)
-    for task, algo in share(sorted(found.keys() - RUN_ELSEWHERE), 20):
-        given = [word for word in found[task, algo] if not word.startswith(OWN)]
+    return [(*pair, found[pair]) for pair in sorted(found.keys() - RUN_ELSEWHERE)]
+
+
+@pytest.mark.turns(20)
+@pytest.mark.parametrize("turn", range(20))
+def test_training_commands_learn_in_a_small_size(turn, pairs, tmp_path):
+    for task, algo, job in pairs[turn::20]:
+        given = [word for word in job if not word.startswith(OWN)]
         print(task, algo, *given)  # which one failed
         composed = small.with_demonstrations(small.load(algo, *given), tmp_path)
         small.learn(config.build(composed))
