@@ -234,7 +234,7 @@ def test_a_notebook_is_asked_too_and_keeps_its_handlers():
     assert not interrupt.installed()
 
 
-def test_output_that_nobody_reads_ends_in_silence():
+def test_output_without_a_reader_ends_in_silence():
     """As in `| head`."""
     process = start("-m", "hybrid_rl.list")
     process.stdout.close()
