@@ -1,9 +1,11 @@
-"""Two pictures of docs/results/lookahead.md: the default and another setting on five robots.
+"""Pictures of docs/results: the default and another setting on five robots.
 
     python -m scripts.five_robots_picture of=plain_models out=docs/results/plain_models.png
     python -m scripts.five_robots_picture of=fast out=docs/results/fast.png
+    python -m scripts.five_robots_picture of=branch_margin out=docs/results/branch_margin.png
 
-of=plain_models: beside models with layer normalisation; fast: beside settings=fast.
+of=plain_models: beside models with layer normalisation; fast: beside settings=fast; branch_margin:
+beside branches of 40 that end near real states, and learning rates that fall.
 """
 
 import json
@@ -20,9 +22,13 @@ from hybrid_rl.analysis.style import BLACK, BLUE, STYLE, VERMILION, thousands
 from hybrid_rl.cli.arguments import Argument, one_of, read
 from scripts.peers_picture import FONTS, evaluated
 
-OTHERS = {"plain_models": "with layer normalisation (10)", "fast": "settings=fast (10)"}
+OTHERS = {
+    "plain_models": "with layer normalisation (10)",
+    "fast": "settings=fast (10)",
+    "branch_margin": "branches near real states (10)",
+}
 ARGUMENTS = (
-    Argument("of", "plain_models", "or fast", one_of(*OTHERS)),
+    Argument("of", "plain_models", "or fast, branch_margin", one_of(*OTHERS)),
     Argument("folder", "docs/results", "of the JSON files"),
     Argument("out", "docs/results/plain_models.png", "the picture"),
 )
@@ -38,6 +44,9 @@ SIZE, DPI, LAST = (9.6, 5.6), 170, 100_000
 
 def other(of: str, folder: Path, robot: str) -> tuple[np.ndarray, np.ndarray]:
     """Decisions [G] and returns [S, G] of the other setting."""
+    if of == "branch_margin":
+        file = json.loads((folder / "imagined_range.json").read_text())
+        return evaluated(file["margin 1, rates that fall"][robot]["both"])
     name, label = BEFORE[robot] if of == "plain_models" else (of, None)
     file = json.loads((folder / f"{name}.json").read_text())
     if label is None:
