@@ -20,9 +20,9 @@ import optax
 from flax import struct
 from jax import Array
 
+from hybrid_rl.core.clipping import check_saturation
 from hybrid_rl.core.lifting import lift
 from hybrid_rl.core.optimisers import adamw
-from hybrid_rl.core.ranges import edge_and_saturation
 from hybrid_rl.fields import Inside, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
@@ -64,7 +64,7 @@ class BehaviourCloning:
 
     def __post_init__(self) -> None:
         """Check the saturation."""
-        edge_and_saturation(self, "cloning_learner")
+        check_saturation(self, "cloning_learner")
 
     def init(self, key: Array, spec: Spec) -> CloningState:
         """Initial parameters and optimiser. The key is consumed."""

@@ -24,7 +24,7 @@ from jax import Array
 
 from hybrid_rl.core import labels, statistics, teaching
 from hybrid_rl.core.batching import when_any
-from hybrid_rl.core.ranges import edge_and_saturation
+from hybrid_rl.core.clipping import check_saturation
 from hybrid_rl.core.teaching import Answer
 from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Controller, LearnedPolicy, Model, Target
@@ -85,7 +85,7 @@ class DAgger:
     def __post_init__(self) -> None:
         """Check what depends on two fields."""
         teaching.require(self.teacher)
-        edge_and_saturation(self, "dagger_learner")
+        check_saturation(self, "dagger_learner")
         if self.candidates > 1 and self.spread == 0:
             raise FieldError(self, "candidates", "needs spread above 0")
         if self.candidates > 1 and self.target is None and not self.oracle:

@@ -1,10 +1,10 @@
-"""A check of two parts together, whose message names their keys in the configuration."""
+"""The bound to which demonstrated actions are clipped, against the policy that imitates them."""
 
 from typing import Any
 
 
-def edge_and_saturation(learner: Any, section: str) -> None:
-    """Raise ValueError for a learner that clips the actions below its policy's saturation."""
+def check_saturation(learner: Any, section: str) -> None:
+    """Raise ValueError for a learner that clips below its policy's saturation; section: its key."""
     saturation = getattr(learner.policy, "saturation", None)
     if saturation is not None and saturation > learner.edge:
         raise ValueError(
