@@ -8,12 +8,12 @@ Begin with a task and a method by name, as on the command line (`python -m hybri
     policy = result.load().policy(seed=0)  # action = policy(obs)
     (curve,) = hr.curves(result.folder, "eval/return")  # curve.x [G], curve.each [S, G]
 
-Public are the names in `__all__`: `train`, `load`, `curves`, `metrics`, `make` and `compose` by
-name; `Agent`, `Episode`, `Loop`, `EnvState`, `Spec` and `check` for methods and worlds of your own;
-`OnlineLearner` for a loop of your own, such as a robot's; the planning cores `sampling` and
-`adjoint`, whose `plan` takes any `step(x, u)`; and two errors. Parts are in their modules, such as
-`hybrid_rl.learners.sac.SAC`. What is public changes only with a line in the changelog; the rest may
-change without one. docs/python.md has an example of each.
+Public are the names in `__all__`: `train`, `evaluate`, `load`, `curves`, `metrics`, `make` and
+`compose` by name; `Agent`, `Episode`, `Loop`, `EnvState`, `Spec` and `check` for methods and worlds
+of your own; `OnlineLearner` for a loop of your own, such as a robot's; the planning cores
+`sampling` and `adjoint`, whose `plan` takes any `step(x, u)`; and two errors. Parts are in their
+modules, such as `hybrid_rl.learners.sac.SAC`. What is public changes only with a line in the
+changelog; the rest may change without one. docs/python.md has an example of each.
 
 Importing this package imports neither JAX nor MuJoCo: each name is imported at its first use.
 """
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from hybrid_rl.core import adjoint, sampling
     from hybrid_rl.envs.contract import check
     from hybrid_rl.errors import DivergenceError, UsageError
+    from hybrid_rl.evaluate import evaluate
     from hybrid_rl.named import load, make
     from hybrid_rl.online import OnlineLearner
     from hybrid_rl.train import train
@@ -52,6 +53,7 @@ __all__ = [
     "check",
     "compose",
     "curves",
+    "evaluate",
     "load",
     "make",
     "metrics",
@@ -59,7 +61,12 @@ __all__ = [
     "train",
 ]
 
-_MODULES = {"adjoint": "core.adjoint", "sampling": "core.sampling", "train": "train"}
+_MODULES = {  # train and evaluate can be called
+    "adjoint": "core.adjoint",
+    "evaluate": "evaluate",
+    "sampling": "core.sampling",
+    "train": "train",
+}
 _MEMBERS = {  # public name -> module and name there
     "Agent": ("training.agent", "Agent"),
     "DivergenceError": ("errors", "DivergenceError"),
@@ -80,7 +87,7 @@ _MEMBERS = {  # public name -> module and name there
 
 def __getattr__(name: str) -> Any:
     """A public name, imported when it is first used."""
-    if name in _MODULES:  # `train` is a module that can be called
+    if name in _MODULES:
         return import_module(f"hybrid_rl.{_MODULES[name]}")
     if name in _MEMBERS:
         module, member = _MEMBERS[name]

@@ -20,7 +20,7 @@ planner keeps it; the return stays as it is.
 
 Without exploration, with the learners as they were at the newest checkpoint. Of a sweep in one
 program, run=DIR evaluates each run, and run=DIR/1 the second one. From Python,
-`hybrid_rl.trained.load` reads a run back, and `evaluate` gives its returns.
+`hybrid_rl.load` reads a run back, and `hybrid_rl.evaluate` gives its returns.
 """
 
 if __name__ == "__main__":
@@ -227,6 +227,8 @@ def _table(values: dict[str, Any]) -> Table:
         table.add_row(name, *row, end_section=len(lines) > 1 and name == lines[-2][0])
     return table
 
+
+command.make_callable(__name__, evaluate)
 
 if __name__ == "__main__":
     command.run(main)

@@ -26,7 +26,6 @@ import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -250,14 +249,7 @@ def _result(summary: Mapping[str, Any]) -> str:
     return "; ".join(parts)
 
 
-class _Train(ModuleType):
-    """This module, which can be called: hybrid_rl.train(...) is hybrid_rl.train.train(...)."""
-
-    __call__ = staticmethod(train)
-    __signature__ = inspect.signature(train)
-
-
-sys.modules[__name__].__class__ = _Train
+command.make_callable(__name__, train)
 
 if __name__ == "__main__":
     command.hydra_main(_job)

@@ -6,6 +6,7 @@ import signal
 import sys
 from dataclasses import replace
 from functools import partial
+from importlib import import_module
 from inspect import getdoc, signature
 from pathlib import Path
 from types import ModuleType
@@ -57,12 +58,12 @@ def test_another_name_is_no_attribute():
         hr.trian  # noqa: B018
 
 
-def test_train_is_a_module_that_can_be_called():
-    from hybrid_rl import train
-
-    assert isinstance(train, ModuleType)
-    assert train is hr.train
-    assert signature(train) == signature(train.train)
+@pytest.mark.parametrize("name", ["evaluate", "train"])
+def test_a_command_is_a_module_that_can_be_called(name):
+    module = import_module(f"hybrid_rl.{name}")
+    assert isinstance(module, ModuleType)
+    assert module is getattr(hr, name)
+    assert signature(module) == signature(getattr(module, name))
 
 
 def test_the_page_and_the_readme_run(tmp_path, monkeypatch):

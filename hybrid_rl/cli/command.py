@@ -12,6 +12,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from types import ModuleType
 from typing import Any, NoReturn
 
 import yaml
@@ -244,6 +245,16 @@ def _missing(error: BaseException) -> str | None:
 def _fail(code: int, line: str) -> NoReturn:
     print(f"hybrid_rl: {printable(' '.join(line.split()))}", file=sys.stderr, flush=True)
     sys.exit(code)
+
+
+def make_callable(module: str, function: Callable[..., Any]) -> None:
+    """Let a module be called as its function: hybrid_rl.train() is hybrid_rl.train.train()."""
+
+    class Called(ModuleType):
+        __call__ = staticmethod(function)
+        __signature__ = inspect.signature(function)
+
+    sys.modules[module].__class__ = Called
 
 
 def run(job: Callable[[], None]) -> None:
