@@ -1,6 +1,7 @@
 """The adjoint core against reverse mode, finite differences and the linear-quadratic optimum."""
 
 from collections.abc import Iterator
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -166,6 +167,27 @@ def test_the_mode_insertion_gradient_scales_with_the_variance_and_its_ratio_does
     rates = [float(each["planner/insertion_per_variance"]) for each in (of_wide, of_narrow)]
     np.testing.assert_allclose(rates, float(g[0] ** 2), rtol=2e-2)
     assert float(of_narrow["planner/policy_variance"]) == pytest.approx(1e-4)
+    of_two = adjoint.per_variance(jnp.float32(6.0), jnp.array([1.0, 2.0]))
+    assert {name: float(each) for name, each in of_two.items()} == {
+        "planner/policy_variance": 3.0,
+        "planner/insertion_per_variance": pytest.approx(2.0, rel=1e-6),
+    }
+
+
+def test_a_plan_moves_along_the_normalised_gradient_within_the_limits() -> None:
+    """x' = x + u, r = x' - u^2 / 2: g_t = T - t - u_t, in falling steps, clipped at 1."""
+
+    def reward(x: Array, u: Array, after: Array) -> Array:
+        return (after - u**2 / 2).sum()
+
+    plan = jax.jit(partial(adjoint.plan, lambda x, u: x + u, reward, iterations=2))
+    before = np.array([[0.9], [-0.3], [0.2]])
+    wanted = before
+    for gain in (0.2, 0.1):
+        g = np.array([[3.0], [2.0], [1.0]]) - wanted
+        wanted = np.clip(wanted + gain * g / np.sqrt((g**2).mean()), -1, 1)
+    assert wanted[0, 0] == 1
+    np.testing.assert_allclose(plan(jnp.zeros(1), jnp.asarray(before)), wanted, rtol=1e-5)
 
 
 def test_a_cpu_unrolls_few_steps() -> None:

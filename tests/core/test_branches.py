@@ -13,8 +13,8 @@ B = 10
 
 
 def counting(x: Array, for_policy: Array, for_model: Array, key: Array) -> Batch:
-    """x' = x + 1; action -x, reward x; the episode ends above 2.5."""
-    ended = jnp.where(x[:, 0] > 2.5, 1.0, 0.0)
+    """x' = x + 1; action -x, reward x; the episode is likely to end above 2.5."""
+    ended = jnp.where(x[:, 0] > 2.5, 0.6, 0.4)
     return Batch(x, -x[:, :1], x[:, 0], ended, 0 * ended, x + 1)
 
 
@@ -44,14 +44,15 @@ def test_branches_reach_every_length() -> None:
 def test_a_branch_that_ended_restarts() -> None:
     batch = recalled(1.0, 9, 30)
     assert set(np.asarray(batch.obs[:, 0])) == {1.0, 2.0, 3.0}
-    np.testing.assert_allclose(batch.terminated, np.asarray(batch.obs[:, 0]) > 2.5)
+    np.testing.assert_allclose(batch.terminated, np.where(batch.obs[:, 0] > 2.5, 0.6, 0.4))
 
 
 def test_forgotten_branches_start_again() -> None:
-    """Also inside the state of a learner; no older transition is drawn."""
+    """Also inside the state of a learner; no older transition is drawn. Before, all ages."""
     old, first = branches.begin(B, 8 * B, 1, 1, 4), jnp.full((B, 1), -9.0)
     for key in jax.random.split(jax.random.key(3), 10):
         old = branches.extended(old, counting, first, 1, 4, key)
+    assert set(np.asarray(old.x[:, 0])) == {-8.0, -7.0, -6.0, -5.0}
     kept = forgotten({"kept": old, "other": 1})["kept"]
     kept = branches.extended(kept, counting, first - 20, 1, 4, jax.random.key(5))
     batch = branches.sample_kept(kept, 1, jax.random.key(4))
@@ -59,9 +60,11 @@ def test_forgotten_branches_start_again() -> None:
 
 
 def test_a_branch_ends_outside_of_the_real_range() -> None:
-    """Starts from -9 to -8, margin 1.5: it ends above -6.5. A constant entry does not count."""
-    first = jnp.stack([jnp.linspace(-9, -8, B), jnp.full(B, 5.0)], -1)
+    """Starts from -9 to -7, margin 0.75: it ends above -5.5. A constant entry does not count."""
+    first = jnp.stack([jnp.linspace(-9, -7, B), jnp.full(B, -5.0)], -1)
     assert recalled(first, 20, 30).obs[:, 0].max() > 0
-    near = recalled(first, 20, 30, margin=1.5)
-    assert -7.5 < near.obs[:, 0].max() <= -6.5
-    assert near.obs[:, 1].max() > 5
+    near = recalled(first, 20, 30, margin=0.75)
+    assert -6.5 < near.obs[:, 0].max() <= -5.5
+    assert near.obs[:, 1].max() > -5
+    below = jnp.array([[-10.6, -5.0], [-10.4, -5.0]])
+    np.testing.assert_array_equal(branches._far(below, first, 0.75), [True, False])

@@ -161,10 +161,11 @@ def test_an_unstable_path_does_not_overflow() -> None:
     x = jnp.ones((21, 1), jnp.float32)
 
     def total(u: Array) -> Array:
-        path = Path(x, u)
-        F = along(lambda a, x, u: 1e4 * a * x + u, jnp.ones(1, jnp.float32), path, "path")
+        path, one = Path(x, u), jnp.ones(1, jnp.float32)
+        given = lambda a, x, u: 1e4 * a * x + u, one, path, "path"
+        F = along(*given)
         each = [fisher.criterion(n, F, jnp.ones(1), jnp.ones(1)) for n in fisher.CRITERIA]
-        return jnp.stack(each).sum()
+        return jnp.stack(each).sum() + jnp.sum(fisher.products(*given, one) ** 2)
 
     value, slope = jax.jit(jax.value_and_grad(total))(jnp.zeros((20, 1), jnp.float32))
     assert np.isfinite(value)

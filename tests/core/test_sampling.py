@@ -1,5 +1,6 @@
 """The sampling core against a plain loop, and against the path integral that it estimates."""
 
+from functools import partial
 from typing import Any
 
 import jax
@@ -121,8 +122,17 @@ def test_a_candidate_without_a_finite_return_has_no_weight() -> None:
 
         return sampling.plan(lambda x, u: x + u, reward, x, before, key)
 
-    assert plan(1.0) > 0.4
+    assert 0.4 < plan(1.0) <= 1
     assert 0.2 < plan(-jnp.inf) <= 0.3
     assert plan(jnp.nan) == plan(-jnp.inf)
     always = sampling.plan(lambda x, u: x * jnp.nan, lambda x, u, after: after[0], x, before, key)
     assert np.isnan(always).all()
+
+
+def test_a_plan_moves_by_the_deviation_divided_by_the_temperature() -> None:
+    """For r = u: S_1 = u_1 is alone in its deviation, S_0 = u_0 + u_1 shares it with u_1."""
+    x, before = jnp.zeros(1), jnp.array([[0.3], [-0.2]])
+    given: dict = {"samples": 20_000, "std": 0.1, "temperature": 2.0}
+    make = jax.jit(partial(sampling.plan, lambda x, u: x, lambda x, u, after: u[0], **given))
+    moved = make(x, before, jax.random.key(0)) - before
+    np.testing.assert_allclose(moved[:, 0], [0.05 / np.sqrt(2), 0.05], atol=0.003)

@@ -133,7 +133,7 @@ def test_other_bytes_and_bare_arrays_are_refused(tmp_path: Path) -> None:
             load(tmp_path / name)
 
 
-@pytest.mark.parametrize("worlds", [1, 2])
+@pytest.mark.parametrize("worlds", [1, 3])  # of three, one stretch ends with a terminal decision
 def test_a_memory_begins_with_the_demonstrations(file: Path, worlds: int) -> None:
     """Every sample is a demonstrated decision with its successor; cut stretches are truncated."""
     shown = Demonstrations(str(file), "pendulum", Pendulum())
@@ -150,6 +150,9 @@ def test_a_memory_begins_with_the_demonstrations(file: Path, worlds: int) -> Non
     np.testing.assert_array_equal(batch.next_action, put.action[row + 1])
     truncated = np.asarray(memory.rows)[N // worlds - 1, :, 3 + 1 + 2]
     np.testing.assert_array_equal(truncated, 1 - put.terminated[last])
+    assert replay.within(5, worlds).capacity == N + 5 * worlds
+    assert replace(replay, capacity=13).within(5, worlds).capacity == 13
+    assert replay.within(0, 5).capacity == N  # none of them is dropped
 
 
 def test_a_memory_smaller_than_the_demonstrations_is_refused(file: Path) -> None:

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from hybrid_rl.data.replay import Memory, Replay
+from hybrid_rl.data.replay import Memory, Replay, unpack
 from hybrid_rl.types import Spec, Transition
 
 SPEC = Spec(obs=2, act=1, dt=0.1)
@@ -74,3 +74,18 @@ def test_decisions_are_recent_as_far_back_as_the_memory_reaches(times: int) -> N
     assert [each is not None for each in found] == [ago < held for ago in range(7)]
     rewards = [float(each.reward[0]) for each in found if each is not None]
     assert rewards == [-100.0 * (times - 1 - ago) for ago in range(held)]
+
+
+def test_a_memory_that_goes_on_begins_another_episode() -> None:
+    """Of three worlds' newest decisions one is terminal, the others are cut."""
+    no, ends = jnp.zeros(3, bool), jnp.array([False, True, False])
+    replay, memory = Replay(12), Replay(12).init(SPEC, 3)  # four rows
+    for time in range(6):
+        flags = {"terminated": ends if time == 5 else no, "truncated": no}
+        memory = replay.add(memory, transition(time, 3)._replace(**flags))
+    memory = replay.interrupted(replay.resized(memory), SPEC)
+    kept, none = unpack(np.asarray(memory.rows), SPEC), [[0, 0, 0]] * 3
+    np.testing.assert_array_equal(kept.reward[:, 0], [-200, -300, -400, -500])
+    np.testing.assert_array_equal(kept.terminated, [*none, [0, 1, 0]])
+    np.testing.assert_array_equal(kept.truncated, [*none, [1, 0, 1]])
+    assert not replay.interrupted(replay.init(SPEC, 3), SPEC).rows.any()

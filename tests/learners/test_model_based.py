@@ -145,11 +145,11 @@ def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_targe
     @jax.jit
     def made(state: Any) -> tuple:
         paths = learner.imagine(PARAMS._replace(policy=state.policy), START, KEY)
-        loss = learner._expanded(state, jnp.float32(ALPHA), paths, 1.0)[1][0]
+        loss = learner._expanded(state, jnp.float32(ALPHA), paths, 1.0)[1]
         last = critic.value(state.target, paths.x[-1], paths.u[-1])
         return paths, loss, last, jax.vmap(critic.all, (None, 0, 0))(state.critic, *paths[:2])
 
-    paths, loss, value, q = jax.tree.map(np.asarray, made(first))
+    paths, (loss, mean), value, q = jax.tree.map(np.asarray, made(first))
     value, goals = value - ALPHA * paths.log_prob[3], {}
     for t in (2, 1, 0):
         goals[t] = paths.reward[t] + DISCOUNT * paths.continues[t] * value
@@ -157,6 +157,7 @@ def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_targe
     errors = [(q[0] - goals[0]) ** 2, paths.continues[0] * (q[1] - goals[1]) ** 2]
     assert paths.continues[0].min() < 0.95
     assert float(loss) == pytest.approx(0.5 * np.mean(errors, (0, 2)).sum(), rel=1e-4)
+    assert float(mean) == pytest.approx(q[:2].mean(), rel=1e-4)
 
 
 @dataclass(frozen=True)

@@ -84,11 +84,11 @@ def test_the_temperature_meets_its_target() -> None:
 
     The entropy still oscillates by about 0.04 nat; 4,000 samples have an error of 0.01 nat.
     """
-    sac = learner(target_entropy=-1.0)
+    sac = learner(target_entropy=-0.5)
     state = train(sac, partial(batch, terminated=1.0, truncated=0.0, of_action=True), 4000)
     noise = jax.random.normal(jax.random.key(2), (4000, 1))
     log_prob = jax.vmap(lambda e: sac.policy.sample(state.policy, jnp.zeros(1), e)[1])(noise)
-    assert -float(log_prob.mean()) == pytest.approx(-1.0, abs=0.1)
+    assert -float(log_prob.mean()) == pytest.approx(-0.5, abs=0.1)
 
 
 @pytest.mark.parametrize("normalise", [False, True])

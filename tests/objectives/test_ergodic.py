@@ -10,8 +10,9 @@ import pytest
 from scipy.stats import norm
 
 from hybrid_rl.core.domain import Box
+from hybrid_rl.core.ergodic import Points
 from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
-from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic
+from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic, KLState
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.types import Params, Path, Spec
 
@@ -97,6 +98,19 @@ def test_measure_is_the_divergence_on_a_grid() -> None:
     q = np.mean([np.prod(norm.pdf(s, x, np.sqrt([0.05, 0.1])), -1) for x in counted], 0)
     p = p_of(s) / (p_of(s).sum() * cell)
     assert float(got) == pytest.approx(float(np.sum(p * np.log(p / q)) * cell), rel=0.01)
+
+
+def test_a_memory_that_is_not_full_has_no_other_states() -> None:
+    """Two earlier states, in a memory of four and in one of two, into which they fit."""
+    path, past = Path(jnp.asarray(walk(6)), jnp.zeros((5, 1))), jnp.array(walk(2, seed=2)[:, :2])
+    points = Points(BOX.sample(50, jax.random.key(0)), jnp.full(50, -jnp.log(50.0)))
+
+    def value(memory: int) -> jax.Array:
+        held = KLState(jnp.zeros((memory, 2)).at[:2].set(past), jnp.float32(2))
+        return replace(KL, memory=memory).measure(points, held)(path)
+
+    wide, fitting = jax.jit(lambda: (value(4), value(2)))()
+    assert float(wide) == pytest.approx(float(fitting), rel=1e-5)
 
 
 def test_the_bound_depends_only_on_the_mean() -> None:

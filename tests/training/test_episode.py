@@ -56,7 +56,9 @@ def test_the_time_limit_truncates_and_the_task_terminates() -> None:
 @pytest.mark.parametrize(("end", "total"), [(1000, 6.0), (5, 5.0), (4, 4.0)])
 def test_repeat_adds_rewards_until_the_end(end: int, total: float) -> None:
     """Two decisions of three repeats each; nothing counts after termination."""
-    state = roll(Episode(Counter(end=end), steps=100, action_repeat=3), 2)
+    episode = Episode(Counter(end=end), steps=100, action_repeat=3)
+    assert episode.spec.dt == pytest.approx(0.3)
+    state = roll(episode, 2)
     assert float(state.info["return"]) == total
     assert bool(state.terminated) == (end <= 6)
 
@@ -144,10 +146,10 @@ def test_actions_arrive_with_noise() -> None:
     """Clipped Gaussian noise, new at each decision and in each episode."""
     episode = Episode(Echo(), action_noise=0.5)
     state = jax.vmap(episode.reset)(jax.random.split(jax.random.key(0), 4000))
-    seen = []
+    sign, seen = np.resize([1.0, -1.0], 4000), []
     for _ in range(2):
-        state = jax.vmap(episode.step)(state, jnp.full((4000, 1), 0.75))
-        seen.append(np.asarray(state.obs[:, 0]))
+        state = jax.vmap(episode.step)(state, 0.75 * jnp.asarray(sign, jnp.float32)[:, None])
+        seen.append(sign * state.obs[:, 0])
     drawn = np.clip(0.75 + 0.5 * np.random.default_rng(0).standard_normal((2, 4000)), -1, 1)
     levels = np.linspace(0.05, 0.65, 13)
     wanted = np.quantile(drawn, levels, axis=1)

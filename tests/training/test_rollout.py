@@ -1,6 +1,7 @@
 """Evaluations of episodes, and policies of finished runs."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import jax
@@ -12,7 +13,7 @@ from jax import Array
 from hybrid_rl.errors import UsageError
 from hybrid_rl.trained import Trained
 from hybrid_rl.training.episode import Episode
-from hybrid_rl.training.rollout import evaluate_episodes, rollout
+from hybrid_rl.training.rollout import advance, begin, evaluate_episodes, rollout
 from hybrid_rl.types import EnvState, Params, Spec
 
 
@@ -37,7 +38,7 @@ class Walk:
 
 
 class Draws:
-    """The action is 0 or 1, drawn once per episode."""
+    """The action is 0.5 or 1, drawn once per episode."""
 
     def init(self, spec: Spec) -> Array:
         """No draw yet."""
@@ -47,7 +48,7 @@ class Draws:
         self, params: Params, state: Array, obs: Array, key: Array
     ) -> tuple[Array, Array, dict]:
         """The step [1]."""
-        drawn = jax.random.bernoulli(key).astype(jnp.float32)
+        drawn = 0.5 + 0.5 * jax.random.bernoulli(key)
         state = jnp.where(state < 0, drawn, state)
         return state[None], state, {}
 
@@ -57,7 +58,8 @@ def test_an_evaluation_has_returns_and_successes() -> None:
     got = evaluate_episodes(Episode(Walk(), steps=5), Draws(), Params(), keys)
     success = np.asarray(got["success"])
     assert set(success) == {0.0, 1.0}
-    np.testing.assert_array_equal(got["return"], 6 * success)  # 1 + 2 + 3, and nothing after
+    wanted = np.where(success, 6, 7.5)  # 1 + 2 + 3 and nothing after; 0.5 + 1 + ... + 2.5
+    np.testing.assert_array_equal(got["return"], wanted)
 
 
 def test_a_rollout_is_the_episode_of_the_evaluation() -> None:
@@ -67,6 +69,17 @@ def test_a_rollout_is_the_episode_of_the_evaluation() -> None:
     got = evaluate_episodes(episode, Draws(), Params(), keys)
     one = jax.vmap(lambda key: rollout(episode, Draws(), Params(), key, 5))
     np.testing.assert_array_equal(one(keys).info["return"][:, -1], got["return"])
+
+
+def test_an_evaluation_goes_on_where_it_paused() -> None:
+    """After two decisions of each episode, then to the end."""
+    keys = jax.random.split(jax.random.key(0), 16)
+    episode = Episode(Walk(), steps=5)
+    more = jax.jit(partial(advance, episode, Draws(), Params()))
+    paused = more(begin(episode, Draws(), keys), jnp.int32(2))
+    assert set(np.asarray(paused[0].info["decision"])) == {2}
+    whole = evaluate_episodes(episode, Draws(), Params(), keys)
+    np.testing.assert_array_equal(more(paused, jnp.int32(9))[0].info["return"], whole["return"])
 
 
 def test_an_evaluation_of_a_task_without_success_has_none() -> None:
@@ -115,7 +128,7 @@ def test_a_trained_policy_acts_from_observations() -> None:
 def test_a_trained_policy_draws_for_each_environment_and_decision() -> None:
     draws, again, other = (run_of(Draws()).policy(key=key) for key in (0, 0, 1))
     first = draws(np.zeros((32, 1)))
-    assert 0 < first.sum() < 32
+    assert 16 < first.sum() < 32
     np.testing.assert_array_equal(again(np.zeros((32, 1))), first)
     assert (other(np.zeros((32, 1))) != first).any()
     draws.reset()
