@@ -198,6 +198,15 @@ class Episode:
             u = jnp.clip(action, -1.0, 1.0)
             return now.replace(reward=self.reward.reward_of(state.obs, u, now.obs))
 
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [], less a violation's price, of action u [m] between observations [o].
+
+        For a `reward`, or an environment that has this method, without `action_repeat`.
+        """
+        goal: Any = self.env if self.reward is None else self.reward
+        paid, limit = goal.reward_of(x, u, after), self.constraint
+        return paid if limit is None else paid - limit.price * (limit.excess(x, u, after) > 0)
+
     def auto_reset(self, state: EnvState, key: Array) -> EnvState:
         """`state`, or the first state of a new episode if it is done. The key is consumed.
 
