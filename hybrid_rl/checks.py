@@ -141,6 +141,14 @@ def random_decisions(values: Mapping[str, Any], given: Mapping[str, str]) -> Any
     return min(random, (total + 1) // 2) if type(random) is type(total) is int else random
 
 
+def set_length(learners: DictConfig, decisions: int) -> None:
+    """Give schedules the length of the run, unless they have one."""
+    for learner in filter(None, learners.values()):
+        schedule = learner.get("schedule")
+        if schedule is not None and schedule.get("decisions", decisions) is None:
+            schedule.decisions = decisions
+
+
 def countable(config: DictConfig) -> None:
     """Raise UsageError for more decisions than their counter holds, the last round included."""
     if config.total_steps + config.num_envs > STEPS:

@@ -155,6 +155,7 @@ def build(config: DictConfig) -> Run:
     checks.whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
+        checks.set_length(parts.learners, config.total_steps)
         episode, notes, controllers = _acting(parts)
         agent = Agent(
             episode,

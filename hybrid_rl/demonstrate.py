@@ -170,8 +170,7 @@ def _models(
     if about is None or any(value is None or not config.get(n) for n, value in parts.items()):
         raise UsageError(f"models=true: {folder} has no policy with a learned model and reward")
     known = [*parts]
-    own = not (config.get("constraint") or config.get("reward"))  # the critic's are not the task's
-    if own and params.critic is not None:
+    if params.critic is not None:
         parts["critic"] = params.critic
         known += ["critic", *(name for name in OBJECTIVES if name in config)]
     about |= {name: _anywhere(OmegaConf.to_container(config[name])) for name in known}
@@ -206,6 +205,8 @@ def description(folder: Path, trained: Trained, command: str, seed: int) -> dict
         "episode": OmegaConf.to_container(config.episode),
         "policy": OmegaConf.to_container(node.policy),
     }
+    paid = {name: config[name] for name in configuration.PAID if config.get(name) is not None}
+    parts |= {name: _anywhere(OmegaConf.to_container(part)) for name, part in paid.items()}
     number = trained.seeds.index(seed)
     about = {**parts, "algo": config.algo, "seed": seed, "step": trained.step}
     summary = RunFolder(folder).summary

@@ -5,8 +5,9 @@
     action = policy(obs)  # [m] in [-1, 1]; within the bounds of a Gymnasium environment or a robot
 
 `load` reads the folder of a run, `read` a file of hybrid_rl.data.trained: one of policies/, which
-come with the package, or the user's. The `about` of a file is JSON with the world, the episode and
-the policy as in config.yaml of the run, and with the command, the seed and the evaluation.
+come with the package, or the user's. The `about` of a file is JSON with the world, the episode, the
+policy and, if there are such, the reward and the constraint, as in config.yaml of the run, and with
+the command, the seed and the evaluation.
 """
 
 from collections.abc import Mapping
@@ -220,18 +221,20 @@ def _trained(prefix: str, file: str, task: str, about: dict[str, Any]) -> Traine
         env = env | {"physics": resolve(env["physics"], 1)}  # of this machine
     env = part(prefix, file, env)
     world = {"task": task, "num_seeds": 1, "num_envs": 1, "env": about["env"]}
+    kept = {name: about[name] for name in (*ACTING, *configuration.PAID) if name in about}
     trained = SavedPolicy(None, file, task, env, about["episode"])
     controller = PolicyController(trained.policy, explore=False)
+    paid = {name: part(prefix, file, about[name]) for name in configuration.PAID if name in about}
     params = Params(policy=trained.load(), **_models(prefix, file, task, env, about))
     return Trained(
         task,
-        Episode(env, **about["episode"]),
+        Episode(env, **about["episode"], **paid),
         {"full": controller, "policy": controller},
         jax.tree.map(lambda leaf: leaf[None], params),
         (about["seed"],),
         about["step"],
         tuple(_origin(about)),
-        OmegaConf.create(world | {name: about[name] for name in ACTING if name in about}),
+        OmegaConf.create(world | kept),
     )
 
 

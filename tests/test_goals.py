@@ -178,6 +178,19 @@ def test_a_file_holds_the_learner_that_is_asked_for(tmp_path, capfd) -> None:
     assert "learner=5: the run has 3, 4" in only_line(capfd)
 
 
+def test_a_file_holds_the_reward_and_the_constraint_of_its_run(tmp_path) -> None:
+    """So its evaluation is that of the run; each can be replaced."""
+    folder, file = tmp_path / "run", tmp_path / "aimed.npz"
+    run(folder, "task=cartpole", "algo=sac", *AT, "constraint=torque", "constraint.most=0.01")
+    main = lambda *words: call(lambda: command.run(demonstrate.main), *words)  # noqa: E731
+    assert main(f"run={folder}", f"policy={file}") == 0
+    was, now = (evaluate.evaluate(each, "policy", 2) for each in (load(folder), read(str(file))))
+    jax.tree.map(np.testing.assert_array_equal, now, was)
+    assert now["violations"].min() > 0
+    other = retargeted(read(str(file)), ["constraint=torque", "constraint.most=1.0"]).episode
+    assert (other.constraint.most, other.reward) == (1.0, load(folder).episode.reward)
+
+
 def test_evaluate_names_the_goal(trained: Path, capsys, monkeypatch) -> None:
     """In its output and in the file's name; the policy alone has a line beside the planner."""
     main = lambda *words: call(lambda: command.run(evaluate.main), *words)  # noqa: E731

@@ -17,7 +17,6 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
 from hybrid_rl.errors import MisfitError, UsageError
-from hybrid_rl.protocols import Goal
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import read_part, with_capacity
@@ -170,7 +169,7 @@ def _memory(
     if not then.checkpoint_replay:
         return None, "checkpoints of that run hold none"
     same = _plain(then.get("reward")) == _plain(config.get("reward"))
-    if not same and _goal(agent.episode) is None:
+    if not same and not _follows(agent.episode):
         return None, "reward differs"
     path = source / "checkpoints"
     sized = with_capacity(agent, checkpoint.meta(path)["capacity"])
@@ -197,13 +196,12 @@ def _plain(part: Any) -> Any:
     return {key: value for key, value in flat.items() if not key.startswith("world.")}
 
 
-def _goal(episode: Episode) -> Goal | None:
-    """What the episodes pay, if it follows from what a memory holds; else None."""
+def _follows(episode: Episode) -> bool:
+    """Whether what the episodes pay follows from what a memory holds."""
     exact = episode.action_repeat == 1 and not episode.delay and not episode.action_noise
     if not exact or episode.sensor_noise != 0.0:
-        return None
-    env: Any = episode.env
-    return episode.reward or (env if hasattr(env, "reward_of") else None)
+        return False
+    return episode.reward is not None or hasattr(episode.env, "reward_of")
 
 
 def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:
@@ -211,8 +209,9 @@ def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:
 
     def one(memory: Any) -> Any:
         memory = agent.replay.interrupted(agent.replay.resized(memory), agent.spec)
-        goal = _goal(agent.episode) if relabelled else None
-        return memory if goal is None else agent.replay.relabelled(memory, agent.spec, goal)
+        if not relabelled:
+            return memory
+        return agent.replay.relabelled(memory, agent.spec, agent.episode)
 
     learners = range(len(memory.count))
     each = [one(jax.tree.map(lambda leaf, s=s: leaf[s], memory)) for s in learners]

@@ -6,20 +6,31 @@ Until then nothing changes, so a run without it is the same up to there. Linear 
 training is the cooldown of Hagele et al. 2024.
 """
 
+from typing import Any
+
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import Count, Share, part
+from hybrid_rl.fields import Count, FieldError, Share, part
 
 
 @part
 class LinearDecay:
-    """Falls from 1 to 0 in a line over the last `share` of `decisions`."""
+    """Falls from 1 to 0 in a line over the last `share` of `decisions`.
 
-    decisions: Count  # N, of the whole run
+    Raises:
+        ValueError: without `decisions`, which a configuration sets to its `total_steps`.
+    """
+
+    decisions: Count | None = None  # N, of the whole run
     share: Share = 0.3
+
+    def __post_init__(self) -> None:
+        if self.decisions is None:
+            raise FieldError(self, "decisions", "must be those of the whole run")
 
     def factor(self, decisions: Array) -> Array:
         """The factor [] of learning rates, so many decisions [] into the run."""
-        left = (self.decisions - decisions) / (self.share * self.decisions)
+        whole: Any = self.decisions
+        left = (whole - decisions) / (self.share * whole)
         return jnp.clip(left, 0.0, 1.0)

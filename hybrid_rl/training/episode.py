@@ -1,9 +1,9 @@
 """Episodes of an environment: time limit, action repeat, resets, and disturbances on request.
 
-A controller sees o + sensor_noise N(0, I). Its action u arrives `delay` decisions later, as
-clip(u + action_noise N(0, I)). An expert who is disturbed in this way demonstrates how to return
-(Laskey et al. 2017, "DART: noise injection for robust imitation learning"). With `randomise` each
-episode has another body (`envs/mujoco/randomised.py`).
+A controller sees o + sensor_noise N(0, I); environment, reward and constraint see o. Its action u
+arrives `delay` decisions later, as clip(u + action_noise N(0, I)). An expert who is disturbed in
+this way demonstrates how to return (Laskey et al. 2017, "DART: noise injection for robust imitation
+learning"). With `randomise` each episode has another body (`envs/mujoco/randomised.py`).
 """
 
 from collections.abc import Mapping
@@ -30,6 +30,7 @@ from hybrid_rl.types import EnvState, Spec
 # Environments always compute in full precision, networks perhaps with less on an accelerator.
 EXACT = partial(jax.default_matmul_precision, "highest")
 SENSED = "episode_noise"  # in `info`: the key of the next noise
+TRUE = "true_obs"  # in `info`: the observation before it
 DISTURBED = "action_noise"  # in `info`: the key of the next disturbance
 VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
 
@@ -120,6 +121,8 @@ class Episode:
         clock = {"decision": jnp.zeros((), jnp.int32), "return": jnp.zeros(())}
         if self.delay:
             clock["late"] = jnp.zeros((self.delay, self.spec.act))
+        if any(self._std):
+            clock[TRUE] = state.obs
         if self.action_noise:
             clock[DISTURBED] = jax.random.key_data(jax.random.fold_in(key, 6))
         if self.constraint is not None:
@@ -133,12 +136,17 @@ class Episode:
         if jnp.shape(action) != (self.spec.act,):
             shape, right = list(jnp.shape(action)), [self.spec.act]
             raise UsageError(f"the action is {shape}; it must be {right}; vmap steps many")
+        if any(self._std):
+            state = state.replace(obs=state.info[TRUE])
         if self.delay:
             late = jnp.concatenate((state.info["late"], action[None]))
             action, state = late[0], state.replace(info={**state.info, "late": late[1:]})
         if self.action_noise:
             action, state = self._disturbed(state, action)
-        return sensor_noise.resume(self._decide(state, action), self._std, state, SENSED)
+        now = self._decide(state, action)
+        if any(self._std):
+            now = now.replace(info={**now.info, TRUE: now.obs})
+        return sensor_noise.resume(now, self._std, state, SENSED)
 
     def _disturbed(self, state: EnvState, action: Array) -> tuple[Array, EnvState]:
         """The action [m] with noise, and the state with the key of the next noise."""
@@ -189,6 +197,15 @@ class Episode:
                 return now
             u = jnp.clip(action, -1.0, 1.0)
             return now.replace(reward=self.reward.reward_of(state.obs, u, now.obs))
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [], less a violation's price, of action u [m] between observations [o].
+
+        For a `reward`, or an environment that has this method, without `action_repeat`.
+        """
+        goal: Any = self.env if self.reward is None else self.reward
+        paid, limit = goal.reward_of(x, u, after), self.constraint
+        return paid if limit is None else paid - limit.price * (limit.excess(x, u, after) > 0)
 
     def auto_reset(self, state: EnvState, key: Array) -> EnvState:
         """`state`, or the first state of a new episode if it is done. The key is consumed.

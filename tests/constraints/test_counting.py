@@ -16,6 +16,7 @@ from hybrid_rl.constraints.limit import Limit
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.run.start import _rewritten
 from hybrid_rl.trained import load
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loops import loop_of
@@ -86,6 +87,8 @@ def test_learners_are_paid_less_and_the_return_stays() -> None:
     np.testing.assert_allclose(reward, paid - 7 * broken, rtol=1e-4)
     np.testing.assert_allclose(state.env.info["return"][0, 0], paid.sum(), rtol=1e-4)
     np.testing.assert_array_equal(metrics["world/violation"][:20, 0], broken)
+    again = _rewritten(built.agent, state.memory, relabelled=True)  # of a run that begins with it
+    np.testing.assert_allclose(again.rows[0, :20, 0, o + m], reward, rtol=1e-4)
 
 
 @pytest.fixture(scope="module")

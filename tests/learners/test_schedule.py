@@ -29,6 +29,18 @@ def test_the_factor_is_one_then_falls_to_zero():
     )
 
 
+def test_without_a_length_it_is_refused():
+    with pytest.raises(ValueError, match="decisions=null: must be those of the whole run"):
+        LinearDecay()
+
+
+def test_a_resumed_run_with_more_decisions_lowers_the_rates_at_its_own_end():
+    made = load("hybrid_stochastic", "task=pendulum", "schedule=linear")
+    for made.total_steps in (200, 300):  # as `train resume=DIR total_steps=300` does
+        learners = build(made).agent.learners
+        assert {each.schedule for each in learners.values()} == {LinearDecay(made.total_steps)}
+
+
 @pytest.mark.parametrize("algo", METHODS)
 def test_rates_are_whole_at_first_and_zero_at_the_end(algo):
     given = [algo, "task=pendulum"]  # the policy acts, as a planner compiles long

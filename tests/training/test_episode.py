@@ -142,6 +142,27 @@ def test_observations_have_noise_and_the_world_has_not() -> None:
     np.testing.assert_allclose(noise.mean(1), 0, atol=0.03)
 
 
+@dataclass(frozen=True)
+class Sum(Counter):
+    """Adds actions to its observation, which is all that it knows; its reward is the change."""
+
+    def step(self, state: EnvState, action: Array) -> EnvState:
+        """One more action."""
+        return super().step(state, action).replace(obs=state.obs + action)
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The change of the observation."""
+        return (after - x)[0]
+
+
+def test_a_world_that_steps_from_its_observation_knows_no_noise() -> None:
+    """Nor does a reward of two observations."""
+    episode = Episode(Sum(), sensor_noise=0.5, reward=Sum(), action_repeat=2)
+    assert float(roll(episode, 3).info["return"]) == 0
+    start, state = Episode(Sum()).reset(jax.random.key(0)), roll(episode, 3)
+    assert float(state.info["true_obs"][0]) == float(start.obs[0]) != float(state.obs[0])
+
+
 def test_actions_arrive_with_noise() -> None:
     """Clipped Gaussian noise, new at each decision and in each episode."""
     episode = Episode(Echo(), action_noise=0.5)
