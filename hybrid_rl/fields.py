@@ -54,6 +54,9 @@ class Must:
     has: str = ""  # the method that the value must have; empty: another rule
     of: tuple[float, ...] = ()  # all values, where there are few
 
+    def __repr__(self) -> str:  # in the signatures that `help` prints
+        return self.words
+
 
 def has(method: str, words: str) -> Must:
     """The rule that a value has this method; `words` is the whole message if it does not."""
@@ -121,6 +124,8 @@ def _check(self: Any) -> None:
             continue
         for kind in kinds:
             if get_origin(plain(kind)) is tuple:
+                if isinstance(value, float | int) and len(kinds) > 1:
+                    continue  # has the rule of a number
                 value = _tuples(kind, value)
                 object.__setattr__(self, field.name, value)
             elif isinstance(value, tuple) and len(kinds) > 1:
@@ -142,20 +147,23 @@ def _wrong(kind: Any, value: Any) -> str:
     if get_origin(kind) is Annotated:
         must: Must = of[1]
         try:
-            holds = must.hold(value)
-        except TypeError:  # a word in a list of numbers, say
+            holds = bool(must.hold(value))
+        except (TypeError, ValueError):  # a word or an array in a list of numbers, say
             holds = False
         return "" if holds else must.words if must.has else f"must {must.words}"
     if getattr(kind, "_is_protocol", False) and isinstance(value, bool | int | float | str):
         return "must be a part"
     if get_origin(kind) is Literal:
         return "" if value in of else f"choose one of {', '.join(map(str, of))}"
-    if get_origin(kind) is not tuple or isinstance(value, float | int):
+    if get_origin(kind) is not tuple:
         return ""
+    if isinstance(value, float | int):
+        return "must be a list"
     each = of[:1] * len(value) if of[-1] is Ellipsis else of
     if len(each) != len(value):
         return f"must have {len(each)} entries"
-    return next(filter(None, map(_wrong, each, value)), "")
+    wrong = next(filter(None, map(_wrong, each, value)), "")
+    return "must be a list of lists" if wrong == "must be a list" else wrong
 
 
 def _tuples(kind: Any, value: Any) -> Any:

@@ -126,8 +126,9 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
             ["algo=nn_mppi", "proposal=noise"],
             "proposal: nn_mppi does not use it; it uses proposal@model_proposal",
         ),
+        (["domain.coordinates=[0,9]"], "coordinates=[0, 9]: must be entries of a state with 4"),
     ],
-    ids=["name", "value", "key", "class", "module", "unused"],
+    ids=["name", "value", "key", "class", "module", "unused", "traced"],
 )
 def test_an_error_about_a_part_is_one_line(ring, tmp_path, capfd, overrides, words):
     line = [*TINY, "task=point_mass", "algo=kle3", f"run_dir={tmp_path / 'run'}", *overrides]

@@ -85,6 +85,10 @@ def test_the_page_and_the_readme_run(tmp_path, monkeypatch):
     assert [share.mean() > 0.3 for share in near] == [True, True]  # without the gradient 0.02
     least = np.linalg.lstsq(names["s"], names["after"])[0].T
     np.testing.assert_allclose(names["K"], least, atol=1e-3)
+    x = np.array([0.5, 0.0])
+    for _ in range(200):
+        x = names["swing"](names["theta"], x, -names["regulator"] @ names["z"](x))
+    np.testing.assert_allclose(x, 0, atol=0.01)  # without it the pendulum falls
     rates = np.asarray(names["path"].x[:-1, 1])
     np.testing.assert_allclose(names["F"][:, 1, 1], -0.05 * rates, rtol=1e-4)
     assert names["value"] > 0

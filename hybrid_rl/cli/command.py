@@ -24,6 +24,7 @@ from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
 from hybrid_rl.composition import CONF, check_choices, explain, file, options
 from hybrid_rl.errors import UsageError, printable, user_line
+from hybrid_rl.fields import FieldError
 from hybrid_rl.overrides import select
 from hybrid_rl.run import inherited
 
@@ -209,7 +210,7 @@ def diagnosis(error: BaseException) -> tuple[int, str] | None:
 
     from hybrid_rl.errors import DivergenceError
 
-    if isinstance(error, UsageError):
+    if isinstance(error, (UsageError, FieldError)):  # the latter while a program is traced
         return 2, str(error)
     if isinstance(error, (HydraException, OmegaConfBaseException, yaml.YAMLError)):
         return 2, explain(error)

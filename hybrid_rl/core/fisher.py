@@ -107,11 +107,17 @@ def log_det(F: Array, sigma: Array, prior: Array) -> Array:
 def criterion(name: str, F: Array, sigma: Array, prior: Array) -> Array:
     """One of CRITERIA [] for F [T, n, P], sigma [n] and prior c [P] above 0; larger is better.
 
+    All but `full` take the diagonal of the information, without the correlations of parameters.
+
     Raises:
-        ValueError: for another name.
+        ValueError: for another name, or other shapes of sigma and prior.
     """
     if name not in CRITERIA:
         raise ValueError(f"criterion {name}: choose one of {', '.join(CRITERIA)}")
+    for what, given, size in (("sigma", sigma, F.shape[-2]), ("prior", prior, F.shape[-1])):
+        if jnp.shape(given) != (size,):
+            line = f"has shape {jnp.shape(given)}, must have {(size,)}"
+            raise ValueError(f"{what} {line}; F is [T, n, P] = {F.shape}")
     if name == "full":
         return log_det(F, sigma, prior)
     each = diagonal(F, sigma)  # [T, P]

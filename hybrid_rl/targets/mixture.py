@@ -13,10 +13,10 @@ class Mixture:
     """A mixture of any number of Gaussians, of any dimension.
 
     Raises:
-        ValueError: for lists of different lengths.
+        ValueError: for lists of different lengths, and at a point with fewer entries than a mean.
     """
 
-    means: tuple[tuple[float, ...], ...] = ((0.3, 0.3), (0.7, 0.7))  # [J, v]
+    means: tuple[tuple[float, ...], ...] = ((0.3,), (0.7,))  # [J, v]
     stds: tuple[Positive, ...] = (0.1, 0.1)  # [J]
     weights: tuple[Positive, ...] = (0.5, 0.5)  # [J], up to a factor
 
@@ -28,6 +28,8 @@ class Mixture:
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v]; the last entry of a shorter mean is repeated."""
+        if max(map(len, self.means)) > len(s):
+            raise FieldError(self, "means", f"must have at most the {len(s)} entries of the domain")
         means = jnp.stack([_extended(jnp.array(mean), len(s)) for mean in self.means])
         stds = jnp.array(self.stds)
         each = -0.5 * jnp.sum((s[None] - means) ** 2, -1) / stds**2 - len(s) * jnp.log(stds)
@@ -36,5 +38,5 @@ class Mixture:
 
 
 def _extended(mean: Array, size: int) -> Array:
-    """The first `size` entries, the last one repeated where there are fewer."""
-    return jnp.pad(mean, (0, max(0, size - len(mean))), mode="edge")[:size]
+    """A mean of `size` entries: the last one is repeated."""
+    return jnp.pad(mean, (0, size - len(mean)), mode="edge")

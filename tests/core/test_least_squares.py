@@ -67,6 +67,15 @@ def test_directions_without_data_keep_the_prior() -> None:
     np.testing.assert_allclose(K, [(5 * 20 + 0.3) / 21, -0.8], rtol=1e-4)
 
 
+def test_rows_of_another_shape_are_refused() -> None:
+    """Data in columns, and a transposed K, with which the shapes add up to the same."""
+    s, y = jnp.ones((9, R)), jnp.ones((9, A))
+    K = jnp.zeros((A, R))
+    for first, inputs, outputs in ((K.T, s, y), (K, s.T, y.T), (K, s, y[:-1]), (K, s[0], y[0])):
+        with pytest.raises(ValueError, match=r"must be \[B, r\] and \[B, a\], with r, a = "):
+            least_squares.add(least_squares.begin(first, 1.0), inputs, outputs, first)
+
+
 def test_float32_is_far_more_precise_than_with_sums() -> None:
     """Nearly collinear regressors, of condition number 3,000, against float64."""
     rng = np.random.default_rng(1)

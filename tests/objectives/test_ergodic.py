@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from hybrid_rl import config
 from hybrid_rl.core.domain import Box
 from hybrid_rl.core.ergodic import Points
 from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
 from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic, KLState
 from hybrid_rl.targets.mixture import Mixture
+from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Params, Path, Spec
 
 SPEC = Spec(obs=3, act=1, dt=0.1)
@@ -188,6 +190,17 @@ def test_earlier_states_are_forgotten(forget, weights) -> None:
     features = np.asarray(objective.features(x[:, jnp.array([2, 0])]))
     all_weights = np.array([*weights, 1, 1, 1])
     np.testing.assert_allclose(got, all_weights @ features / all_weights.sum(), atol=1e-5)
+
+
+@pytest.mark.parametrize("algo", ["kle3", "fourier_ergodic"])
+def test_the_methods_visit_both_hills_of_their_target_with_their_defaults(algo) -> None:
+    """The regulator alone would rest in the trough between them."""
+    run = config.build(config.load(["task=point_mass", f"algo={algo}", "episode.steps=301"]))
+    walk = jax.jit(rollout_with_actions, static_argnums=(0, 1, 4))
+    episode, controller = run.agent.episode, run.controllers["full"]
+    x = np.asarray(walk(episode, controller, Params(), jax.random.key(0), 300)[1].obs)[:, :2]
+    near = [(np.linalg.norm(x - hill, axis=1) < 0.2).mean() for hill in (0.3, 0.7)]
+    assert min(near) > 0.25
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from hybrid_rl.types import Params
 def test_the_mixture_equals_that_of_scipy() -> None:
     """Weights need not sum to one; the last entry of a mean is repeated."""
     target = Mixture(((0.1, 0.4), (-0.3, 0.2)), (0.2, 0.5), (1.0, 3.0))
-    for size in (1, 2, 4):
+    for size in (2, 3, 4):
         s = np.linspace(-0.2, 0.3, size)
         wanted = 0.0
         for w, mean, std in zip((0.25, 0.75), target.means, target.stds, strict=True):
@@ -68,3 +68,9 @@ def test_bad_mixtures_are_refused(change) -> None:
     """For lengths and signs."""
     with pytest.raises(ValueError, match=next(iter(change))):
         Mixture(**change)
+
+
+def test_a_mean_with_more_entries_than_the_domain_is_refused() -> None:
+    """Its last entries would be lost."""
+    with pytest.raises(ValueError, match=r"means=.*: must have at most the 2 entries"):
+        Mixture(((0.3, 0.3, 1.0),), (0.2,), (1.0,)).log_density(Params(), jnp.zeros(2))

@@ -194,7 +194,9 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
                 break
             box = f"domain.coordinates={order[:v]} domain.low={[-1.0] * v} domain.high={[1.0] * v}"
             more = ["task=quadcopter_se3", f"algo={algo}", "explorer.horizon=5"]
-            more += ["fourier_exploration.samples=100"] if algo == "fourier_ergodic" else []
+            fourier = algo == "fourier_ergodic"
+            more += ["fourier_exploration.samples=100" if fourier else "exploration.memory=0"]
+            more += ["explorer.iterations=1"]
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
             print(f"{NAMES[algo]}, {v} dimensions: timed", flush=True)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}
