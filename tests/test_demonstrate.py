@@ -11,6 +11,7 @@ from tiny import demonstrate as recorded
 from hybrid_rl import config, demonstrate, evaluate, train
 from hybrid_rl.analysis import held_out
 from hybrid_rl.cli import command
+from hybrid_rl.constraints.effort import Effort
 from hybrid_rl.data.demonstrations import load
 from hybrid_rl.envs.experts.push import PushController
 from hybrid_rl.envs.sawyer_push import SawyerPush
@@ -31,9 +32,8 @@ def trained(tmp_path_factory) -> Path:
 
 def test_a_hand_made_expert_is_recorded_as_it_acted():
     """Decisions follow each other, rewards add up, and a push that ends has succeeded."""
-    result = demonstrate.record(
-        Episode(SawyerPush("native"), 100), PushController(), Params(), episodes=3, seed=5
-    )
+    limited = Episode(SawyerPush("native"), 100, constraint=Effort(0.1))
+    result = demonstrate.record(limited, PushController(), Params(), episodes=3, seed=5)
     rows, episode = result.decisions, result.episode
     within = np.flatnonzero(episode[1:] == episode[:-1])
     np.testing.assert_array_equal(rows.next_obs[within], rows.obs[within + 1])

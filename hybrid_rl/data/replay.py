@@ -63,8 +63,10 @@ class Replay:
         """Bytes of one learner's memory."""
         return 4 * self.capacity * self.width(spec)
 
-    def init(self, spec: Spec, num_envs: int) -> Memory:
+    def init(self, spec: Spec, num_envs: int, goal: Goal | None = None) -> Memory:
         """The memory of `num_envs` environments: empty, or with the demonstrations.
+
+        goal: what pays for them; None: their rewards are those of the file.
 
         Each environment gets a stretch of successive demonstrations. A stretch that ends within an
         episode is marked as truncated there, since another episode follows it.
@@ -78,7 +80,8 @@ class Replay:
             terminated, truncated = spec.obs + spec.act + 1, spec.obs + spec.act + 2
             cut = 1 - stretches[-1, :, terminated]
             rows = rows.at[:count].set(stretches.at[-1, :, truncated].set(cut))
-        return Memory(rows, jnp.full((), count, jnp.int32))
+        memory = Memory(rows, jnp.full((), count, jnp.int32))
+        return self.relabelled(memory, spec, goal) if count and goal is not None else memory
 
     def add(self, memory: Memory, new: Transition) -> Memory:
         """The memory with one more decision of every environment, `new` [E, ...]."""

@@ -198,10 +198,8 @@ def _plain(part: Any) -> Any:
 
 def _follows(episode: Episode) -> bool:
     """Whether what the episodes pay follows from what a memory holds."""
-    exact = episode.action_repeat == 1 and not episode.delay and not episode.action_noise
-    if not exact or episode.sensor_noise != 0.0:
-        return False
-    return episode.reward is not None or hasattr(episode.env, "reward_of")
+    exact = not episode.delay and not episode.action_noise and episode.sensor_noise == 0.0
+    return exact and episode.relabels
 
 
 def _rewritten(agent: Agent, memory: Any, relabelled: bool) -> Any:

@@ -117,7 +117,7 @@ class Agent:
         """The state before the first decision. The key is consumed."""
         run, resetting, *learning, pretraining = jax.random.split(key, 3 + len(self.learners))
         env = jax.vmap(self.episode.reset)(jax.random.split(resetting, self.num_envs))
-        memory = self.replay.init(self.spec, self.num_envs)
+        memory = self.replay.init(self.spec, self.num_envs, self.episode.own_goal)
         learners = {
             name: self._first(learner, k)
             for (name, learner), k in zip(self.learners.items(), learning, strict=True)

@@ -198,11 +198,20 @@ class Episode:
             u = jnp.clip(action, -1.0, 1.0)
             return now.replace(reward=self.reward.reward_of(state.obs, u, now.obs))
 
-    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
-        """The reward [], less a violation's price, of action u [m] between observations [o].
+    @property
+    def relabels(self) -> bool:
+        """Whether `reward_of` gives what it pays for decisions as they were, without noise."""
+        known = self.reward is not None or hasattr(self.env, "reward_of")
+        return known and self.action_repeat == 1
 
-        For a `reward`, or an environment that has this method, without `action_repeat`.
-        """
+    @property
+    def own_goal(self) -> Goal | None:
+        """What it pays for demonstrations, if that is not the environment's reward alone."""
+        changed = self.reward is not None or self.constraint is not None
+        return self if changed and self.relabels else None
+
+    def reward_of(self, x: Array, u: Array, after: Array) -> Array:
+        """The reward [], less a violation's price, of action u [m] between observations [o]."""
         goal: Any = self.env if self.reward is None else self.reward
         paid, limit = goal.reward_of(x, u, after), self.constraint
         return paid if limit is None else paid - limit.price * (limit.excess(x, u, after) > 0)

@@ -6,9 +6,11 @@ from pathlib import Path
 import jax
 import numpy as np
 import pytest
+import small
 
+from hybrid_rl import config
 from hybrid_rl.data.demonstrations import COLUMNS, Demonstrations, load, save
-from hybrid_rl.data.replay import Replay
+from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.types import Transition
 
@@ -153,6 +155,19 @@ def test_a_memory_begins_with_the_demonstrations(file: Path, worlds: int) -> Non
     assert replay.within(5, worlds).capacity == N + 5 * worlds
     assert replace(replay, capacity=13).within(5, worlds).capacity == 13
     assert replay.within(0, 5).capacity == N  # none of them is dropped
+
+
+def test_demonstrations_earn_what_the_run_pays(tmp_path: Path) -> None:
+    """Less the price of its constraint; in a method that is not for imitation, too."""
+    given = ["task=pendulum", "replay.demonstrations=${recorded}"]
+    given += ["constraint=torque", "constraint.most=0.5", "constraint.price=3"]
+    agent = config.build(small.with_demonstrations(small.load("sac", *given), tmp_path)).agent
+    memory = jax.jit(agent.init)(jax.random.key(0)).memory
+    kept = unpack(memory.rows[: int(memory.count), 0], agent.spec)
+    earned = jax.vmap(Pendulum().reward_of)(kept.obs, kept.action, kept.next_obs)
+    broken = np.abs(kept.action[:, 0]) > 0.5
+    assert 0 < broken.sum() < len(broken)
+    np.testing.assert_allclose(kept.reward, earned - 3 * broken, rtol=1e-5)
 
 
 def test_a_memory_smaller_than_the_demonstrations_is_refused(file: Path) -> None:

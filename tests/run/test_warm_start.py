@@ -201,8 +201,8 @@ def test_learners_that_are_too_few_or_diverged_begin_nothing(source, monkeypatch
 )
 def test_another_reward_follows_only_from_what_the_world_itself_saw(given):
     world = Pendulum()
-    assert start._goal(Episode(world)) is world
-    assert start._goal(Episode(world, **given)) is None
+    assert start._follows(Episode(world))
+    assert not start._follows(Episode(world, **given))
 
 
 def test_what_is_frozen_stays(source, warm):
