@@ -31,7 +31,9 @@ def drawn(x: ArrayLike, y: ArrayLike, title: str, below: str) -> str:
     at = np.interp(np.linspace(x[0], x[-1], WIDTH), x, y)
     share = (at - low) / (high - low) if high > low else np.zeros(WIDTH)
     rows = np.rint(share * (HEIGHT - 1)).astype(int)
-    labels = {HEIGHT - 1: f"{high:,.0f}", 0: f"{low:,.0f}"}
+    span = high - low
+    digits = max(0, 1 - math.floor(math.log10(span))) if 0 < span < math.inf else 0
+    labels = {HEIGHT - 1: f"{high:,.{digits}f}", 0: f"{low:,.{digits}f}"}
     margin = max(map(len, labels.values()))
     lines = [title]
     for row in reversed(range(HEIGHT)):
