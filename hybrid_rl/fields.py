@@ -25,6 +25,8 @@ from typing import (
     get_origin,
 )
 
+import numpy as np
+
 Class = TypeVar("Class", bound=type)
 
 
@@ -177,6 +179,7 @@ def _as_yaml(value: Any) -> Any:
     """A value as configurations write it."""
     if is_dataclass(value):
         return type(value).__name__
-    if isinstance(value, tuple):
+    value = value.tolist() if isinstance(value, np.ndarray) else value
+    if isinstance(value, tuple | list):
         return [_as_yaml(each) for each in value]
     return {"None": "null", "True": "true", "False": "false"}.get(str(value), value)

@@ -47,7 +47,7 @@ class Probe:
         ({"weights": [1.0, "a"]}, "weights=[1.0, 'a']: must be 0 or more"),
         ({"aim": True}, "aim=true: must be a part, or null"),
         ({"weights": 1.0}, "weights=1.0: must be a list"),
-        ({"weights": [np.ones(2)]}, "weights=[array([1., 1.])]: must be 0 or more"),
+        ({"weights": [np.eye(2)]}, "weights=[[[1.0, 0.0], [0.0, 1.0]]]: must be 0 or more"),
         ({"rows": [1.0, 2.0]}, "rows=[1.0, 2.0]: must be a list of lists"),
         ({"factors": 0.0}, "factors=0.0: must be above 0"),
         ({"factors": [1.0, 0.0]}, "factors=[1.0, 0.0]: must be above 0"),

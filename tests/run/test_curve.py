@@ -30,7 +30,7 @@ def test_each_column_has_one_star_at_the_height_of_the_line():
     assert text.isascii()
 
 
-def test_limits_that_lie_close_together_are_told_apart():
+def test_limits_that_lie_close_together_have_more_digits():
     lines = curve.drawn([1, 2], [-1.62, -1.48], "", "").splitlines()
     assert (lines[1].split()[0], lines[curve.HEIGHT].split()[0]) == ("-1.48", "-1.62")
 
