@@ -25,7 +25,7 @@ from scripts.peers_picture import FONTS, evaluated
 OTHERS = {
     "plain_models": "with layer normalisation (10)",
     "fast": "settings=fast (10)",
-    "branch_margin": "branches near real states (10)",
+    "branch_margin": "near real states (10 to 32)",
 }
 ARGUMENTS = (
     Argument("of", "plain_models", "or fast, branch_margin", one_of(*OTHERS)),
@@ -46,7 +46,7 @@ def other(of: str, folder: Path, robot: str) -> tuple[np.ndarray, np.ndarray]:
     """Decisions [G] and returns [S, G] of the other setting."""
     if of == "branch_margin":
         file = json.loads((folder / "imagined_range.json").read_text())
-        return evaluated(file["margin 1, rates that fall"][robot]["both"])
+        return evaluated(file["margin 3, rates that fall"][robot]["both"])
     name, label = BEFORE[robot] if of == "plain_models" else (of, None)
     file = json.loads((folder / f"{name}.json").read_text())
     if label is None:
