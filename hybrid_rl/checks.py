@@ -2,7 +2,7 @@
 
 import inspect
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import fields, is_dataclass
 from numbers import Integral
 from types import NoneType
@@ -84,8 +84,7 @@ def check(config: DictConfig) -> None:
         if type(config.get(key, False)) is not bool:
             raise UsageError(f"{key}={config[key]}: must be true or false")
     for key, known in (("precision", PRECISIONS), ("physics", IMPLEMENTATIONS)):
-        if config[key] not in known:
-            raise UsageError(f"{key}={config[key]}: choose one of {', '.join(known)}")
+        one_of(key, config[key], known)
     check_kinds(config)
 
 
@@ -231,3 +230,14 @@ def whole(key: str, value: Any, least: int = 1) -> int:
     if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
         raise UsageError(f"{key}={value}: must be a whole number, {least} or more")
     return int(value)
+
+
+def one_of(key: str, value: Any, known: Collection[str]) -> str:
+    """The value at `key`.
+
+    Raises:
+        UsageError: if it is none of the known ones.
+    """
+    if value not in known:
+        raise UsageError(f"{key}={value}: choose one of {', '.join(known)}")
+    return value

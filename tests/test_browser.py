@@ -1,6 +1,8 @@
 """Robots on the documentation's first page are those of Python, and run without a server."""
 
+import math
 import shutil
+from types import SimpleNamespace
 
 import chromium
 import jax
@@ -154,6 +156,25 @@ def test_a_function_becomes_statements():
     assert program.lines[-1] == f"const {out} = t4 + t5;"
     with pytest.raises(ValueError, match="sort: has no equivalent"):
         program.function(jnp.sort, ("x",), (np.zeros(3, np.float32),))
+
+
+def test_statements_compute_what_jax_does():
+    """Those of which Python has the same syntax."""
+
+    def f(x):
+        a, b = x[:3], x[3:]
+        each = jnp.clip(a, -1.0, 1.0), jnp.minimum(a, b), jnp.maximum(a, b), a - b, a / b, a**3
+        return *each, jnp.atan2(a, b), jax.lax.rsqrt(a * a), -b, jnp.array([a.sum(), b.prod(), 0])
+
+    program, x = Program(), np.array([-1.5, 0.25, 2.0, 0.5, -0.75, 1.5], np.float32)
+    outputs = jax.tree.leaves(program.function(f, ("x",), (x,)))
+    named = {**vars(math), "max": max, "min": min}
+    known = {"x": x.tolist(), "Math": SimpleNamespace(**named)}
+    for line in program.lines:
+        name, expression = line.removeprefix("const ").removesuffix(";").split(" = ")
+        known[name] = eval(expression, known)
+    got = [[eval(entry, known) for entry in output] for output in outputs]
+    np.testing.assert_allclose(got, jax.jit(f)(x), rtol=1e-6)
 
 
 def test_a_step_of_mujoco_names_the_fields_that_it_returns():

@@ -96,6 +96,7 @@ RESUMED = [  # overrides given with resume, words of the line
     ("policy.hidden=[8,8]", "policy.hidden=[8,8]: with resume only total_steps and precision"),
     ("experiment=thesis/fig_3_2_pendulum", "with resume only total_steps and precision"),
     ("total_steps=100", "has 600; it can be raised, not lowered"),
+    ("precision=half", "hybrid_rl: precision=half: choose one of auto, mixed, bf16"),
     ("total_steps=1e9", f"total_steps=1e9: {COUNT}"),
     ("total_steps=3000000000", "total_steps=3000000000: must be at most 2147483647: "),
 ]

@@ -10,7 +10,7 @@ import jax
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
-from hybrid_rl.checks import check, countable, whole
+from hybrid_rl.checks import check, countable, one_of, whole
 from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
@@ -225,7 +225,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
         countable(old)
     old.resume, old.compile_cache = config.resume, config.compile_cache
     if "precision" in given:
-        old.precision = config.precision
+        old.precision = one_of("precision", config.precision, precision.PRECISIONS)
     return old
 
 

@@ -61,7 +61,6 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     """
     from hybrid_rl.composition import options
     from hybrid_rl.envs.adapters.external import External
-    from hybrid_rl.envs.mujoco.scenery import check_drawable
     from hybrid_rl.trained import load_named
     from hybrid_rl.view.following import Follower
     from hybrid_rl.view.panel import Wishes
@@ -73,8 +72,6 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     source = Source(given, changes, trained)
     if trained is not None and isinstance(trained.episode.env, External):
         raise UsageError("a Gymnasium environment draws itself; use render")
-    if trained is not None:
-        check_drawable(trained.episode.env)
     choice = Choice("expert" if given["task"] else given["mode"], given["reward"])
     seed = given["seed"] or 0 if trained is None else given["seed"] or trained.seeds[0]
     player = Player(source, learner(trained, given["seed"]), choice, seed)

@@ -13,6 +13,7 @@ from typing import Any
 import jax
 import numpy as np
 
+from hybrid_rl.envs.mujoco.scenery import check_drawable
 from hybrid_rl.errors import UsageError
 from hybrid_rl.training.rollout import evaluation_keys
 from hybrid_rl.types import EnvState, Params
@@ -50,7 +51,7 @@ class Player:
         """Compile the first programs. `params` may be exchanged for those of a newer checkpoint.
 
         Raises:
-            UsageError: for a choice that does not fit.
+            UsageError: for a choice that does not fit, or a world that cannot be drawn.
         """
         self.source, self.params, self.numbers = source, params, Numbers()
         self._made: dict[Any, Any] = {}  # programs that were compiled
@@ -60,6 +61,7 @@ class Player:
         self._coming: Future[Cast] | None = None
         self.problem = ""  # why the last choice is not shown
         subject = self._subject(choice)
+        check_drawable(subject.episode.env)
         quick = "policy" if "policy" in subject.controllers else choice.mode
         self.cast = self._make(replace(choice, mode=quick))
         self.begin(seed)

@@ -78,6 +78,11 @@ def test_one_step_is_the_closed_form() -> None:
         inserted = 0.1 * horizon * (0.25 * 0.1 * horizon)
         got = float(metrics["planner/mode_insertion_gradient"])
         assert got == pytest.approx(inserted, abs=1e-6)
+        share = 0.2 / (0.2 + 0.25 * 0.1 * horizon)
+        assert float(metrics["planner/policy_share"]) == pytest.approx(share, abs=1e-5)
+    normalised = AdjointController(Cart(), Speed(), Half(), 5, gain=0.3, normalise=True)
+    v, each = act(normalised)[1].v, np.arange(5, 0, -1)
+    np.testing.assert_allclose(v[:, 0], 0.3 * each / np.sqrt((each**2).mean()), rtol=1e-5)
 
 
 def test_shooting_finds_the_optimum() -> None:
@@ -99,13 +104,13 @@ def test_actions_stay_within_bounds() -> None:
 
 
 def test_corrections_decay_with_the_decisions_of_the_episode() -> None:
-    """W is multiplied by decay^decisions of the episode, not of the run."""
-    controller = AdjointController(Cart(), Speed(), Half(), 1, gain_decay=0.5)
+    """W is multiplied by decay^decisions of the episode, not of the run; v begins at zero."""
+    controller = AdjointController(Cart(), Speed(), Half(), 2, gain_decay=0.5)
     state, params = controller.init(SPEC), Params(decisions=jnp.asarray(1000))
     decide = jax.jit(controller.act)
     for decision in range(3):
         u, state, _ = decide(params, state, jnp.zeros(2), jax.random.key(0))
-        assert float(u[0]) == pytest.approx(-0.2 + 0.5**decision * 0.25 * 0.1, abs=1e-6)
+        assert float(u[0]) == pytest.approx(-0.2 + 0.5**decision * 0.25 * 0.2, abs=1e-6)
 
 
 def test_corrections_decay_with_the_decisions_of_the_run() -> None:

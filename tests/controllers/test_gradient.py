@@ -73,8 +73,8 @@ def test_without_a_policy_it_reaches_the_best_action() -> None:
 
 
 def test_the_path_that_acts_is_among_the_considered() -> None:
-    """It begins at the state, with the action; all candidates are there."""
-    planner = GradientController(Cart(), Speed(0.5), **SMALL)
+    """It begins at the state, with the action; all candidates are there, and no u is beyond 1."""
+    planner = GradientController(Cart(), Speed(0.5), **SMALL, noise=1.0)
     given = Params(), planner.init(SPEC), jnp.array((0.2, -0.1)), jax.random.key(0)
     both = jax.jit(lambda *of: (planner.considered(*of), planner.act(*of)[0]))
     (u, _, metrics, found), acts = both(*given)
@@ -83,6 +83,7 @@ def test_the_path_that_acts_is_among_the_considered() -> None:
     np.testing.assert_allclose(found.paths.x[:, 0], np.tile([0.2, -0.1], (15, 1)), atol=1e-6)
     chosen = jax.tree.map(lambda leaf: leaf[found.chosen], found.paths)
     np.testing.assert_array_equal(chosen.u[0], u)
+    assert np.abs(found.paths.u).max() == 1
     assert float(metrics["planner/planned_return"]) == pytest.approx(value_of(chosen), abs=1e-5)
 
 
@@ -94,13 +95,15 @@ def value_of(path: Any) -> float:
 
 def test_disagreement_costs_its_price() -> None:
     """J rises by 0.5 per u in the first decision; a price above that keeps u at 0."""
-    still, moving = (
+    (still, *_), (moving, state, metrics) = (
         act(
             GradientController(Doubted(), Speed(), **SMALL, iterations=12, disagreement_price=price)
-        )[0]
+        )
         for price in (1.0, 0.0)
     )
     assert abs(float(still[0])) < 0.1 < 0.5 < float(moving[0])
+    mean = np.abs([moving, *state.plan.v[:4]]).mean()
+    assert float(metrics["planner/disagreement"]) == pytest.approx(mean, rel=1e-5)
 
 
 def test_strength_is_chosen_by_the_goal() -> None:

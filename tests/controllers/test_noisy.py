@@ -76,10 +76,10 @@ def test_noise_that_decays_is_over_after_training(fields: dict[str, float]) -> N
 
 
 def test_noise_decays_and_actions_are_bounded() -> None:
-    """Linearly to zero after `until` decisions, or by `decay`; actions stay within -1 and 1."""
-    e = noise(NoisyController(Still(), "normal", level=0.1, until=1000), 2000)
+    """By `decay`, and linearly to zero after `until` decisions; actions stay within -1 and 1."""
+    e = noise(NoisyController(Still(), "normal", level=0.1, until=1000, decay=0.998), 2000)
     np.testing.assert_allclose(e[1000:], 0, atol=1e-7)
-    assert e[400:600].std() == pytest.approx(0.05, rel=0.1)
+    assert e[400:600].std() == pytest.approx(0.05 * 0.998**500, rel=0.1)
     e = noise(NoisyController(Still(), "normal", level=0.1, decay=0.999), 2000)
     assert e[900:1100].std() == pytest.approx(0.1 * 0.999**1000, rel=0.1)
     assert np.abs(0.2 + noise(NoisyController(Still(), level=9.0), 50)).max() == 1

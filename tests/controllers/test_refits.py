@@ -1,6 +1,6 @@
 """The planner by refits on a mass on a line, with known solutions."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
@@ -56,6 +56,33 @@ def test_candidates_of_the_policy_are_among_them() -> None:
     both = RefitsController(Cart(), Speed(), PolicyProposal(Right()), **given)
     assert float(act(alone)[0][0]) < 0.3
     assert float(act(both)[0][0]) == pytest.approx(0.9)
+
+
+def test_a_decision_is_that_of_numpy() -> None:
+    """Two refits to the best three of eight candidates, of which the policy makes two."""
+    given: dict[str, Any] = {"samples": 8, "elites": 3, "refits": 2, "spread": 0.8, "floor": 0.2}
+    T, strong_and_weak = 4, PolicyProposal(Right(), strengths=(1.0, 0.5))
+    planner = RefitsController(Doubted(), Speed(0.05), strong_and_weak, T, **given)
+    planner = replace(planner, temperature=0.7, disagreement_price=0.01)
+    mu, key = np.array([[0.3], [-0.2], [0.9], [0.1]]), jax.random.key(1)
+    state = planner.init(SPEC)._replace(plan=jnp.asarray(mu, jnp.float32))
+    u, state, metrics = jax.jit(planner.act)(Params(), state, jnp.zeros(2), key)
+    sigma, own = np.full((T, 1), 0.8), np.stack([np.full((T, 1), each) for each in (0.9, 0.45)])
+    for drawing in jax.random.split(jax.random.split(key, 3)[2], 2):
+        e = np.asarray(jax.random.normal(drawing, (6, T, 1)))
+        v = np.concatenate([own, np.clip(mu + sigma * e, -1, 1)])
+        J = np.cumsum(0.1 * v, 1).sum((1, 2)) - 0.05 * (v**2).sum((1, 2))
+        S = J - 0.01 * np.abs(v).sum((1, 2))
+        best = np.argsort(-S)[:3]
+        w = np.exp(S[best] / S[best].std() / 0.7)
+        w = (w / w.sum())[:, None, None]
+        mu = (w * v[best]).sum(0)
+        sigma = np.clip(np.sqrt((w * (v[best] - mu) ** 2).sum(0)), 0.2, 0.8)
+    np.testing.assert_allclose(u, mu[0], rtol=1e-4)
+    np.testing.assert_allclose(state.u, mu[0], rtol=1e-4)
+    np.testing.assert_allclose(state.plan, [*mu[1:], [0]], atol=1e-5)
+    assert float(metrics["planner/planned_return"]) == pytest.approx(J[best[0]], rel=1e-4)
+    assert float(metrics["planner/spread"]) == pytest.approx(sigma[0, 0], rel=1e-4)
 
 
 def test_disagreement_costs_its_price() -> None:

@@ -1,6 +1,7 @@
 """The sampling controller with known candidates."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import jax
@@ -8,30 +9,18 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
+from test_adjoint_controller import SPEC, Cart, Speed
 
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core import sampling
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.proposals.mixture import MixtureProposal
+from hybrid_rl.proposals.noise import NoiseProposal
 from hybrid_rl.rewards.network import RewardNetwork
 from hybrid_rl.types import Params, Path, Spec
 
-SPEC = Spec(obs=2, act=1, dt=0.1)
 X = jnp.array([0.3, -0.4])
 T, K = 3, 4
-
-
-@dataclass(frozen=True)
-class Cart:
-    """A mass on a line: x' = [p + 0.1 v, v + 0.1 u]."""
-
-    def lift(self, params: Any, obs: Array) -> Array:
-        """The observation."""
-        return obs
-
-    def step(self, params: Any, x: Array, u: Array) -> Array:
-        """One decision."""
-        return jnp.array([x[0] + 0.1 * x[1], x[1] + 0.1 * u[0]])
 
 
 @dataclass(frozen=True)
@@ -68,6 +57,51 @@ class Closing:
         return jnp.full((), 250.0)
 
 
+@dataclass(frozen=True)
+class Fast:
+    """The rewards of Speed(0.1), without an end."""
+
+    def outcome(self, params: Any, x: Array, u: Array, after: Array) -> tuple[Array, float]:
+        """r, and minus infinity."""
+        return after[1] - 0.1 * u[0] ** 2, -jnp.inf
+
+
+@pytest.mark.parametrize(
+    ("staged", "execute"), [(False, "mean"), (True, "mean"), (True, "sample"), (True, "best")]
+)
+def test_a_decision_is_that_of_numpy(staged: bool, execute: str) -> None:
+    """A sum over time weighs each decision by what follows it, another objective all by J."""
+    objective = PredictedReturn(Fast()) if staged else Speed(0.1)
+    given: dict[str, Any] = {"log_density": staged, "normalise": not staged, "execute": execute}
+    parts = Cart(), objective, NoiseProposal(std=0.5)
+    controller = SamplingController(*parts, None, T, K, temperature=0.08, rest=0.7, **given)
+    plan = np.array([[0.2], [-0.3], [0.4]])
+    key = jax.random.key(486)  # later returns, or wrong odds, would choose another candidate
+    state = controller.init(SPEC)._replace(plan=jnp.asarray(plan, jnp.float32))
+    u, state, metrics = jax.jit(controller.act)(Params(), state, X, key)
+    rolling, choosing = jax.random.split(key)
+    drawing = rolling if staged else jax.random.split(rolling)[0]
+    noise = np.asarray(jax.random.normal(drawing, (K, T, 1)))
+    v = np.clip(plan + 0.5 * noise, -1, 1)
+    rewards = (float(X[1]) + 0.1 * np.cumsum(v, 1) - 0.1 * v**2)[:, :, 0]
+    S = np.cumsum(rewards[:, ::-1], 1)[:, ::-1]
+    if staged:
+        w = np.exp(S / 0.08 - 0.5 * noise[:, :, 0] ** 2)
+    else:
+        S = np.repeat(S[:, :1], T, 1)
+        w = np.exp(S / S.std(0) / 0.08)
+    w = w / w.sum(0)
+    chosen = int(jax.random.categorical(choosing, jnp.log(w[:, 0])))
+    mean, best = np.einsum("kt,ktm->tm", w, v), v[S[:, 0].argmax()]
+    wanted = {"mean": mean[0], "sample": v[chosen, 0], "best": best[0]}[execute]
+    np.testing.assert_allclose(u, wanted, rtol=1e-4)
+    np.testing.assert_array_equal(state.u, u)
+    after = best if execute == "best" else mean
+    np.testing.assert_allclose(state.plan, [*after[1:], [0.7]], rtol=1e-4)
+    found = [float(metrics[f"planner/{name}"]) for name in ("effective_samples", "planned_return")]
+    np.testing.assert_allclose(found, [1 / (w[:, 0] ** 2).sum(), w[:, 0] @ S[:, 0]], rtol=1e-4)
+
+
 @pytest.mark.parametrize("ends", [False, True])
 def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     """The reward network's output at x and u, whether or not episodes end."""
@@ -96,13 +130,16 @@ def test_agreement_is_measured_now_and_then() -> None:
     reward = RewardNetwork(hidden=(8,))
     params = Params(reward=reward.init(jax.random.key(0), SPEC))
 
-    def act(every: int, decisions: int | None) -> tuple[float, float]:
+    @partial(jax.jit, static_argnums=0)
+    def decided(every: int, decisions: int | None) -> tuple[Array, Array]:
         parts = Cart(), PredictedReturn(reward), Grid(), Closing()
         controller = SamplingController(*parts, horizon=T, samples=K, agreement_every=every)
-        count = None if decisions is None else jnp.int32(decisions)
-        known = params._replace(decisions=count)
+        known = params._replace(decisions=decisions)
         u, _, metrics = controller.act(known, controller.init(SPEC), X, jax.random.key(1))
-        return float(u[0]), float(metrics["planner/insertion_per_variance"])
+        return u[0], metrics["planner/insertion_per_variance"]
+
+    def act(every: int, decisions: int | None) -> tuple[float, ...]:
+        return tuple(map(float, decided(every, decisions)))
 
     always = act(1, 20)
     assert abs(always[1]) > 1e-4
@@ -120,27 +157,8 @@ def test_candidates_without_a_density_have_no_density_in_the_weight() -> None:
         SamplingController(Cart(), objective, mixture, log_density=True)
 
 
-def test_the_best_candidate_acts() -> None:
-    """Exactly one of the candidates, also in evaluations; the mean lies between them."""
-    reward = RewardNetwork(hidden=(8,))
-    params = Params(reward=reward.init(jax.random.key(0), SPEC))
-    objective = PredictedReturn(reward)
-
-    def act(execute: str) -> tuple[float, Any]:
-        controller: Any = SamplingController(
-            Cart(), objective, Grid(), horizon=T, samples=K, temperature=10.0, execute=execute
-        ).greedy()
-        u, after, _ = controller.act(params, controller.init(SPEC), X, jax.random.key(1))
-        return float(u[0]), after.plan
-
-    best, plan = act("best")
-    returns = []
-    for k in range(K):
-        x = [X]
-        for _ in range(T):
-            x.append(Cart().step((), x[-1], jnp.full(1, k / K)))
-        path = Path(jnp.stack(x), jnp.full((T, 1), k / K))
-        returns.append(float(objective.reward_to_go(params, path)[0]))
-    assert best == pytest.approx(np.argmax(returns) / K)
-    np.testing.assert_allclose(plan[:-1, 0], best, rtol=1e-6)
-    assert abs(act("mean")[0] - best) > 0.1
+@pytest.mark.parametrize(("execute", "then"), [("mean", "mean"), ("sample", "mean"), ("best",) * 2])
+def test_in_evaluations_no_candidate_is_drawn(execute: Any, then: str) -> None:
+    """The mean acts, or the best candidate where it acts in training."""
+    parts = Cart(), PredictedReturn(Fast()), Grid()
+    assert SamplingController(*parts, execute=execute).greedy().execute == then

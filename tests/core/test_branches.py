@@ -66,5 +66,5 @@ def test_a_branch_ends_outside_of_the_real_range() -> None:
     near = recalled(first, 20, 30, margin=0.75)
     assert -6.5 < near.obs[:, 0].max() <= -5.5
     assert near.obs[:, 1].max() > -5
-    below = jnp.array([[-10.6, -5.0], [-10.4, -5.0]])
-    np.testing.assert_array_equal(branches._far(below, first, 0.75), [True, False])
+    beyond = jnp.stack([jnp.array([-10.6, -10.4, -5.6, -5.4]), jnp.full(4, -5.0)], -1)
+    np.testing.assert_array_equal(branches._far(beyond, first, 0.75), [True, False, False, True])

@@ -83,7 +83,7 @@ def test_a_memory_that_goes_on_begins_another_episode() -> None:
     for time in range(6):
         flags = {"terminated": ends if time == 5 else no, "truncated": no}
         memory = replay.add(memory, transition(time, 3)._replace(**flags))
-    memory = replay.interrupted(replay.resized(memory), SPEC)
+    memory = replay.resized(replay.interrupted(memory, SPEC))
     kept, none = unpack(np.asarray(memory.rows), SPEC), [[0, 0, 0]] * 3
     np.testing.assert_array_equal(kept.reward[:, 0], [-200, -300, -400, -500])
     np.testing.assert_array_equal(kept.terminated, [*none, [0, 1, 0]])

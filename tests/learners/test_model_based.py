@@ -12,7 +12,8 @@ from jax import Array
 
 from hybrid_rl.core import adjoint, soft_return
 from hybrid_rl.critics.ensemble_q import EnsembleQ
-from hybrid_rl.learners.model_based import ModelBased
+from hybrid_rl.learners.model_based import ModelBased, ModelBasedState
+from hybrid_rl.learners.sac import SAC
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.types import Batch, Imagined, Params, Path, Spec
 
@@ -135,29 +136,60 @@ def test_how_likely_a_decision_is_reached() -> None:
 
 
 def test_the_critic_s_error_counts_where_it_is_reached_and_its_goal_is_the_target_s() -> None:
-    """0.5 sum_i mean w (Q_i - y)^2 at two of three decisions, by loops."""
+    """0.5 sum_i mean w (Q_i - y)^2 at two of three decisions, by loops; and the policy's loss."""
     policy, critic, spec = TanhGaussian((8,)), EnsembleQ((8,)), Spec(obs=2, act=1, dt=1.0)
-    given = {"steps": 3, "value_steps": 2, "discount": DISCOUNT}
-    learner = ModelBased(policy, critic, PART, PART, **given)
+    given = {"steps": 3, "value_steps": 2, "discount": DISCOUNT, "alpha": ALPHA}
+    learner = ModelBased(policy, critic, PART, PART, branch_steps=0, **given)
     first = learner.init(jax.random.key(3), spec).learner
     first = first.replace(target=critic.init(jax.random.key(4), spec))
 
     @jax.jit
     def made(state: Any) -> tuple:
-        paths = learner.imagine(PARAMS._replace(policy=state.policy), START, KEY)
-        loss = learner._expanded(state, jnp.float32(ALPHA), paths, 1.0)[1]
-        last = critic.value(state.target, paths.x[-1], paths.u[-1])
-        return paths, loss, last, jax.vmap(critic.all, (None, 0, 0))(state.critic, *paths[:2])
+        params = PARAMS._replace(policy=state.policy)
+        paths = learner.imagine(params, START, jax.random.split(KEY)[1])
+        found = learner.update(ModelBasedState(state, None), params, START, KEY)[1]
+        last = [critic.value(q, paths.x[-1], paths.u[-1]) for q in (state.target, state.critic)]
+        return paths, found, last, jax.vmap(critic.all, (None, 0, 0))(state.critic, *paths[:2])
 
-    paths, (loss, mean), value, q = jax.tree.map(np.asarray, made(first))
-    value, goals = value - ALPHA * paths.log_prob[3], {}
-    for t in (2, 1, 0):
-        goals[t] = paths.reward[t] + DISCOUNT * paths.continues[t] * value
-        value = goals[t] - ALPHA * paths.log_prob[t]
-    errors = [(q[0] - goals[0]) ** 2, paths.continues[0] * (q[1] - goals[1]) ** 2]
+    paths, found, last, q = jax.tree.map(np.asarray, made(first))
+
+    def goals(last: np.ndarray) -> dict[int, np.ndarray]:
+        value, y = last - ALPHA * paths.log_prob[3], {}
+        for t in (2, 1, 0):
+            y[t] = paths.reward[t] + DISCOUNT * paths.continues[t] * value
+            value = y[t] - ALPHA * paths.log_prob[t]
+        return y
+
+    y = goals(last[0])
+    errors = [(q[0] - y[0]) ** 2, paths.continues[0] * (q[1] - y[1]) ** 2]
     assert paths.continues[0].min() < 0.95
-    assert float(loss) == pytest.approx(0.5 * np.mean(errors, (0, 2)).sum(), rel=1e-4)
-    assert float(mean) == pytest.approx(q[:2].mean(), rel=1e-4)
+    wanted = {
+        "critic_loss": 0.5 * np.mean(errors, (0, 2)).sum(),
+        "q": q[:2].mean(),
+        "policy_loss": -(goals(last[1])[0] - ALPHA * paths.log_prob[0]).mean(),
+        "entropy": -paths.log_prob[0].mean(),
+        "alpha": ALPHA,
+    }
+    for name, value in wanted.items():
+        assert float(found[f"sac/{name}"]) == pytest.approx(value, rel=1e-4), name
+
+
+def test_without_imagined_decisions_it_is_soft_actor_critic() -> None:
+    """From real states, with the same random numbers."""
+    parts, spec = (TanhGaussian((8,)), EnsembleQ((8,))), Spec(obs=2, act=1, dt=1.0)
+    given: dict[str, Any] = {"max_grad_norm": 0.1, "discount": 0.9, "alpha": 0.3}
+    ours = ModelBased(*parts, PART, PART, steps=0, branch_steps=0, **given)
+    sac, batch = SAC(*parts, **given), START._replace(action=X[:, :1], reward=X[:, 0])
+
+    @jax.jit
+    def updated() -> tuple:
+        first = sac.init(jax.random.key(0), spec)
+        by_sac = sac.update(first, Params(), batch, KEY)
+        by_ours = ours.update(ModelBasedState(first, None), Params(), batch, KEY)
+        return (by_ours[0].learner, by_ours[1]), by_sac
+
+    for mine, its in zip(*map(jax.tree.leaves, updated()), strict=True):
+        np.testing.assert_allclose(mine, its, rtol=1e-5, atol=1e-7)
 
 
 @dataclass(frozen=True)
@@ -175,10 +207,12 @@ class Staying:
         return jnp.ones(()), jnp.log((1 - self.chance) / self.chance)
 
 
-@pytest.mark.parametrize(("chance", "wanted"), [(1.0, 2.0), (0.5, 4 / 3)])
-@pytest.mark.parametrize("value_steps", [None, 1, 0])
+@pytest.mark.parametrize(
+    ("value_steps", "chance", "wanted"),
+    [(None, 1.0, 2.0), *((each, 0.5, 4 / 3) for each in (None, 1, 0))],
+)
 def test_the_critic_learns_the_imagined_returns(
-    chance: float, wanted: float, value_steps: int | None
+    value_steps: int | None, chance: float, wanted: float
 ) -> None:
     """Q = 1 / (1 - c / 2), at three states, at the first, or by one decision, as in SAC.
 
@@ -204,6 +238,7 @@ def test_the_critic_learns_the_imagined_returns(
     state = jax.jit(lambda first: jax.lax.scan(one, first, keys)[0])(first)
     q = critic.value(state.learner.critic, jnp.zeros(1), jnp.zeros(1))
     assert float(q) == pytest.approx(wanted, abs=0.05)
+    assert int(state.branches.count) == 1000
 
 
 @pytest.mark.parametrize(

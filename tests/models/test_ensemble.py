@@ -34,6 +34,13 @@ def test_members_differ_and_are_averaged(params) -> None:
     np.testing.assert_allclose(jax.jit(MODEL.step)(params, X, U), each.mean(0), rtol=1e-5)
 
 
+def test_the_disagreement_has_a_gradient_where_all_agree(params) -> None:
+    """Zero, not NaN, so that a planner by gradients goes on."""
+    same = {**params, "weights": jax.tree.map(lambda w: w[:1].repeat(4, 0), params["weights"])}
+    slope = jax.jit(jax.grad(lambda u: MODEL.predictions(same, X, u)[1].sum()))(U)
+    np.testing.assert_allclose(slope, 0, atol=1e-3)
+
+
 def test_every_member_has_its_own_batch(params) -> None:
     """The loss is the mean over the members, each on its share of the transitions."""
     x, u, after = (

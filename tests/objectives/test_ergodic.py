@@ -88,8 +88,8 @@ def test_gradients_equal_finite_differences(name) -> None:
 
 
 def test_measure_is_the_divergence_on_a_grid() -> None:
-    """D(p || q), with p normalised over the box and q the average over the path and memory."""
-    objective = replace(KL, samples=200_000, floor=0.0, barrier=0.0)
+    """D(p || q), p normalised over the box, q the mean over path and memory, with a floor."""
+    objective = replace(KL, samples=200_000, floor=0.05, barrier=0.0)
     past, path = 0.5 * walk(7, seed=2), 0.5 * walk(6)
     path[0] = past[-1]
     got = -after(objective, past)(Path(jnp.asarray(path), jnp.zeros((5, 1))))
@@ -98,8 +98,24 @@ def test_measure_is_the_divergence_on_a_grid() -> None:
     s, cell = s.reshape(-1, 2), 2.0 / 400 * 2.0 / 400
     counted = np.concatenate([past[2:-1], path])[:, [2, 0]]  # M = 4 states in memory, and the path
     q = np.mean([np.prod(norm.pdf(s, x, np.sqrt([0.05, 0.1])), -1) for x in counted], 0)
-    p = p_of(s) / (p_of(s).sum() * cell)
+    p, q = p_of(s) / (p_of(s).sum() * cell), q + 0.05 / BOX.volume
     assert float(got) == pytest.approx(float(np.sum(p * np.log(p / q)) * cell), rel=0.01)
+
+
+def test_leaving_the_box_has_its_price() -> None:
+    """The mean over the path of the squared distance, in sides."""
+    x = 0.5 * walk(6)
+    x[3, 0] = 1.5  # 0.3 beyond a side of 2
+    beyond = x[:, [2, 0]] - np.clip(x[:, [2, 0]], BOX.low, BOX.high)
+    path = Path(jnp.asarray(x, jnp.float32), jnp.zeros((5, 1)))
+
+    def value(name: str, barrier: float) -> jax.Array:
+        objective = replace(EACH[name], barrier=barrier)
+        given = Params(), objective.init(SPEC), path.x[0], jnp.zeros(1), jax.random.key(0)
+        return objective.prepare(*given)[0](path)
+
+    costs = jax.jit(lambda: jnp.stack([value(n, 0.0) - value(n, 50.0) for n in EACH]))()
+    np.testing.assert_allclose(costs, 50 * np.mean(((beyond / 2) ** 2).sum(-1)), rtol=1e-4)
 
 
 def test_a_memory_that_is_not_full_has_no_other_states() -> None:

@@ -15,7 +15,7 @@ from hybrid_rl.proposals.policy import PolicyProposal
 from hybrid_rl.protocols import Proposal
 from hybrid_rl.types import Params, Spec
 
-SPEC = Spec(obs=2, act=1, dt=0.1)
+SPEC = Spec(obs=2, act=2, dt=0.1)
 K, T = 8, 5
 POLICY = TanhGaussian(hidden=(8,))
 NOISE, BY_POLICY = NoiseProposal(std=0.3), PolicyProposal(POLICY)
@@ -26,6 +26,7 @@ def imagined(proposal: Proposal, samples: int = K) -> sampling.Samples:
     params = Params(policy=POLICY.init(jax.random.key(0), SPEC))
     carries = jax.vmap(lambda q: proposal.init(SPEC, q))(jnp.arange(samples) / samples)
     noise = jax.random.normal(jax.random.key(1), (samples, T, SPEC.act))
+    noise = jax.vmap(proposal.shaped)(noise)
 
     def propose(*of_sample: Array) -> tuple:
         return proposal(params, *of_sample)
@@ -59,27 +60,35 @@ def test_strengths_divide_the_candidates() -> None:
     np.testing.assert_allclose(first[2:4], loud[2:4], rtol=1e-5)
     np.testing.assert_allclose(first[4:6], 0.5 * jnp.stack([mean, mean]), rtol=1e-5)
     np.testing.assert_allclose(first[6:], 0.5 * loud[6:], rtol=1e-5)
-    assert np.unique(np.asarray(first)).size == 6
+    assert np.unique(np.asarray(first)).size == 12
+    first = imagined(PolicyProposal(POLICY, quiet=0.5)).path.u[:, 0]
+    np.testing.assert_allclose(first, [*[mean] * 4, *loud[4:]], rtol=1e-5)
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.8])
 def test_noise_is_stationary_from_the_first_decision(correlation) -> None:
-    """It has the same standard deviation and the same correlations at each decision."""
+    """It has the same standard deviation and the same correlations at each decision.
+
+    What it adds to the plan is clipped.
+    """
     samples = 20_000
     paths = imagined(NoiseProposal(std=0.2, correlation=correlation), samples)
     e = np.asarray(paths.path.u)[:, :, 0] - 0.1
     np.testing.assert_allclose(e.std(0), 0.2, rtol=0.03)
     wanted = correlation ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
     np.testing.assert_allclose(np.corrcoef(e.T), wanted, atol=0.03)
+    wide = imagined(NoiseProposal(std=2.0, correlation=correlation)).path.u
+    assert np.abs(wide).max() == 1
 
 
 @pytest.mark.parametrize("correlation", [0.0, 0.8])
 def test_log_density_is_that_of_the_process(correlation) -> None:
     """Over a whole path it sums to the density of a Gaussian whose covariance is Toeplitz."""
     paths = imagined(NoiseProposal(std=0.2, correlation=correlation))
-    e = np.asarray(paths.path.u, float)[:, :, 0] - 0.1
+    e = np.asarray(paths.path.u, float) - 0.1
     covariance = 0.2**2 * correlation ** np.abs(np.subtract.outer(np.arange(T), np.arange(T)))
-    wanted = multivariate_normal(cov=covariance).logpdf(e)
+    density = multivariate_normal(cov=covariance).logpdf
+    wanted = density(e[:, :, 0]) + density(e[:, :, 1])
     np.testing.assert_allclose(paths.log_prob.sum(1), wanted, rtol=1e-3, atol=1e-3)
 
 

@@ -187,6 +187,7 @@ def test_plots_leave_out_what_does_not_apply():
         ("task=panda_stack reward=speed", "a scripted expert has none"),
         ("task=panda_stack mode=policy", "mode: a scripted expert has none"),
         ("policy=ant expert=babble", "expert: is of a task"),
+        ("task=gymnasium env.id=Pendulum-v1 expert=babble", "has no `scene` and no `pose`: the"),
         ("policy=ant host=192.0.2.1", "host=192.0.2.1 port=8080: cannot be used"),
         ("policy=ant port=70000", "port=70000: must be a whole number, 1 to 65535"),
         ("policy=ant port=0", "port=0: must be a whole number, 1 or more"),
