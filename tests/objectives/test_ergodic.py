@@ -203,6 +203,18 @@ def test_the_methods_visit_both_hills_of_their_target_with_their_defaults(algo) 
     assert min(near) > 0.25
 
 
+def test_the_defaults_explore_around_an_unstable_equilibrium() -> None:
+    """The rods stay up, and the cart spends its time at the hills, where no regulator leads."""
+    load = ["task=cart_double_pendulum", "algo=kle3", "episode.steps=501"]
+    run = config.build(config.load(load))
+    walk = jax.jit(rollout_with_actions, static_argnums=(0, 1, 4))
+    episode, controller = run.agent.episode, run.controllers["full"]
+    states = walk(episode, controller, Params(), jax.random.key(0), 500)[1]
+    assert not np.any(states.done)
+    assert np.abs(states.obs[:, 1:3]).max() < 0.3
+    assert np.mean(states.obs[200:, 0] > 0.2) > 0.5
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
