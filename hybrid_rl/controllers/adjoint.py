@@ -95,7 +95,10 @@ class AdjointController:
         else:
             v = jax.lax.cond(due, lambda v: plan.window(plan.improve(v)), lambda v: v, held)
         u = jnp.clip(plan.mean(x) + v[0], -1, 1)
-        return u, AdjointState(v, u, state.count + 1, memory), plan.metrics(v)
+        metrics = plan.metrics(v)
+        if covered := getattr(self.objective, "covered", None):
+            metrics |= covered(params, state.memory, x, prepare_key)
+        return u, AdjointState(v, u, state.count + 1, memory), metrics
 
     def _room(self) -> Room | None:
         """What corrections may be, of the regulator of an unstable system."""
