@@ -10,6 +10,7 @@ Noise(std=0.0) raises `Noise: std=0.0: must be above 0`; a run names the key of 
 instead, `proposal.std=0.0: must be above 0`. Lists become tuples, so that parts can be hashed.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, is_dataclass
 from types import NoneType, UnionType
@@ -164,8 +165,17 @@ def _wrong(kind: Any, value: Any) -> str:
     each = of[:1] * len(value) if of[-1] is Ellipsis else of
     if len(each) != len(value):
         return f"must have {len(each)} entries"
-    wrong = next(filter(None, map(_wrong, each, value)), "")
+    wrong = next(filter(None, map(_wrong_entry, each, value)), "")
     return "must be a list of lists" if wrong == "must be a list" else wrong
+
+
+def _wrong_entry(kind: Any, value: Any) -> str:
+    """What is wrong with an entry of a list; one without a rule of its own is a number."""
+    if kind is int:
+        return "" if _whole(value) else "must hold whole numbers"
+    if kind is float:
+        kind = Annotated[float, Must(math.isfinite, "hold finite numbers")]
+    return _wrong(kind, value)
 
 
 def _tuples(kind: Any, value: Any) -> Any:

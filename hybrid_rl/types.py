@@ -99,6 +99,13 @@ class Path(NamedTuple):
     u: Array  # [T, m]
 
 
+class Room(NamedTuple):
+    """What the regulator of an unstable system leaves to corrections of its action."""
+
+    most: float  # [u] of a correction
+    time: float  # [decisions] time constant of the closed loop
+
+
 class Considered(NamedTuple):
     """The candidates of a planner in one decision."""
 

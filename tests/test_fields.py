@@ -23,6 +23,7 @@ class Probe:
     low: tuple[float, float] = (0.0, 0.0)
     weights: tuple[NotNegative, ...] = ()
     rows: tuple[tuple[float, ...], ...] = ()
+    which: tuple[int, ...] = ()
     factors: tuple[Positive, ...] | Positive = 1.0
     aim: Objective | None = None
 
@@ -49,6 +50,9 @@ class Probe:
         ({"weights": 1.0}, "weights=1.0: must be a list"),
         ({"weights": [np.eye(2)]}, "weights=[[[1.0, 0.0], [0.0, 1.0]]]: must be 0 or more"),
         ({"rows": [1.0, 2.0]}, "rows=[1.0, 2.0]: must be a list of lists"),
+        ({"rows": [[float("nan")], [1.0]]}, "rows=[[nan], [1.0]]: must hold finite numbers"),
+        ({"rows": [[1.0], ["a"]]}, "rows=[[1.0], ['a']]: must hold finite numbers"),
+        ({"which": [0, 1.5]}, "which=[0, 1.5]: must hold whole numbers"),
         ({"factors": 0.0}, "factors=0.0: must be above 0"),
         ({"factors": [1.0, 0.0]}, "factors=[1.0, 0.0]: must be above 0"),
         ({"kind": "fast", "rate": 0.5}, "rate=0.5: must be 1 or more"),

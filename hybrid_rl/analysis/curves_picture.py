@@ -45,6 +45,8 @@ LABELS = {
     "planner/lyapunov_rate": "Change of V under the policy [per decision]",
     "planner/lyapunov_bound": "Most that the plan adds to V [per decision]",
     "planner/handed_over": "Share of decisions handed over",
+    "exploration/divergence": "Divergence of time average and target [nat]",
+    "exploration/fourier_metric": "Fourier metric of ergodicity",
     "world/speed": "Speed [m/s]",
     "wall_s": "Wall time",
     "step": "Decisions",

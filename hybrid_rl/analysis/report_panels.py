@@ -30,6 +30,7 @@ SECTIONS = {  # title -> beginnings of the metrics' names, in order
         "planner/policy_share",
         "planner/correction",
     ),
+    "Exploration": ("exploration/",),
     "Safety": ("safety/", "planner/lyapunov", "planner/handed_over"),
     "Learning": ("model/", "belief/", "sac/", "ddpg/", "dagger/", "information/"),
 }

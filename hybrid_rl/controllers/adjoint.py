@@ -11,8 +11,13 @@ Algorithm 6 and eq. 6.10). `apply` chooses the time tau and the duration lambda 
     first    plan at every decision, tau = now, lambda = one decision
     horizon  plan every T decisions, tau = now, lambda = T
     search   plan every T decisions, tau and lambda of maximum return; lambda = 0 is no correction
+
+Around an unstable equilibrium its `regulator` bounds v so that the sum is not clipped (the bound
+that thesis Theorem 3 leaves to R), and T is at least two time constants of its loop, as the
+response to a correction may begin in the wrong direction.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
@@ -23,7 +28,7 @@ from jax import Array
 from hybrid_rl.core import adjoint, decay, lyapunov, sampling
 from hybrid_rl.fields import Count, FieldError, Positive, Share, part
 from hybrid_rl.protocols import Model, Objective, Policy, StabilizingPolicy
-from hybrid_rl.types import Params, Path, Return, Spec
+from hybrid_rl.types import Params, Path, Return, Room, Spec
 
 WINDOWS = 8  # values of tau, and of lambda, that a search compares
 
@@ -58,6 +63,7 @@ class AdjointController:
     costate_bound: float | None = None  # clip of rho; the thesis' author used 1
     apply: Literal["first", "horizon", "search"] = "first"
     lyapunov: StabilizingPolicy | None = None  # whose V is logged; None: no log
+    regulator: StabilizingPolicy | None = None  # in whose room v stays; None: anywhere
 
     def __post_init__(self) -> None:
         """Check the gain."""
@@ -66,7 +72,9 @@ class AdjointController:
 
     def init(self, spec: Spec) -> AdjointState:
         """No correction, and the objective's initial memory."""
-        v = jnp.zeros((self.horizon, spec.act))
+        room = self._room()
+        T = max(self.horizon, math.ceil(2 * room.time)) if room else self.horizon
+        v = jnp.zeros((T, spec.act))
         none = jnp.zeros((), jnp.int32)
         return AdjointState(v, v[0], none, self.objective.init(spec))
 
@@ -79,7 +87,7 @@ class AdjointController:
         value, memory = self.objective.prepare(params, state.memory, x, state.u, prepare_key)
         factor = self.gain_decay**state.count * decay.of_run(self.run_decay, params.decisions)
         plan = _Plan(self, params, value, x, state.v.shape[1], factor)
-        due = (self.apply == "first") | (state.count % self.horizon == 0)
+        due = (self.apply == "first") | (state.count % len(state.v) == 0)
         rest = sampling.shift(state.v)
         held = rest if self.warm_start else jnp.where(due, 0, rest)
         if self.apply == "first":
@@ -87,7 +95,14 @@ class AdjointController:
         else:
             v = jax.lax.cond(due, lambda v: plan.window(plan.improve(v)), lambda v: v, held)
         u = jnp.clip(plan.mean(x) + v[0], -1, 1)
-        return u, AdjointState(v, u, state.count + 1, memory), plan.metrics(v)
+        metrics = plan.metrics(v)
+        if covered := getattr(self.objective, "covered", None):
+            metrics |= covered(params, state.memory, x, prepare_key)
+        return u, AdjointState(v, u, state.count + 1, memory), metrics
+
+    def _room(self) -> Room | None:
+        """What corrections may be, of the regulator of an unstable system."""
+        return self.regulator.room() if self.regulator is not None else None
 
     def greedy(self) -> "AdjointController":
         """The same controller: it has no exploration noise."""
@@ -121,6 +136,8 @@ class _Plan:
 
     def improve(self, v: Array) -> Array:
         """Corrections [T, m] after gradient steps from v [T, m]."""
+        room = self.of._room()
+        most = room.most if room else jnp.inf
 
         def iterate(v: Array, _: None) -> tuple[Array, None]:
             path, bound = self.roll(v), self.of.costate_bound
@@ -128,7 +145,7 @@ class _Plan:
             if self.of.normalise:
                 g = g / (jnp.sqrt(jnp.mean(g**2)) + 1e-6)
             u = path.u + self.factor * self._gain(path.x[:-1]) * g
-            return jnp.clip(u, -1, 1) - (path.u - v), None
+            return jnp.clip(jnp.clip(u, -1, 1) - (path.u - v), -most, most), None
 
         return jax.lax.scan(iterate, v, None, length=self.of.iterations)[0]
 

@@ -19,7 +19,7 @@ class Box:
     Unreasonable Effectiveness of Quasirandom Sequences).
 
     Raises:
-        ValueError: for lists of different lengths, or a box without volume.
+        ValueError: for lists of different lengths, equal coordinates, or a box without volume.
     """
 
     coordinates: tuple[int, ...] = (0,)  # of x
@@ -30,6 +30,8 @@ class Box:
     def __post_init__(self) -> None:
         if not len(self.coordinates) == len(self.low) == len(self.high) or not self.coordinates:
             raise ValueError("domain: coordinates, low and high must have one length, 1 or more")
+        if len(set(self.coordinates)) < self.size:
+            raise FieldError(self, "coordinates", "must differ")
         if not all(a < b for a, b in zip(self.low, self.high, strict=True)):
             raise FieldError(self, "low", f"must lie below high={list(self.high)}")
 

@@ -19,6 +19,9 @@ from jax import Array
 from scipy.linalg import solve_discrete_are
 
 from hybrid_rl.core.solving import solve
+from hybrid_rl.types import Room
+
+SLOW = 0.1  # growth in a time constant of the regulator below which a system is not unstable
 
 
 class Regulator(NamedTuple):
@@ -36,6 +39,23 @@ def regulator(A: np.ndarray, B: np.ndarray, Q: np.ndarray, R: np.ndarray) -> Reg
     """
     P = solve_discrete_are(A, B, Q, R)
     return Regulator(np.linalg.solve(R + B.T @ P @ B, B.T @ P @ A), P)
+
+
+def room(A: np.ndarray, B: np.ndarray, K: np.ndarray, spare: np.ndarray) -> Room | None:
+    """The room of u = u_0 - K e + v, if v - K e may use `spare` [m]; None: e' = A e is stable.
+
+    Corrections |v_j| <= most, whatever their course, keep |v - K e| <= spare from e = 0 on, since
+    |K e|_i <= most sum_j sum_k |K (A - B K)^k B|_ij. A stable system needs no such bound.
+    """
+    loop = A - B @ K
+    time = -1 / np.log(np.abs(np.linalg.eigvals(loop)).max())
+    if time * np.log(np.abs(np.linalg.eigvals(A)).max()) < SLOW:
+        return None
+    e, used = B, np.ones(len(K))
+    for _ in range(int(np.ceil(20 * time))):
+        used = used + np.abs(K @ e).sum(1)
+        e = loop @ e
+    return Room(float((spare / used).min()), float(time))
 
 
 def finite_horizon(A: Array, B: Array, Q: Array, R: Array, steps: int) -> Array:

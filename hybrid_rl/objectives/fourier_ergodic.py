@@ -6,6 +6,7 @@ uniform points as the KL-ergodic measure. The volume of the domain makes J a pur
 core.fourier.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import jax
@@ -61,6 +62,13 @@ class FourierErgodic:
         return value, FourierState(
             self.forget * (memory.total + now), self.forget * (memory.count + 1)
         )
+
+    def covered(
+        self, params: Params, memory: FourierState, x: Array, key: Array
+    ) -> dict[str, Array]:
+        """The metric of the states in `memory` and x [n], with phi at the points of `prepare`."""
+        value = replace(self, barrier=0.0).prepare(params, memory, x, x, key)[0]
+        return {"exploration/fourier_metric": -value(Path(x[None], x[None, :0]))}
 
     def features(self, s: Array) -> Array:
         """F_k [M, K^v] at s [M, v]."""

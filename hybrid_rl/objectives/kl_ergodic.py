@@ -9,7 +9,7 @@ which depends on p only through its mean: paths go to the mean and stay, unless 
 Source: thesis section 6.1, and 6.2.4 for the bound, whose printed form lacks 1/T.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import jax
@@ -65,15 +65,25 @@ class KLErgodic:
         self, params: Params, memory: KLState, x: Array, u_before: Array, key: Array
     ) -> tuple[Return, KLState]:
         """J [nat] of a path, at newly drawn points; the memory then includes x [n]."""
-        s = self.domain.sample(self.samples, key)
-        log_p = jax.vmap(self.target.log_density, (None, 0))(params, s)
-        points = ergodic.Points(s, ergodic.log_weights(log_p, self.share))
-        value = self.measure(points, memory)
+        value = self.measure(self._points(params, key), memory)
         after = memory._replace(count=memory.count + 1)
         if self.memory:
             slot = (memory.count % self.memory).astype(jnp.int32)
             after = after._replace(s=memory.s.at[slot].set(self.domain.of(x)))
         return value, after
+
+    def _points(self, params: Params, key: Array) -> ergodic.Points:
+        """The points at which p and q are compared. The key is consumed."""
+        s = self.domain.sample(self.samples, key)
+        log_p = jax.vmap(self.target.log_density, (None, 0))(params, s)
+        return ergodic.Points(s, ergodic.log_weights(log_p, self.share))
+
+    def covered(self, params: Params, memory: KLState, x: Array, key: Array) -> dict[str, Array]:
+        """D [nat] of the states in `memory` and x [n], at the points that `prepare` draws."""
+        if not self.memory:
+            return {}
+        measure = KLErgodic.measure(replace(self, barrier=0.0), self._points(params, key), memory)
+        return {"exploration/divergence": -measure(Path(x[None], x[None, :0]))}
 
     def measure(self, points: ergodic.Points, memory: KLState) -> Return:
         """J of a path that follows the states in `memory`, with p and q compared at `points`."""

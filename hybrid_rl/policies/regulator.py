@@ -11,6 +11,7 @@ of a cart.
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -18,7 +19,7 @@ from jax import Array
 from hybrid_rl.core import analytic, riccati
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.protocols import Analytic
-from hybrid_rl.types import Spec
+from hybrid_rl.types import Room, Spec
 
 
 @part
@@ -74,6 +75,13 @@ class Regulator:
     def variance(self, params: Any, x: Array) -> Array:
         """Zero [m]: the policy is deterministic."""
         return jnp.zeros_like(self.mean(params, x))
+
+    def room(self) -> Room | None:
+        """What it leaves to others before its action is clipped; None: the world is stable."""
+        with jax.ensure_compile_time_eval():
+            spare = 1 - np.abs(np.asarray(self.world.equilibrium()[1], float))
+        a, b = analytic.at_equilibrium(self.world)
+        return riccati.room(a, b, self.solve()[0], spare)
 
     def lyapunov(self, x: Array) -> Array:
         """V(x) [] at x [n]."""

@@ -12,7 +12,9 @@ class Objective(Protocol):
 
     One that is a sum over time may have two methods of `params` and `path`, which a planner that
     samples calls instead: `rewards`, r [T] of each decision, and `reward_to_go`, S [T+1] from each
-    time on, with J = S[0] and the value of the last state in S[T].
+    time on, with J = S[0] and the value of the last state in S[T]. One with a memory may have
+    `covered(params, memory, x, key)`: metrics of the episode up to x [n], which gradient planners
+    log; its key is that of `prepare`.
     """
 
     def init(self, spec: Spec) -> PyTree:

@@ -5,7 +5,7 @@ from typing import Protocol
 from jax import Array
 
 from hybrid_rl.protocols.environments import AnalyticEnv
-from hybrid_rl.types import Params, PyTree, Spec, Step
+from hybrid_rl.types import Params, PyTree, Room, Spec, Step
 
 
 class Features(Protocol):
@@ -116,6 +116,9 @@ class StabilizingPolicy(Policy, Protocol):
 
     def lyapunov(self, x: Array) -> Array:
         """V(x) [], a Lyapunov function under the policy."""
+
+    def room(self) -> Room | None:
+        """The largest safe corrections of its action; None: any, as the world is stable."""
 
 
 class Critic(Protocol):

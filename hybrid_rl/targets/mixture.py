@@ -13,7 +13,8 @@ class Mixture:
     """A mixture of any number of Gaussians, of any dimension.
 
     Raises:
-        ValueError: for lists of different lengths, and at a point with fewer entries than a mean.
+        ValueError: for lists that are empty or of different lengths, and at a point with fewer
+            entries than a mean.
     """
 
     means: tuple[tuple[float, ...], ...] = ((0.3,), (0.7,))  # [J, v]
@@ -22,6 +23,8 @@ class Mixture:
 
     def __post_init__(self) -> None:
         """Check the numbers."""
+        if not self.means or not all(self.means):
+            raise FieldError(self, "means", "must be lists of 1 number or more")
         for name in ("stds", "weights"):
             if len(getattr(self, name)) != len(self.means):
                 raise FieldError(self, name, "one number above 0 for each mean")

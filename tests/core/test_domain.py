@@ -46,6 +46,8 @@ def test_distance_outside_is_squared_and_averaged() -> None:
     [
         ({"low": (-1.0, -1.0)}, "must have one length"),
         ({"coordinates": (), "low": (), "high": ()}, "must have one length"),
+        ({"coordinates": (3, 3), "low": (0, 0), "high": (1, 1)}, r"=\[3, 3\]: must differ"),
+        ({"low": (float("nan"),)}, r"low=\[nan\]: must hold finite numbers"),
         ({"low": (1.0,)}, r"low=\[1.0\]: must lie below high=\[1.0\]"),
     ],
 )

@@ -31,6 +31,30 @@ def test_value_is_the_cost_of_the_regulator() -> None:
     assert cost == pytest.approx(first @ P @ first, rel=1e-9)
 
 
+def test_the_room_of_an_unstable_system_is_the_largest_safe_correction() -> None:
+    """The worst course of corrections uses all of the action, and nothing more."""
+    policy = Regulator(CartDoublePendulum())
+    A, B = analytic.at_equilibrium(policy.world)
+    K, room = policy.solve()[0], policy.room()
+    assert room is not None
+    e, answers = B, []
+    for _ in range(3000):
+        answers.append((K @ e).item())
+        e = (A - B @ K) @ e
+    worst = room.most * np.sign(answers[::-1])
+    e = np.zeros((6, 1))
+    for v in worst:
+        e = (A - B @ K) @ e + B * v
+    assert np.abs(K @ e).item() + room.most == pytest.approx(1, rel=1e-6)
+    slowest = np.abs(np.linalg.eigvals(A - B @ K)).max()
+    assert slowest**room.time == pytest.approx(np.exp(-1))
+
+
+def test_a_stable_system_needs_no_room() -> None:
+    """A point mass that the regulator lets go drifts, and no faster."""
+    assert Regulator(PointMass()).room() is None
+
+
 def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:
     """Bogdanov 2004: +4.10 and +10.39 [1/s], and their mirror images."""
     A = analytic.at_equilibrium(CartDoublePendulum())[0]

@@ -131,6 +131,42 @@ def test_a_memory_that_is_not_full_has_no_other_states() -> None:
     assert float(wide) == pytest.approx(float(fitting), rel=1e-5)
 
 
+@pytest.mark.parametrize("name", EACH)
+def test_what_is_covered_is_the_measure_of_the_episode_so_far(name) -> None:
+    """J without barrier of one path over all states; of the bound, the measure that it bounds."""
+    objective, x, key = EACH[name], jnp.asarray(walk(4)), jax.random.key(0)
+    if name == "jensen":
+        objective = replace(objective, memory=4)
+    memory, remember = objective.init(SPEC), remembering(objective)
+    for state in x[:-1]:
+        memory = remember(memory, state)
+    (got,) = objective.covered(Params(), memory, x[-1], key).values()
+    whole = replace(objective, barrier=0.0)
+    if name == "jensen":
+        whole = KLErgodic(TARGET, BOX, samples=50, variance=(0.1,), memory=4)
+    u = jnp.zeros(1)
+    value = whole.prepare(Params(), whole.init(SPEC), x[0], u, key)[0](Path(x, jnp.zeros((3, 1))))
+    assert float(got) == pytest.approx(-float(value), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("algo", "metric"),
+    [
+        ("kle3", "divergence"),
+        ("kle3_jensen", "divergence"),
+        ("fourier_ergodic", "fourier_metric"),
+    ],
+)
+def test_exploring_methods_log_how_well_the_target_is_covered(algo, metric) -> None:
+    """By the measure that they minimise; without a memory there is nothing to measure."""
+    agent = config.build(config.load(["task=point_mass", f"algo={algo}"])).agent
+    state, obs = agent.controller.init(agent.spec), jnp.zeros(agent.spec.obs)
+    act = partial(agent.controller.act, Params(), state, obs)
+    metrics = jax.eval_shape(lambda: act(jax.random.key(0)))[2]
+    assert metrics[f"exploration/{metric}"].shape == ()
+    assert not replace(KL, memory=0).covered(Params(), KL.init(SPEC), obs, jax.random.key(0))
+
+
 def test_the_bound_depends_only_on_the_mean() -> None:
     """Targets of equal mean give equal gradients towards it; those of the measure differ."""
     x = jnp.array([[0.1, 0.0, 0.2]] * 3)
@@ -217,6 +253,18 @@ def test_the_methods_visit_both_hills_of_their_target_with_their_defaults(algo) 
     x = np.asarray(walk(episode, controller, Params(), jax.random.key(0), 300)[1].obs)[:, :2]
     near = [(np.linalg.norm(x - hill, axis=1) < 0.2).mean() for hill in (0.3, 0.7)]
     assert min(near) > 0.25
+
+
+def test_the_defaults_explore_around_an_unstable_equilibrium() -> None:
+    """The rods stay up, and the cart spends its time at the hills, where no regulator leads."""
+    load = ["task=cart_double_pendulum", "algo=kle3", "episode.steps=501"]
+    run = config.build(config.load(load))
+    walk = jax.jit(rollout_with_actions, static_argnums=(0, 1, 4))
+    episode, controller = run.agent.episode, run.controllers["full"]
+    states = walk(episode, controller, Params(), jax.random.key(0), 500)[1]
+    assert not np.any(states.done)
+    assert np.abs(states.obs[:, 1:3]).max() < 0.3
+    assert np.mean(states.obs[200:, 0] > 0.2) > 0.5
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from scipy.stats import multivariate_normal
 
 from hybrid_rl.core.domain import Box
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
+from hybrid_rl.fields import FieldError
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.targets.model_uncertainty import ModelUncertainty
 from hybrid_rl.targets.upper_confidence_bound import UpperConfidenceBound
@@ -63,10 +64,19 @@ def test_the_model_uncertainty_follows_its_equation() -> None:
     assert float(got) == pytest.approx(4 * (0.5 + 2.0 + 3) / 18)
 
 
-@pytest.mark.parametrize("change", [{"stds": (0.1,)}, {"weights": (0.0, 1.0)}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"stds": (0.1,)},
+        {"weights": (0.0, 1.0)},
+        {"means": ((float("nan"),), (0.7,))},
+        {"means": ((), (0.7,))},
+        {"means": (), "stds": (), "weights": ()},
+    ],
+)
 def test_bad_mixtures_are_refused(change) -> None:
-    """For lengths and signs."""
-    with pytest.raises(ValueError, match=next(iter(change))):
+    """For lengths, signs, and what is no number."""
+    with pytest.raises(FieldError, match=next(iter(change))):
         Mixture(**change)
 
 
