@@ -13,8 +13,8 @@ Algorithm 6 and eq. 6.10). `apply` chooses the time tau and the duration lambda 
     search   plan every T decisions, tau and lambda of maximum return; lambda = 0 is no correction
 
 Around an unstable equilibrium its `regulator` bounds v so that the sum is not clipped (the bound
-that thesis Theorem 3 leaves to R), and T is at least two time constants of its loop, as the
-response to a correction may begin in the wrong direction.
+that thesis Theorem 3 leaves to R), unless the regulator alone is. T is at least two time constants
+of its loop, as the response to a correction may begin in the wrong direction.
 """
 
 import math
@@ -63,7 +63,7 @@ class AdjointController:
     costate_bound: float | None = None  # clip of rho; the thesis' author used 1
     apply: Literal["first", "horizon", "search"] = "first"
     lyapunov: StabilizingPolicy | None = None  # whose V is logged; None: no log
-    regulator: StabilizingPolicy | None = None  # in whose room v stays; None: anywhere
+    regulator: StabilizingPolicy | None = None  # whose room bounds v; None: no bound
 
     def __post_init__(self) -> None:
         """Check the gain."""
@@ -136,8 +136,7 @@ class _Plan:
 
     def improve(self, v: Array) -> Array:
         """Corrections [T, m] after gradient steps from v [T, m]."""
-        room = self.of._room()
-        most = room.most if room else jnp.inf
+        most = self._most()
 
         def iterate(v: Array, _: None) -> tuple[Array, None]:
             path, bound = self.roll(v), self.of.costate_bound
@@ -148,6 +147,14 @@ class _Plan:
             return jnp.clip(jnp.clip(u, -1, 1) - (path.u - v), -most, most), None
 
         return jax.lax.scan(iterate, v, None, length=self.of.iterations)[0]
+
+    def _most(self) -> Array | float:
+        """The bound of |v|; none where the regulator alone is clipped: its loop is not linear."""
+        regulator, room = self.of.regulator, self.of._room()
+        if regulator is None or room is None:
+            return jnp.inf
+        u = regulator.mean(self.params.policy, self.x)
+        return jnp.where(jnp.all(jnp.abs(u) < 1), room.most, jnp.inf)
 
     def _gain(self, x: Array) -> Array | float:
         """The gain W at x [T, n]."""

@@ -16,7 +16,7 @@ from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
 from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic, KLState
 from hybrid_rl.targets.mixture import Mixture
 from hybrid_rl.training.rollout import rollout_with_actions
-from hybrid_rl.types import Params, Path, Spec
+from hybrid_rl.types import EnvState, Params, Path, Spec
 
 SPEC = Spec(obs=3, act=1, dt=0.1)
 MEANS = np.array([[0.3, 0.2], [-0.4, -0.1]])
@@ -255,16 +255,25 @@ def test_the_methods_visit_both_hills_of_their_target_with_their_defaults(algo) 
     assert min(near) > 0.25
 
 
-def test_the_defaults_explore_around_an_unstable_equilibrium() -> None:
-    """The rods stay up, and the cart spends its time at the hills, where no regulator leads."""
-    load = ["task=cart_double_pendulum", "algo=kle3", "episode.steps=501"]
-    run = config.build(config.load(load))
+def explored(task: str, steps: int) -> EnvState:
+    """States of an episode of kle3 with its defaults."""
+    run = config.build(config.load([f"task={task}", "algo=kle3", f"episode.steps={steps + 1}"]))
     walk = jax.jit(rollout_with_actions, static_argnums=(0, 1, 4))
     episode, controller = run.agent.episode, run.controllers["full"]
-    states = walk(episode, controller, Params(), jax.random.key(0), 500)[1]
+    return walk(episode, controller, Params(), jax.random.key(0), steps)[1]
+
+
+def test_the_defaults_explore_around_an_unstable_equilibrium() -> None:
+    """The rods stay up, and the cart spends its time at the hills, where no regulator leads."""
+    states = explored("cart_double_pendulum", 500)
     assert not np.any(states.done)
     assert np.abs(states.obs[:, 1:3]).max() < 0.3
     assert np.mean(states.obs[200:, 0] > 0.2) > 0.5
+
+
+def test_corrections_are_free_where_the_regulator_is_clipped() -> None:
+    """A hanging rod: with small corrections the cart would follow the regulator off the rail."""
+    assert np.abs(explored("cart_swing_up", 100).obs[:, 1]).max() < 3
 
 
 @pytest.mark.parametrize(
