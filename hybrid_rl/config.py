@@ -114,7 +114,7 @@ def check_overrides(jobs: Sequence[tuple[DictConfig, Any]]) -> list[str]:
     notes = [check_task(config, hydra, READ) for config, hydra in jobs]
     typed = [text for _, hydra in jobs for text in overriding.of_job(hydra)]
     overriding.refuse_unused([config for config, _ in jobs], typed, READ)
-    return [note for note in notes if note]
+    return [*dict.fromkeys(note for note in notes if note)]
 
 
 def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
