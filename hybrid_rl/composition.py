@@ -30,6 +30,26 @@ ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
 INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
 
 
+def search_path(config_dir: str | Path) -> str:
+    """The override by which Hydra finds the groups in a folder of the user.
+
+    Raises:
+        UsageError: if there is no such folder, or Hydra would take another file for one of it.
+    """
+    folder = Path(config_dir).expanduser().resolve()
+    if not folder.is_dir():
+        raise UsageError(f"config_dir={config_dir}: no such folder")
+    for file in sorted(CONF.glob("*/**/*.yaml")):
+        name = file.relative_to(CONF)
+        mine = folder / name
+        if mine.is_file() and mine.read_bytes() != file.read_bytes():
+            raise UsageError(
+                f"config_dir={config_dir}: hybrid_rl has {name.parent.as_posix()}={name.stem} of "
+                f"its own, which a run would take; rename {name}"
+            )
+    return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
+
+
 def options(group: str) -> list[str]:
     """Names that a configuration group offers, with their folders."""
     return sorted(

@@ -19,7 +19,7 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import checks, renamed
 from hybrid_rl import overrides as overriding
 from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
-from hybrid_rl.composition import CONF, check_choices, check_task, explain, tasks_with
+from hybrid_rl.composition import CONF, check_choices, check_task, explain, search_path, tasks_with
 from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
@@ -79,7 +79,7 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
         raise UsageError(f'"{overrides}": give a list, {words}')
     renamed.check(overrides)
     check_choices(overrides)
-    more = [] if config_dir is None else [overriding.search_path(config_dir)]
+    more = [] if config_dir is None else [search_path(config_dir)]
     overrides = overriding.allow_sweep_keys(overrides)
     try:
         with COMPOSING:
@@ -114,7 +114,7 @@ def check_overrides(jobs: Sequence[tuple[DictConfig, Any]]) -> list[str]:
     notes = [check_task(config, hydra, READ) for config, hydra in jobs]
     typed = [text for _, hydra in jobs for text in overriding.of_job(hydra)]
     overriding.refuse_unused([config for config, _ in jobs], typed, READ)
-    return [note for note in notes if note]
+    return [*dict.fromkeys(note for note in notes if note)]
 
 
 def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:

@@ -37,12 +37,12 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
-from hybrid_rl.composition import CONF, check_choices, explain
+from hybrid_rl.composition import CONF, check_choices, explain, search_path
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import search_path, value_of
+from hybrid_rl.overrides import value_of
 from hybrid_rl.parts import part_class
 from hybrid_rl.protocols import Controller
 from hybrid_rl.trained import Trained, load_named

@@ -18,8 +18,7 @@ from pathlib import Path
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, read
-from hybrid_rl.composition import CONF, THESIS, tasks_with
-from hybrid_rl.errors import UsageError
+from hybrid_rl.composition import CONF, THESIS, search_path, tasks_with
 
 HAS = {  # method of an environment -> its mark
     "dynamics": "analytic",
@@ -88,10 +87,8 @@ def main() -> None:
     given, _ = read(__doc__, ARGUMENTS)
     folders = [CONF, THESIS]
     if given["config_dir"]:
-        own = Path(given["config_dir"]).expanduser()
-        if not own.is_dir():
-            raise UsageError(f"config_dir={own}: no such folder")
-        folders.insert(1, own)
+        search_path(given["config_dir"])  # refuses what is no folder
+        folders.insert(1, Path(given["config_dir"]).expanduser())
     listed = [(listing(folder), marks(folder)) for folder in folders]
     width = max(len(name) for names, _ in listed for group in GROUPS for name in names[group])
     for group, title in GROUPS.items():

@@ -8,7 +8,6 @@ import difflib
 import re
 from collections.abc import Iterable, Sequence
 from itertools import compress
-from pathlib import Path
 from typing import Any
 
 from hydra import compose
@@ -204,18 +203,6 @@ def value_of(text: str) -> Any:
         return OverridesParser.create().parse_override(f"a={text}").value()
     except Exception:
         return text
-
-
-def search_path(config_dir: str | Path) -> str:
-    """The override by which Hydra finds the groups in a folder of the user.
-
-    Raises:
-        UsageError: if there is no such folder.
-    """
-    folder = Path(config_dir).expanduser().resolve()
-    if not folder.is_dir():
-        raise UsageError(f"config_dir={config_dir}: no such folder")
-    return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
 
 
 def refuse_new_keys(hydra: Any) -> None:

@@ -156,6 +156,7 @@ def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
     import jax
 
     from hybrid_rl.analysis.drawing import write
+    from hybrid_rl.envs.mujoco import offscreen
     from hybrid_rl.training.acting import TrainedPolicy
     from hybrid_rl.training.host_loop import seed_of
     from hybrid_rl.training.rollout import evaluation_keys
@@ -166,6 +167,7 @@ def _outside(trained: Any, given: dict[str, Any], out: Path) -> None:
     policy = TrainedPolicy(world.spec, *trained.learner(seed, given["mode"]))
     key = evaluation_keys(trained.seeds[0] if seed is None else seed, given["episode"] + 1)[-1]
     seeds = [seed_of(*map(int, jax.random.key_data(key)))]
+    offscreen.lend()
     copies = world.env.copies(seeds, world.steps, world.action_repeat, "rgb_array")
     obs, total, pictures = copies.reset()[0], 0.0, [copies.picture()]
     for _ in range(given["episode_steps"] or world.steps):

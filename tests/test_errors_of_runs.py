@@ -166,7 +166,7 @@ def test_a_run_is_never_written_over(nothing_lost, folders, capfd):
     printed = only_line(capfd)
     assert "holds a run already; choose another, or resume=" in printed
     assert call_train(*TINY, "algo=sac", f"run_dir={folders['begun']}") == 2
-    assert only_line(capfd).endswith("holds a run already; choose another\n")  # no checkpoint
+    assert "holds a run without a checkpoint; delete it, or choose another" in only_line(capfd)
 
 
 def test_render_says_what_to_install(nothing_lost, folders, monkeypatch, capfd):

@@ -138,11 +138,14 @@ def test_learning_curves_are_the_default(tmp_path, capsys):
     assert draw(f"runs={folder}/*/*", f"out={out}") == 0
     printed = capsys.readouterr().out
     assert "hopper, nn_mppi: 2 seeds, last train/return 1,000 [1,000, 1,001]" in printed
-    assert "hopper, train/return: nn_mppi ahead of sac in 50% [0%, 100%] of pairs" in printed
+    line = "hopper, train/return: nn_mppi ahead of sac in 50% [0%, 100%] of pairs of seeds, "
+    assert line + "by the mean over the run" in printed
     assert "sac (2 seeds)" in out.read_text()
     numbers = json.loads(out.with_suffix(".json").read_text())
     assert [one["x"][-1] for one in numbers["curves"]] == [1000, 1000]
     assert numbers["metric"] == "train/return"
+    named = {"task": "hopper", "metric": "train/return", "label": "nn_mppi", "other": "sac"}
+    assert numbers["comparisons"] == [named | {"share": 0.5, "band": [0.0, 1.0]}]
 
 
 @pytest.mark.parametrize(

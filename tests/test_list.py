@@ -28,8 +28,8 @@ def conf(tmp_path):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
 
-    add("task/hopper.yaml", "# @package _global_\n# Hopper: hops.\n# And more.\ntask: hopper\n")
-    add("algo/sac.yaml", "algo: sac  # not this\n\n#\n#    Actor and critic.\n")
+    add("task/hopping.yaml", "# @package _global_\n# Hopper: hops.\n# And more.\ntask: hopping\n")
+    add("algo/actor.yaml", "algo: actor  # not this\n\n#\n#    Actor and critic.\n")
     add("experiment/thesis/figure_2.yaml", "# Figure 2.\n")
     add("experiment/thesis/deep/table_1.yaml", "a: 1\n")
     add("algo/ring.yaml", "# Around a ring.\n# Needs a task with an equilibrium.\nalgo: ring\n")
@@ -39,8 +39,8 @@ def conf(tmp_path):
 
 def test_each_name_has_the_first_comment_of_its_file(conf):
     assert listed.listing(conf) == {
-        "task": {"hopper": "Hopper: hops."},
-        "algo": {"ring": "Around a ring.", "sac": "Actor and critic."},
+        "task": {"hopping": "Hopper: hops."},
+        "algo": {"ring": "Around a ring.", "actor": "Actor and critic."},
         "experiment": {"thesis/deep/table_1": "", "thesis/figure_2": "Figure 2."},
     }
 

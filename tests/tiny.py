@@ -14,8 +14,8 @@ from programs import shared
 
 from hybrid_rl import config, train
 from hybrid_rl.cli import command
+from hybrid_rl.composition import search_path
 from hybrid_rl.data.demonstrations import save
-from hybrid_rl.overrides import search_path
 from hybrid_rl.types import Transition
 
 CONF = search_path(Path(__file__).parent / "conf")

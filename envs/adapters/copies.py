@@ -17,6 +17,7 @@ from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 
 Numbers = np.ndarray | Array
 SILENT = 100  # level of Gymnasium's log
+FLAGS = ("is_success", "success")  # in infos: what others call a success
 PICTURE = "for a video, give it `def __init__(self, render_mode=None)` and a method `render` that "
 PICTURE += "returns a picture, an array [height, width, 3] of uint8"
 
@@ -44,6 +45,7 @@ class Copies:
     ) -> None:
         self.env, self.seeds, self.steps, self.repeat = env, list(map(int, seeds)), steps, repeat
         self.render_mode = render_mode
+        self.success: np.ndarray | None = None  # [N], if the last decision's infos say so
         self.decisions = np.zeros(len(self.seeds), int)  # of the episode
         self._obs = np.zeros((len(self.seeds), env.spec.obs), np.float32)
 
@@ -80,11 +82,13 @@ class Copies:
         low, width, shape, kind = self._bounds
         share = (np.maximum(np.minimum(np.asarray(u, np.float32), 1), -1) + 1) / 2
         actions = (low + share * width).reshape(-1, *shape).astype(kind)
-        obs, paid, ended, cut, _ = self._call("step", lambda: self._stepped(actions))
+        obs, paid, ended, cut, infos = self._call("step", lambda: self._stepped(actions))
         obs, reward = self._observed("step", obs), np.asarray(paid, np.float32)
         if not np.isfinite(reward).all():
             raise WorldError(f"{self.env.name}: step: gives a reward that is not finite")
         self.decisions += 1
+        given = [np.asarray(infos[name]) for name in FLAGS if name in infos]
+        self.success = given[0].astype(bool).reshape(len(paid), -1).any(1) if given else None
         cut = (np.asarray(cut) | (self.decisions >= self.steps)) & ~np.asarray(ended)
         done = ended | cut
         return Outcome(obs, reward, np.array(ended), cut, self._next(obs, done))
@@ -202,12 +206,15 @@ class InTurn:
         return np.array(self._obs, np.float32), {}
 
     def step(self, actions: np.ndarray) -> tuple:
-        """Observations [N, o], rewards [N], terminated [N], truncated [N], no infos."""
+        """Observations [N, o], rewards [N], terminated, truncated [N]; of infos FLAGS alone."""
+        infos: dict[str, np.ndarray] = {}
         rewards = np.empty(len(actions), np.float32)
         ended, cut = np.empty(len(actions), bool), np.empty(len(actions), bool)
         for i, env in enumerate(self.envs):
-            self._obs[i], rewards[i], ended[i], cut[i], _ = env.step(actions[i])
-        return np.array(self._obs, np.float32), rewards, ended, cut, {}
+            self._obs[i], rewards[i], ended[i], cut[i], info = env.step(actions[i])
+            for name in (name for name in FLAGS if name in (info or ())):
+                infos.setdefault(name, np.zeros(len(actions), bool))[i] = np.any(info[name])
+        return np.array(self._obs, np.float32), rewards, ended, cut, infos
 
     def render(self) -> list[Any]:
         """A picture of each."""

@@ -19,6 +19,7 @@ from typing import Any
 
 import mujoco
 import numpy as np
+from mujoco.rendering.classic import gl_context
 
 from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.errors import UsageError
@@ -100,6 +101,17 @@ def check_size(width: int, height: int) -> None:
         if value > most:
             raise UsageError(f"{name}={value}: must be at most {most}, the limit of OpenGL here")
     raise ValueError(f"width={width}, height={height}: too large for OpenGL here")
+
+
+def lend() -> None:
+    """Let MuJoCo's own Renderer and Gymnasium's draw with `backend()`, if a command disabled them.
+
+    Raises:
+        NoGraphicsError: if no backend works.
+    """
+    if os.environ.get("MUJOCO_GL") == "disable":
+        os.environ["MUJOCO_GL"] = backend()
+        mujoco.GLContext = importlib.reload(gl_context).GLContext
 
 
 def _trial(name: str, width: int, height: int) -> Any:

@@ -16,6 +16,7 @@ missing values and failed seeds are in the picture and in the JSON.
 """
 
 import itertools
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -72,6 +73,7 @@ def figure(
             "line": "interquartile mean over seeds",
             "band": "95% percentile bootstrap over seeds",
             "curves": [to_numbers(curve) for curve in itertools.chain(*each)],
+            "comparisons": comparisons([*itertools.chain(*each)]),
         }
     if threshold is not None:
         numbers["threshold"] = threshold
@@ -100,19 +102,32 @@ def summary(numbers: dict[str, Any]) -> list[str]:
             if np.isfinite(steps).all():
                 line += f" at {iqm(steps):,.0f}"
         lines.append(line)
-    for one, other in itertools.combinations(drawn, 2):
-        both = one.shared.any() and other.shared.any()
-        if both and (one.task, one.metric) == (other.task, other.metric):
-            rate, low, high = improvement(area(one), area(other))
-            lines.append(
-                f"{one.task}, {one.metric}: {one.label} ahead of {other.label} "
-                f"in {rate:.0%} [{low:.0%}, {high:.0%}] of pairs"
-            )
+    for each in numbers["comparisons"] if "comparisons" in numbers else comparisons(drawn):
+        rate, low, high = each["share"], *each["band"]
+        lines.append(
+            f"{each['task']}, {each['metric']}: {each['label']} ahead of {each['other']} in "
+            f"{rate:.0%} [{low:.0%}, {high:.0%}] of pairs of seeds, by the mean over the run"
+        )
     if any(1 < len(curve.seeds) <= FEW for curve in drawn):
         lines.append(
             f"note: with {FEW} seeds or fewer an interval is their range, and not a 95% one"
         )
     return lines + [f"note: {note}" for curve in drawn for note in curve.notes]
+
+
+def comparisons(drawn: Sequence[Curve]) -> list[dict[str, Any]]:
+    """For each two curves of a task and a metric, the share of pairs of seeds that one leads.
+
+    That is Agarwal et al.'s probability of improvement, of the means over the run, and its band.
+    """
+    found = []
+    for one, other in itertools.combinations(drawn, 2):
+        both = one.shared.any() and other.shared.any()
+        if both and (one.task, one.metric) == (other.task, other.metric):
+            share, *band = improvement(area(one), area(other))
+            named = {"task": one.task, "metric": one.metric, "label": one.label}
+            found.append({**named, "other": other.label, "share": share, "band": band})
+    return found
 
 
 def table(numbers: dict[str, Any]) -> str:

@@ -22,7 +22,7 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.composition import CONF, check_choices, explain, file, options
+from hybrid_rl.composition import CONF, check_choices, explain, file, options, search_path
 from hybrid_rl.errors import UsageError, printable, user_line
 from hybrid_rl.fields import FieldError
 from hybrid_rl.overrides import select
@@ -135,8 +135,8 @@ def _ordered(line: Sequence[str]) -> list[str]:
         UsageError: for what is neither key=value nor an option of Hydra's.
     """
     for text in line:
-        if text.startswith("config_dir="):
-            overrides.search_path(text.partition("=")[2])  # refuses what is no folder
+        if text.startswith(("config_dir=", "--config-dir=")):
+            search_path(text.partition("=")[2])  # refuses what is no folder
     line = [re.sub("^config_dir=", "--config-dir=", text) for text in line]  # as elsewhere
     renamed.check(line)
     check_choices(line)

@@ -32,7 +32,7 @@ from hybrid_rl.overrides import of_job, parse, quoted
 from hybrid_rl.run import together
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.folder import new_folder, rowless
+from hybrid_rl.run.folder import NO_CHECKPOINT, new_folder, rowless
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 
@@ -238,7 +238,7 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
             complete.append([*mine, f"resume={quoted(str(folder))}"])
             continue
         if (folder / "config.yaml").exists() and not rowless(folder):
-            raise UsageError(f"run_dir={folder}: holds a run already; choose another")
+            raise UsageError(f"run_dir={folder}: {NO_CHECKPOINT}")
         complete.append([*mine, f"run_dir={quoted(str(folder))}"])
     return complete
 

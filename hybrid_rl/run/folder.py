@@ -34,6 +34,7 @@ from hybrid_rl.run.machine.provenance import git_commit
 
 FIRST = "0.2"  # version that writes its number to config.yaml
 SWEEP = "sweep.json"  # in the folder of runs that one program trains (hybrid_rl.run.together)
+NO_CHECKPOINT = "holds a run without a checkpoint; delete it, or choose another"
 
 
 @contextmanager
@@ -52,8 +53,8 @@ def claim_folder(config: DictConfig) -> Iterator[Path]:
         with lock(folder, "run_dir"), _cleared(folder):
             saved = checkpoint.steps(folder / "checkpoints")
             if saved or ((folder / "config.yaml").exists() and not rowless(folder)):
-                line = f"run_dir={folder}: holds a run already; choose another"
-                raise UsageError(f"{line}, or resume={folder}" if saved else line)
+                line = f"holds a run already; choose another, or resume={folder}"
+                raise UsageError(f"run_dir={folder}: {line if saved else NO_CHECKPOINT}")
             yield folder
     except BaseException:
         with suppress(OSError):  # it holds something

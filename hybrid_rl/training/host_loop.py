@@ -228,11 +228,12 @@ class HostEvaluator:
     def __call__(
         self, params: Params, keys: Array, cut: Callable[[], bool] = lambda: False
     ) -> dict[str, np.ndarray] | None:
-        """The `return` [S, N] of each episode; None once `cut` is true."""
+        """The `return` [S, N] of each episode, and `success` if infos say; None once `cut`."""
         shape, control = keys.shape, jax.tree.map(jnp.copy, self.control)
         seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
         copies = copies_of(self.episode, seeds)
         obs, done, returns = copies.reset(), np.zeros(len(seeds), bool), np.zeros(len(seeds))
+        flagged, success = False, np.zeros(len(seeds))
         while not done.all():
             if cut():
                 copies.close()
@@ -241,9 +242,12 @@ class HostEvaluator:
             u, control, keys = self._decide(self.numbers, params, control, seen, keys)
             got = copies.step(np.asarray(u).reshape(len(seeds), -1))
             returns += np.where(done, 0, got.reward)
+            if copies.success is not None:
+                flagged, success = True, np.where(done, success, copies.success)
             done, obs = done | got.terminated | got.truncated, got.following
         copies.close()
-        return {"return": returns.reshape(shape)}
+        found = {"return": returns} | ({"success": success} if flagged else {})
+        return {name: values.reshape(shape) for name, values in found.items()}
 
 
 def copies_of(episode: Episode, seeds: Sequence[int]) -> Copies:

@@ -96,3 +96,16 @@ def test_an_override_by_another_key_stays_as_typed():
     task = ["belief.part=${chosen}", "task=pendulum"]
     hydra = OmegaConf.create({"chosen": {"a": 1}, "overrides": {"task": task}})
     assert overrides.of_job(hydra) == task
+
+
+def test_a_file_with_a_name_of_the_library_is_refused_unless_it_is_a_copy(tmp_path):
+    """Hydra would take the library's, and not say so."""
+    mine, name = tmp_path / "model" / "gaussian.yaml", "model/gaussian.yaml"
+    mine.parent.mkdir()
+    mine.write_bytes((config.CONF / name).read_bytes())
+    settings = ["task=pendulum", "algo=nn_mppi", "model=gaussian"]
+    assert config.load(settings, tmp_path).model.hidden == [200]
+    mine.write_text(mine.read_text().replace("[200]", "[7]"))
+    line = f"hybrid_rl has model=gaussian of its own, which a run would take; rename {name}"
+    with pytest.raises(config.UsageError, match=line):
+        config.load(settings, tmp_path)

@@ -184,6 +184,8 @@ def test_settings_do_not_change_a_task_silently(folder, capfd):
         config.load(given, "my_conf")
     assert call_train("--config-dir", "my_conf", *given, "seed=-1") == 2
     assert capfd.readouterr().out == f"{line}\n"
+    assert call_train("-m", "--config-dir", "my_conf", *given, "seed=-1,-2") == 2
+    assert capfd.readouterr().out == f"{line}\n"  # once, for both
     config.load(["task=broken"], "my_conf")
     config.load(["task=pendulum", "settings=light"], "my_conf")
 

@@ -238,7 +238,7 @@ def test_a_run_that_was_stopped_while_it_compiled_begins_again_in_its_folder(tmp
     folder.mkdir()
     config = load([*TINY, "algo=sac", f"run_dir={folder}"])
     run_folder.write(folder, config)
-    with pytest.raises(UsageError, match="holds a run already"), run_folder.claim_folder(config):
+    with pytest.raises(UsageError, match="holds a run without"), run_folder.claim_folder(config):
         pass  # a file of that name, of whatever
     (folder / "metrics.jsonl").touch()
     with pytest.raises(UsageError, match="no row of metrics yet"):

@@ -177,17 +177,23 @@ class Drawn(Count):
         self.episode = int(self.np_random.integers(1, 4))
         return self._seen(), {}
 
+    def step(self, action: np.ndarray) -> tuple:
+        *rest, info = super().step(action)
+        return *rest, {**info, "is_success": np.float32(self.time == 3)}
 
-def test_an_evaluation_pays_each_episode_until_its_own_end():
+
+@pytest.mark.parametrize("processes", [False, True])
+def test_an_evaluation_pays_each_episode_until_its_own_end(processes):
     """Also where the others of the call go on."""
-    episode, keys = Episode(External(make=Drawn), 9), jax.random.split(jax.random.key(0), (2, 4))
+    episode = Episode(External(make=Drawn, processes=processes), 9)
+    keys = jax.random.split(jax.random.key(0), (2, 4))
     evaluator = HostEvaluator(episode, ConstantController(0.5), Params(), keys)
     seeds = [seed_of(*map(int, row)) for row in jax.random.key_data(keys).reshape(-1, 2)]
     lengths = [1 + Drawn().reset(seed=seed)[0][0] for seed in seeds]
-    assert len(set(lengths)) > 1
-    np.testing.assert_allclose(
-        evaluator(Params(), keys)["return"].ravel(), np.float32(lengths) * 2.5
-    )
+    assert {3} < set(lengths)
+    found = {name: values.ravel() for name, values in evaluator(Params(), keys).items()}
+    np.testing.assert_allclose(found["return"], np.float32(lengths) * 2.5)
+    assert found["success"].tolist() == [length == 3 for length in lengths]
 
 
 @pytest.mark.parametrize("processes", [False, True])

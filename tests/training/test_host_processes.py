@@ -87,6 +87,7 @@ PAINTER = (
     .replace(
         "def reset",
         """def render(self):
+        assert os.environ["MUJOCO_GL"] in ("egl", "osmesa")  # as MuJoCo's and Gymnasium's need
         return np.full((21, 32, 3), 10 * self.count, np.uint8)
 
     def reset""",
@@ -106,6 +107,7 @@ def test_a_gymnasium_environment_draws_itself(tmp_path, monkeypatch, capsys):
     hybrid_rl.train(line, progress=False)
     out = tmp_path / "episode.gif"
     monkeypatch.setattr(sys, "argv", ["render", f"run={tmp_path}/run", f"out={out}"])
+    monkeypatch.setenv("MUJOCO_GL", "disable")  # as every command begins
     render.main()
     assert "6 pictures, return 6.0" in capsys.readouterr().out
     pictures = iio.imread(out)
