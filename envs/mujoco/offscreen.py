@@ -19,7 +19,6 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from mujoco.rendering.classic import gl_context
 
 from hybrid_rl.envs.mujoco import scenery
 from hybrid_rl.errors import UsageError
@@ -111,6 +110,8 @@ def lend() -> None:
     """
     if os.environ.get("MUJOCO_GL") == "disable":
         os.environ["MUJOCO_GL"] = backend()
+        from mujoco.rendering.classic import gl_context  # which reads MUJOCO_GL
+
         mujoco.GLContext = importlib.reload(gl_context).GLContext
 
 
