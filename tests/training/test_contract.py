@@ -165,23 +165,23 @@ def test_what_is_wrong_is_one_line(part, words):
 
 @dataclass(frozen=True)
 class Observables:
-    """z = o, or what is not [n]."""
+    """z is an observation, or what else is made of it."""
 
-    wrong: Any = None
+    made: Any = jnp.asarray
 
     def init(self, key, spec):
         return {}
 
     def __call__(self, params, obs):
-        return {None: obs, "one": obs.sum(), "list": [*obs]}[self.wrong]
+        return self.made(obs)
 
 
 @pytest.mark.parametrize(
     ("model", "words"),
     [
         (Koopman(Observables(), products=(7,)), "model.products=[7]: x has entries 0 to 2; in Le"),
-        (Koopman(Observables("one")), "features: z must be one array [n], not []; "),
-        (Koopman(Observables("list")), "features: z must be one array [n], not a list; "),
+        (Koopman(Observables(jnp.sum)), "features: z must be one array [n], not []; "),
+        (Koopman(Observables(list)), "features: z must be one array [n], not a list; "),
     ],
 )
 def test_what_the_library_finds_comes_before_the_users_part(model, words):
@@ -191,17 +191,10 @@ def test_what_the_library_finds_comes_before_the_users_part(model, words):
     assert re.search(r"; in LeastSquares\.init, with \S*test_contract\.py:\d+: ", str(error.value))
 
 
-class Callable:
-    """Features without init."""
-
-    def __call__(self, params, obs):
-        return obs
-
-
-def test_only_protocols_that_the_part_may_follow_are_named():
-    part: Any = Callable()
-    with pytest.raises(PartError, match=r"Callable has no init; see protocols\.Features; in Least"):
-        check(learner=LeastSquares(Koopman(part)))
+def test_only_protocols_that_the_part_may_follow_are_named(monkeypatch):
+    monkeypatch.delattr(Observables, "init")
+    with pytest.raises(PartError, match=r"Observables has no init; see protocols\.Features; in L"):
+        check(learner=LeastSquares(Koopman(Observables())))
 
 
 class Free:
