@@ -103,6 +103,12 @@ def _check_members(world: SourceOf) -> None:
         raise WorldError(f"{at}: spec.dt is {spec.dt!r}; it must be a number of seconds above 0")
     for method, takes in SIGNATURES.items():
         world.takes(method, *takes)
+    if hasattr(env, "equilibrium"):
+        rest = world.blamed("equilibrium", jax.eval_shape, env.equilibrium)
+        sizes = [getattr(each, "shape", ()) for each in rest] if isinstance(rest, tuple) else []
+        if sizes != [(spec.obs,), (spec.act,)]:
+            must = f"must return two arrays, obs [{spec.obs}] and action [{spec.act}] at rest"
+            raise WorldError(f"{world.at('equilibrium')}: {must}")
 
 
 def _check_state(world: SourceOf, method: str, state: Any) -> None:

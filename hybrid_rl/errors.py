@@ -135,6 +135,12 @@ def user_line(error: BaseException, own: str = "", ours: bool = False) -> str | 
     return None
 
 
+def ours(error: BaseException) -> bool:
+    """Whether a line of this package raised it."""
+    frames = traceback.extract_tb(error.__traceback__)
+    return bool(frames) and not OURS.isdisjoint(Path(frames[-1].filename).parents)
+
+
 def blame(error: BaseException) -> str:
     """As `user_line`; `one_line` of an error in which no file of the user's took part."""
     return user_line(error) or one_line(error)

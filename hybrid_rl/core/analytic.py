@@ -9,6 +9,8 @@ from jax import Array
 
 from hybrid_rl.protocols import AnalyticEnv
 
+STILL = 1e-4  # motion in a decision at an equilibrium, of the size of its state
+
 
 def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tuple[Array, Array]:
     """A [d, d] and B [d, m] of `step` at e [d], u [m]."""
@@ -17,15 +19,28 @@ def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tupl
 
 @cache
 def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
-    """A [d, d] and B [d, m] of `world` at its equilibrium, in local coordinates, in float64."""
+    """A [d, d] and B [d, m] of `world` at its equilibrium, in local coordinates, in float64.
+
+    Raises:
+        ValueError: if the world moves there, or has no derivatives.
+    """
     with jax.enable_x64(True), jax.ensure_compile_time_eval():
         x, u = world.equilibrium()
 
-        def step(e: Array, u: Array) -> Array:
-            return world.to_local(world.dynamics(world.from_local(e), u))
+        def step(e: Array, u: Array) -> tuple[Array, Array]:
+            after = world.to_local(world.dynamics(world.from_local(e), u))
+            return after, after
 
-        a, b = linearise(step, world.to_local(x), u)
-        return np.asarray(a), np.asarray(b)
+        e = world.to_local(x)
+        (a, b), after = jax.jacfwd(step, argnums=(0, 1), has_aux=True)(e, u)
+        a, b, moved = np.asarray(a), np.asarray(b), float(np.abs(after - e).max())
+    name = type(world).__name__
+    if not moved < STILL * max(1, float(np.abs(x).max())):
+        line = f"dynamics(*equilibrium()) differs from equilibrium() by {moved:.2g}"
+        raise ValueError(f"env: {name}.{line}; it must be a state and an action at rest")
+    if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        raise ValueError(f"env: the derivatives of {name}.dynamics are not finite at equilibrium()")
+    return a, b
 
 
 def sizes(world: AnalyticEnv) -> tuple[int, int]:

@@ -39,9 +39,10 @@ def log_sum(s: Array, x: Array, variance: Array, counted: Array | None = None) -
 
 
 def divergence(points: Points, log_q: Array, volume: float) -> Array:
-    """D(p || q) [] [nat] from log q [N] at the points."""
+    """D(p || q) [] [nat] from log q [N] at the points; where p = 0, p log p = 0."""
     p, count = jnp.exp(points.log_p), len(points.log_p)
-    return jnp.sum(p * (points.log_p + jnp.log(count / volume) - log_q))
+    log_p = jnp.where(p > 0, points.log_p, 0.0)
+    return jnp.sum(p * (log_p + jnp.log(count / volume) - log_q))
 
 
 def mean_distance(points: Points, x: Array, variance: Array) -> Array:

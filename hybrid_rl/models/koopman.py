@@ -30,10 +30,14 @@ class Koopman:
         """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed.
 
         Raises:
-            ValueError: for a product with an entry that x lacks.
+            ValueError: for features that are not [n], or a product with an entry that x lacks.
         """
         features = self.features.init(key, spec)
-        n = self.features(features, jnp.zeros(spec.obs)).size
+        z = jax.eval_shape(self.features, features, jnp.zeros(spec.obs))
+        if getattr(z, "ndim", None) != 1:
+            got = list(z.shape) if hasattr(z, "shape") else f"a {type(z).__name__}"
+            raise ValueError(f"features: z must be one array [n], not {got}; jnp.stack makes one")
+        n = z.size
         if max(self.products, default=0) >= n:
             raise ValueError(f"model.products={list(self.products)}: x has entries 0 to {n - 1}")
         r = n + spec.act * (1 + len(self.products))

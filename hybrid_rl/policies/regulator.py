@@ -41,8 +41,17 @@ class Regulator:
         self._weights()
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
-        """K [m, d] and P [d, d]."""
-        return riccati.regulator(*analytic.at_equilibrium(self.world), *self._weights())
+        """K [m, d] and P [d, d].
+
+        Raises:
+            ValueError: if nothing stabilises the world at its equilibrium, or it has none there.
+        """
+        a, b = analytic.at_equilibrium(self.world)
+        try:
+            return riccati.regulator(a, b, *self._weights())
+        except np.linalg.LinAlgError:
+            line = "no action stabilises what is unstable at its equilibrium()"
+            raise ValueError(f"env: {type(self.world).__name__}: {line}") from None
 
     def _weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Q [d, d] and R [m, m]."""

@@ -11,9 +11,14 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.run.checkpoints.store import End
-from hybrid_rl.run.logs.rows import of_world
+from hybrid_rl.run.logs.rows import ACTION, of_world
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.training.loop import Loop
+
+BLAMED = {  # a quantity that is not finite, where all that was learned is -> what to look at
+    "eval/": "the world's rewards and the controller's actions",
+    ACTION: "what the controller acts by, as its policy, model, objective and target",
+}
 
 
 class Diverged:
@@ -50,11 +55,22 @@ class Diverged:
         for s, end in new.items():
             if of_world(end["quantity"]):
                 end["world"] = self._decision(s, end, state, now)
-            elif end["quantity"].startswith("eval/") and s not in unsound(state.learners, now):
-                blame = "the world's rewards and the controller's actions"
-                end["world"] = f"all that was learned is finite: see {blame}"
+            elif blame := self._blame(s, end["quantity"], state, now):
+                end["world"] = blame
         self.ends |= new
         return new
+
+    def _blame(self, s: int, quantity: str, state: Any, now: int) -> str:
+        """What else than a learning rate may have failed; "" if it may have been that."""
+        learners = self.loop.agent.learners.values()
+        blame = next((BLAMED[kind] for kind in BLAMED if quantity.startswith(kind)), "")
+        if not learners:
+            return f"nothing is learned here: see {blame or BLAMED[ACTION]}"
+        if blame and s not in unsound(state.learners, now):
+            return f"all that was learned is finite: see {blame}"
+        if any("learning_rate" in name for each in learners for name in dir(each)):
+            return ""
+        return "no learner has a learning rate: see the data and the features that they fit"
 
     def _of(self, s: int) -> dict[str, str]:
         """The name of the numbers of learner s, if there are others."""
@@ -123,7 +139,7 @@ def line(ends: Sequence[End], left: int, checkpoint: int | None) -> str:
     advice = "begin again with a lower learning rate"
     if checkpoint is None:
         return f"{each}; there is no checkpoint" + (f": {advice}" if of_learning else "")
-    mend = f"evaluate or resume it, or {advice}" if of_learning else "mend the world and resume it"
+    mend = f"evaluate or resume it, or {advice}" if of_learning else "mend that and resume it"
     return f"{each}; checkpoint {checkpoint} is whole: {mend}"
 
 

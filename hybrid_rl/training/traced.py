@@ -4,13 +4,13 @@ import sys
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 import jax
 import numpy as np
 
 from hybrid_rl import protocols
-from hybrid_rl.errors import FAULTS, PartError, SourceOf, UsageError, one_line, user_line
+from hybrid_rl.errors import FAULTS, PartError, SourceOf, UsageError, one_line, ours, user_line
 from hybrid_rl.training import pairs
 
 OTHERS = {"hybrid_rl", "jax", "jaxlib", *sys.stdlib_module_names}  # packages
@@ -49,7 +49,10 @@ def shapes(part: Any, method: str, function: Callable[..., Any], *arguments: Any
 
 
 def call(part: Any, method: str, function: Callable[..., Any], *arguments: Any) -> Any:
-    """What `function` returns; its errors name the user's part and the line."""
+    """What `function` returns; its errors name the user's part and the line.
+
+    A ValueError that this package raised says what to change; the user's part comes after it.
+    """
     mine = SourceOf(next(users(part), part))
     try:
         with pairs.refuse():
@@ -59,18 +62,23 @@ def call(part: Any, method: str, function: Callable[..., Any], *arguments: Any) 
     except FAULTS as error:
         line = user_line(error)
         if line is None and isinstance(error, AttributeError) and of_user(error.obj):
-            line = f"{SourceOf(error.obj).at()} has no {error.name}{_where(error.name)}"
+            line = f"{SourceOf(error.obj).at()} has no {error.name}{_where(error.name, error.obj)}"
+        where = f"in {type(part).__name__}.{method}"
+        if line is None and isinstance(error, ValueError) and ours(error):
+            raise PartError(f"{error}; {where}, with {mine.at()}") from error
         line = line or f"{mine.at()}: {one_line(error)}"
-        raise PartError(f"{line.rstrip('.')}; in {type(part).__name__}.{method}") from error
+        raise PartError(f"{line.rstrip('.')}; {where}") from error
 
 
-def _where(method: str | None) -> str:
-    """The protocols that say what a method is."""
+def _where(method: str | None, part: Any) -> str:
+    """The protocols that say what a method is; if there are some, those that lack no other."""
     kinds = {name: getattr(protocols, name) for name in protocols.__all__}
     has = {
         name: {*dir(kind), *getattr(kind, "__annotations__", ())} for name, kind in kinds.items()
     }
     names = [name for name in has if method in has[name]]
+    only = {*dir(part), *dir(Protocol), method}
+    names = [name for name in names if has[name] <= only] or names
     return f"; see {', '.join(f'protocols.{name}' for name in names)}" if names else ""
 
 

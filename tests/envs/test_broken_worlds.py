@@ -179,6 +179,12 @@ CODE = [  # of the world: what is wrong, replaced, by what, the whole line
         r"w\.py:16: W\.reset: IndexError: .* index 2 is out of bounds .* size 2; JAX takes .*",
     ),
     (
+        "an equilibrium without its action",
+        "    def step(self",
+        "    def equilibrium(self):\n        return jnp.zeros(2)\n\n    def step(self",
+        r"w\.py:19: W\.equilibrium: must return two arrays, obs \[2\] and action \[1\] at rest",
+    ),
+    (
         "an end of the process",
         LINE,
         'raise SystemExit("no licence")',

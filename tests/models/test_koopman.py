@@ -1,5 +1,8 @@
 """Koopman models, their regression and its information, against closed forms."""
 
+import pathlib
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -40,6 +43,19 @@ def test_a_closed_system_has_its_exponential() -> None:
         K = state.model["K"]
     np.testing.assert_allclose(K[:, :3], expm(generator * DT), atol=1e-8)
     np.testing.assert_allclose(K[:, 3], 0, atol=1e-8)
+
+
+def test_the_how_to_has_observables_of_an_operator() -> None:
+    """z = (x, v, sin x): K has a row for each, and a column for the action, too."""
+    page = (pathlib.Path(__file__).parents[2] / "docs" / "howto.md").read_text(encoding="utf-8")
+    code = page.split("## Observables of your own\n")[1].split("```python\n")[1].split("```")[0]
+    names: dict[str, Any] = {"__name__": "swings"}
+    exec(compile(code, "howto.md", "exec"), names)
+    model = Koopman(names["Swings"]())
+    params = model.init(jax.random.key(0), SPEC)
+    assert params["K"].shape == (3, 4)
+    z = model.lift(params, jnp.array([0.5, 2.0]))
+    np.testing.assert_allclose(z, [0.5, 2.0, np.sin(0.5)], rtol=1e-6)
 
 
 def test_pykoopman_agrees() -> None:

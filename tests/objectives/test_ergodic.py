@@ -11,7 +11,7 @@ from scipy.stats import norm
 
 from hybrid_rl import config
 from hybrid_rl.core.domain import Box
-from hybrid_rl.core.ergodic import Points
+from hybrid_rl.core.ergodic import Points, divergence
 from hybrid_rl.objectives.fourier_ergodic import FourierErgodic
 from hybrid_rl.objectives.kl_ergodic import JensenErgodic, KLErgodic, KLState
 from hybrid_rl.targets.mixture import Mixture
@@ -100,6 +100,13 @@ def test_measure_is_the_divergence_on_a_grid() -> None:
     q = np.mean([np.prod(norm.pdf(s, x, np.sqrt([0.05, 0.1])), -1) for x in counted], 0)
     p, q = p_of(s) / (p_of(s).sum() * cell), q + 0.05 / BOX.volume
     assert float(got) == pytest.approx(float(np.sum(p * np.log(p / q)) * cell), rel=0.01)
+
+
+def test_a_target_may_be_zero_somewhere() -> None:
+    """D of p = (1/2, 1/2, 0) from uniform q is log(3/2)."""
+    points = Points(jnp.zeros((3, 1)), jnp.log(jnp.array([0.5, 0.5, 0.0])))
+    got = divergence(points, jnp.log(jnp.full(3, 1 / 3)), 3.0)
+    assert float(got) == pytest.approx(np.log(1.5))
 
 
 def test_leaving_the_box_has_its_price() -> None:

@@ -131,7 +131,7 @@ def test_a_world_that_breaks_is_named_and_can_be_mended(copied, monkeypatch, cap
         "hybrid_rl.envs.analytic.pendulum.Pendulum at obs ["
     )
     assert " gives reward nan, obs [" in line
-    assert line.endswith("; checkpoint 50 is whole: mend the world and resume it\n")
+    assert line.endswith("; checkpoint 50 is whole: mend that and resume it\n")
     assert not summary_of(folder)["finished"]
     assert checkpoint.steps(folder / "checkpoints") == [50]
     assert call_train(f"resume={folder}") == 0

@@ -222,8 +222,8 @@ def test_an_evaluation_that_is_not_finite_ends_the_learner(tmp_path):
     values = str(error.value)
     assert values == (
         "seed 0, step 300: eval/return is not finite, all that was learned is finite: see the "
-        "world's rewards and the controller's actions; checkpoint 200 is whole: mend the world "
-        "and resume it"
+        "world's rewards and the controller's actions; checkpoint 200 is whole: mend that and "
+        "resume it"
     )
     assert checkpoint.steps(folder / "checkpoints") == [100, 200]
     assert integrity.verify(folder / "checkpoints" / "200") is None

@@ -17,7 +17,9 @@ from hybrid_rl.critics.ensemble_q import EnsembleQ
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import PartError, UsageError
+from hybrid_rl.learners.least_squares import LeastSquares
 from hybrid_rl.learners.sac import SAC
+from hybrid_rl.models.koopman import Koopman
 from hybrid_rl.objectives.predicted_return import PredictedReturn
 from hybrid_rl.policies.tanh_gaussian import TanhGaussian
 from hybrid_rl.proposals.noise import NoiseProposal
@@ -159,6 +161,40 @@ def test_what_is_wrong_is_one_line(part, words):
     assert re.match(r"\S*test_contract\.py:\d+: ", line)
     assert words in line
     assert "\n" not in line
+
+
+@dataclass(frozen=True)
+class Observables:
+    """z is an observation, or what else is made of it."""
+
+    made: Any = jnp.asarray
+
+    def init(self, key, spec):
+        return {}
+
+    def __call__(self, params, obs):
+        return self.made(obs)
+
+
+@pytest.mark.parametrize(
+    ("model", "words"),
+    [
+        (Koopman(Observables(), products=(7,)), "model.products=[7]: x has entries 0 to 2; in Le"),
+        (Koopman(Observables(jnp.sum)), "features: z must be one array [n], not []; "),
+        (Koopman(Observables(list)), "features: z must be one array [n], not a list; "),
+    ],
+)
+def test_what_the_library_finds_comes_before_the_users_part(model, words):
+    with pytest.raises(PartError) as error:
+        check(learner=LeastSquares(model))
+    assert str(error.value).startswith(words)
+    assert re.search(r"; in LeastSquares\.init, with \S*test_contract\.py:\d+: ", str(error.value))
+
+
+def test_only_protocols_that_the_part_may_follow_are_named(monkeypatch):
+    monkeypatch.delattr(Observables, "init")
+    with pytest.raises(PartError, match=r"Observables has no init; see protocols\.Features; in L"):
+        check(learner=LeastSquares(Koopman(Observables())))
 
 
 class Free:

@@ -15,7 +15,7 @@ from hybrid_rl.run.schedule import Speed
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.loop import Loop
 
-# {"seed", "step", "quantity"} of a learner that diverged; "world": why it is the world's fault;
+# {"seed", "step", "quantity"} of a learner that diverged; "world": what else is to blame;
 # "of": its numbers, where a program has several sets of them
 End = dict[str, Any]
 
