@@ -84,8 +84,9 @@ class RefitsController:
             S, J = score(v)
             S, best = jax.lax.top_k(S, self.elites)
             w = sampling.weights(S[:, None], self.temperature, normalise=True)[:, 0]
-            mu = jnp.einsum("k,ktm->tm", w, v[best])
-            variance = jnp.einsum("k,ktm->tm", w, (v[best] - mu[None]) ** 2)
+            v = sampling.kept(w[:, None, None], v[best])
+            mu = jnp.einsum("k,ktm->tm", w, v)
+            variance = jnp.einsum("k,ktm->tm", w, (v - mu[None]) ** 2)
             return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), J[best[0]]
 
         first = state.plan, jnp.full_like(state.plan, self.spread)

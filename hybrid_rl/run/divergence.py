@@ -11,9 +11,11 @@ import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.run.checkpoints.store import End
-from hybrid_rl.run.logs.rows import of_world
+from hybrid_rl.run.logs.rows import ACTION, of_world
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.training.loop import Loop
+
+BY_ACTING = ("eval/", ACTION)  # begin quantities that sound learners may make infinite
 
 
 class Diverged:
@@ -50,7 +52,7 @@ class Diverged:
         for s, end in new.items():
             if of_world(end["quantity"]):
                 end["world"] = self._decision(s, end, state, now)
-            elif end["quantity"].startswith("eval/") and s not in unsound(state.learners, now):
+            elif end["quantity"].startswith(BY_ACTING) and s not in unsound(state.learners, now):
                 blame = "the world's rewards and the controller's actions"
                 end["world"] = f"all that was learned is finite: see {blame}"
         self.ends |= new

@@ -102,6 +102,28 @@ def test_a_decision_is_that_of_numpy(staged: bool, execute: str) -> None:
     np.testing.assert_allclose(found, [1 / (w[:, 0] ** 2).sum(), w[:, 0] @ S[:, 0]], rtol=1e-4)
 
 
+@dataclass(frozen=True)
+class Breaking(Cart):
+    """The mass on a line, of which nothing is known beyond u = 0.2."""
+
+    def step(self, params: Any, x: Array, u: Array) -> Array:
+        """The next state [2]."""
+        return jnp.where(u[0] > 0.2, jnp.nan, super().step(params, x, u))
+
+
+@pytest.mark.parametrize("execute", ["mean", "sample", "best"])
+def test_a_candidate_that_breaks_the_model_has_no_weight(execute: Any) -> None:
+    """As in the simulator, where one candidate is unstable: of Grid's, u = 0 alone is finite."""
+    parts = Breaking(), PredictedReturn(Fast()), Grid()
+    controller = SamplingController(*parts, horizon=T, samples=K, execute=execute)
+    given = Params(), controller.init(SPEC), X, jax.random.key(0)
+    u, state, metrics = jax.jit(controller.act)(*given)
+    assert not state.plan.any()
+    assert float(u[0]) == 0
+    assert float(metrics["planner/planned_return"]) == pytest.approx(T * float(X[1]))
+    assert float(metrics["planner/planned_reward"]) == pytest.approx(float(X[1]))
+
+
 @pytest.mark.parametrize("ends", [False, True])
 def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     """The reward network's output at x and u, whether or not episodes end."""

@@ -78,6 +78,7 @@ def test_a_decision_that_the_memory_forgot_is_not_shown():
 )
 def test_what_was_learned_is_to_blame_where_it_failed_first_or_acted(bad):
     learners, state = diverged(100, [-1] * 5)
+    state.learners = {"policy": jnp.array([NAN])}
     ends = [*learners.add(rows.infinite(metrics(**bad), 0, WORLDS), state, 10).values()]
     assert divergence.line(ends, 0, None) == (
         f"seed 3, step {ends[0]['step']}: {ends[0]['quantity']} is not finite; there is no "
@@ -86,7 +87,8 @@ def test_what_was_learned_is_to_blame_where_it_failed_first_or_acted(bad):
     assert ends[0]["quantity"] in ("sac/q", "world/action")
 
 
-def test_a_return_by_sound_learners_is_a_fault_of_what_acted_or_paid():
+@pytest.mark.parametrize("quantity", ["eval/return", "world/action"])
+def test_a_number_by_sound_learners_is_a_fault_of_what_acted_or_paid(quantity):
     learners, state = diverged(100, [-1] * 5)
-    (end,) = learners.add({0: (10, "eval/return")}, state, 10).values()
+    (end,) = learners.add({0: (10, quantity)}, state, 10).values()
     assert end["world"].endswith("see the world's rewards and the controller's actions")
