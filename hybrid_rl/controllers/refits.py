@@ -92,7 +92,8 @@ class RefitsController:
         first = state.plan, jnp.full_like(state.plan, self.spread)
         (plan, sigma), J = jax.lax.scan(refit, first, jax.random.split(drawing, self.refits))
         metrics = {"planner/planned_return": J[-1], "planner/spread": sigma[0].mean()}
-        after = RefitsState(sampling.shift(plan), state.carries, plan[0], memory)
+        begin = sampling.sound(plan, 0.0)
+        after = RefitsState(sampling.shift(begin), state.carries, begin[0], memory)
         return plan[0], after, metrics
 
     def greedy(self) -> "RefitsController":

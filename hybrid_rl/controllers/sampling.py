@@ -113,7 +113,9 @@ class SamplingController:
             **self._planned_reward(params, w[:, 0], samples.path),
             **self._agreement(params, x, plan, to_go),
         }
-        after = state._replace(plan=sampling.shift(plan, self.rest), u=action, memory=memory)
+        plan = sampling.shift(sampling.sound(plan, self.rest), self.rest)
+        u = sampling.sound(action, self.rest)
+        after = state._replace(plan=plan, u=u, memory=memory)
         return action, after, metrics, Considered(samples.path, jnp.argmax(w[:, 0]))
 
     def _to_go(

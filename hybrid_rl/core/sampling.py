@@ -82,9 +82,9 @@ def weights(
     Only differences of returns matter, so the best return is first subtracted. A compiled softmax
     would otherwise round a large S / lambda differently where it uses it twice, and overflow.
     """
-    sound = jnp.isfinite(reward_to_go)
-    worst = jnp.min(reward_to_go, axis=0, initial=jnp.inf, where=sound, keepdims=True)
-    reward_to_go = jnp.where(sound, reward_to_go, worst)
+    finite = jnp.isfinite(reward_to_go)
+    worst = jnp.min(reward_to_go, axis=0, initial=jnp.inf, where=finite, keepdims=True)
+    reward_to_go = jnp.where(finite, reward_to_go, worst)
     reward_to_go = reward_to_go - reward_to_go.max(axis=0, keepdims=True)
     if normalise:
         std = jnp.std(reward_to_go, axis=0, keepdims=True)
@@ -92,12 +92,17 @@ def weights(
     exponent = reward_to_go / temperature
     if log_prob is not None:
         exponent = exponent + log_prob
-    return jax.nn.softmax(jnp.where(sound, exponent, -jnp.inf), axis=0)
+    return jax.nn.softmax(jnp.where(finite, exponent, -jnp.inf), axis=0)
 
 
 def kept(w: Array, x: Array) -> Array:
     """x, 0 where its weight is: a path without weight may be NaN. w and x broadcast."""
     return jnp.where(w > 0, x, 0.0)
+
+
+def sound(u: Array, rest: float) -> Array:
+    """Actions u, `rest` where they are NaN: such a plan must not be where the next one begins."""
+    return jnp.where(jnp.isfinite(u), u, rest)
 
 
 def effective_samples(w: Array) -> Array:
