@@ -102,7 +102,7 @@ class Trained:
         if not world and needs_world(self.controllers[mode]):
             raise UsageError(
                 f"mode={mode}: plans from the state of the world (model=world), which observations "
-                "do not give; use evaluate or render"
+                "do not give; use evaluate or render, in a loop of yours hybrid_rl.sampling.plan"
             )
         params: Any = jax.tree.map(lambda leaf: leaf[self.seeds.index(seed)], self.params)
         return self.controllers[mode], params

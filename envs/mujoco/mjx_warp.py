@@ -19,6 +19,7 @@ import numpy as np
 from mujoco import mjx
 
 from hybrid_rl.envs.mujoco import mjcf
+from hybrid_rl.errors import UsageError, one_line
 
 Fields = dict[str, jax.Array]  # of mjx.Data, by name
 OUTPUTS = ("qpos", "qvel", "act", "qacc_warmstart", "sensordata")  # of a step
@@ -57,13 +58,22 @@ def capacities(asset: str) -> tuple[int, int]:
 
 @cache
 def _model(asset: str, impl: str) -> tuple[mujoco.MjModel, Any]:
-    """The MuJoCo and the MJX model of `asset`, created outside of any trace."""
+    """The MuJoCo and the MJX model of `asset`, created outside of any trace.
+
+    Raises:
+        UsageError: for a model with something that MJX does not have.
+    """
     model = mjcf.load(asset)
     if impl == "warp":  # never resets, and rejects the flag for it
         model = copy.copy(model)
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     with jax.ensure_compile_time_eval():
-        put = mjx.put_model(model, impl=impl)
+        try:
+            put = mjx.put_model(model, impl=impl)
+        except NotImplementedError as error:
+            name = "mjx" if impl == "jax" else impl
+            line = f"physics={name}: not for this model: {one_line(error)}; physics=native has all"
+            raise UsageError(line) from error
     if impl == "warp":  # warn of overflows only, not of solver iterations
         put = put.tree_replace({"opt._impl.warn_overflow": _overflow_bits()})
     return model, put

@@ -84,14 +84,16 @@ class RefitsController:
             S, J = score(v)
             S, best = jax.lax.top_k(S, self.elites)
             w = sampling.weights(S[:, None], self.temperature, normalise=True)[:, 0]
-            mu = jnp.einsum("k,ktm->tm", w, v[best])
-            variance = jnp.einsum("k,ktm->tm", w, (v[best] - mu[None]) ** 2)
+            v = sampling.kept(w[:, None, None], v[best])
+            mu = jnp.einsum("k,ktm->tm", w, v)
+            variance = jnp.einsum("k,ktm->tm", w, (v - mu[None]) ** 2)
             return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), J[best[0]]
 
         first = state.plan, jnp.full_like(state.plan, self.spread)
         (plan, sigma), J = jax.lax.scan(refit, first, jax.random.split(drawing, self.refits))
         metrics = {"planner/planned_return": J[-1], "planner/spread": sigma[0].mean()}
-        after = RefitsState(sampling.shift(plan), state.carries, plan[0], memory)
+        begin = sampling.sound(plan, 0.0)
+        after = RefitsState(sampling.shift(begin), state.carries, begin[0], memory)
         return plan[0], after, metrics
 
     def greedy(self) -> "RefitsController":

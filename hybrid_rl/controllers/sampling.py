@@ -99,20 +99,23 @@ class SamplingController:
             self.normalise,
             samples.log_prob if self.log_density else None,
         )
-        plan = jnp.einsum("kt,ktm->tm", w, samples.path.u)
+        plan = jnp.einsum("kt,ktm->tm", w, sampling.kept(w[..., None], samples.path.u))
         action = plan[0]
         if self.execute == "sample":
             action = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
         if self.execute == "best":
-            plan = samples.path.u[jnp.argmax(returns[:, 0])]
+            S = returns[:, 0]
+            plan = samples.path.u[jnp.argmax(jnp.where(jnp.isfinite(S), S, -jnp.inf))]
             action = plan[0]
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
-            "planner/planned_return": w[:, 0] @ returns[:, 0],
+            "planner/planned_return": w[:, 0] @ sampling.kept(w, returns[:, :-1])[:, 0],
             **self._planned_reward(params, w[:, 0], samples.path),
             **self._agreement(params, x, plan, to_go),
         }
-        after = state._replace(plan=sampling.shift(plan, self.rest), u=action, memory=memory)
+        plan = sampling.shift(sampling.sound(plan, self.rest), self.rest)
+        u = sampling.sound(action, self.rest)
+        after = state._replace(plan=plan, u=u, memory=memory)
         return action, after, metrics, Considered(samples.path, jnp.argmax(w[:, 0]))
 
     def _to_go(
@@ -133,7 +136,7 @@ class SamplingController:
             return {}
         first = Path(jax.tree.map(lambda leaf: leaf[:, :2], paths.x), paths.u[:, :1])
         each = jax.vmap(lambda path: objective.rewards(params, path)[0])(first)
-        return {"planner/planned_reward": w @ each}
+        return {"planner/planned_reward": w @ sampling.kept(w, each)}
 
     def _agreement(self, params: Params, x: Any, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """Metrics of the difference between the weighted mean and the policy's action.

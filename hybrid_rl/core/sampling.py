@@ -77,10 +77,14 @@ def weights(
 
     `normalise` divides S by its standard deviation over K, so that `temperature` is a pure
     number; otherwise it has the unit of a return. `log_prob` [K, T] is added to the exponent.
+    A return that is NaN or infinite has no weight; where none is finite, the weights are NaN.
 
     Only differences of returns matter, so the best return is first subtracted. A compiled softmax
     would otherwise round a large S / lambda differently where it uses it twice, and overflow.
     """
+    finite = jnp.isfinite(reward_to_go)
+    worst = jnp.min(reward_to_go, axis=0, initial=jnp.inf, where=finite, keepdims=True)
+    reward_to_go = jnp.where(finite, reward_to_go, worst)
     reward_to_go = reward_to_go - reward_to_go.max(axis=0, keepdims=True)
     if normalise:
         std = jnp.std(reward_to_go, axis=0, keepdims=True)
@@ -88,7 +92,17 @@ def weights(
     exponent = reward_to_go / temperature
     if log_prob is not None:
         exponent = exponent + log_prob
-    return jax.nn.softmax(exponent, axis=0)
+    return jax.nn.softmax(jnp.where(finite, exponent, -jnp.inf), axis=0)
+
+
+def kept(w: Array, x: Array) -> Array:
+    """x, 0 where its weight is: a path without weight may be NaN. w and x broadcast."""
+    return jnp.where(w > 0, x, 0.0)
+
+
+def sound(u: Array, rest: float) -> Array:
+    """Actions u, `rest` where they are NaN: such a plan must not be where the next one begins."""
+    return jnp.where(jnp.isfinite(u), u, rest)
 
 
 def effective_samples(w: Array) -> Array:
@@ -139,7 +153,4 @@ def plan(
     noise = jax.random.normal(key, (samples, *before.shape))
     path = imagine(step, propose, jnp.zeros(samples), x, before, noise).path
     S = jax.vmap(to_go)(path)[:, :-1]
-    sound = jnp.isfinite(S)
-    S = jnp.where(sound, S, jnp.min(S, axis=0, initial=jnp.inf, where=sound, keepdims=True))
-    w = weights(S, temperature, normalise=True, log_prob=jnp.where(sound, 0.0, -jnp.inf))
-    return jnp.einsum("kt,ktm->tm", w, path.u)
+    return jnp.einsum("kt,ktm->tm", weights(S, temperature, normalise=True), path.u)

@@ -179,6 +179,8 @@ def _run(
         with handled(session.ask):
             try:
                 session.run()
+                if loop.fault is not None:
+                    raise loop.fault
             except DivergenceError:
                 job.summaries(session)
                 raise

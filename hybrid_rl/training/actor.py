@@ -181,10 +181,12 @@ class Actor:
         except OSError:  # a robot that does not answer
             self.counts.stale += 1
             return None, 0.0
-        if not (isinstance(given, tuple) and len(given) == 2):
-            line = "must return (observation, its time.monotonic())"
-            raise WorldError(f"{self.env.name}: observe: {line}")
-        obs, stamp = np.array(given[0], np.float32), given[1]
+        try:
+            seen, stamp = given
+            obs, stamp = np.array(seen, np.float32), float(stamp)
+        except (TypeError, ValueError) as error:
+            line = "must return (observation, its time.monotonic()), all numbers"
+            raise WorldError(f"{self.env.name}: observe: {line}") from error
         if obs.shape != (self.env.kind.obs,):
             line = f"gives {list(obs.shape)}, and the class says obs = {self.env.kind.obs}"
             raise WorldError(f"{self.env.name}: observe: {line}")
@@ -192,10 +194,10 @@ class Actor:
         if age < -most:
             line = f"its time is {-age:.3g} s ahead of time.monotonic(), whose it must be"
             raise WorldError(f"{self.env.name}: observe: {line}")
-        if age > most or not np.isfinite(obs).all():
+        if not (age <= most and np.isfinite(obs).all()):  # a time that is NaN is no time
             self.counts.stale += 1
             return None, 0.0
-        return np.concatenate([obs, *past[: self.env.past_actions]]), float(stamp)
+        return np.concatenate([obs, *past[: self.env.past_actions]]), stamp
 
     def _apply(self, action: np.ndarray) -> None:
         with suppress(OSError):  # a lost connection: there will be no observation, either

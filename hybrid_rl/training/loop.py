@@ -49,6 +49,7 @@ class Loop:
     stride: int
     compile_s: float = 0.0  # [s] spent compiling so far
     axis: Axis = field(default_factory=Axis)  # numbers of "agent"
+    fault: Exception | None = field(default=None, init=False)  # that ends the run, once it is saved
     notes: ClassVar[tuple[str, ...]] = ()  # on a run that is resumed; none: it goes on bit for bit
 
     def cut_short(self) -> None:

@@ -23,6 +23,7 @@ from hybrid_rl.data import handover
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.copies import Outcome
 from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.errors import WorldError
 from hybrid_rl.training.actor import check_one
 from hybrid_rl.training.agent import AgentState
 from hybrid_rl.training.host_loop import outcome_like, states
@@ -159,8 +160,11 @@ class RobotProgram:
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
         """As the program of `Loop`.
 
+        If the robot's class is wrong, or the robot does not answer for long, it ends early, and the
+        loop has the `fault`.
+
         Raises:
-            WorldError: if the robot's class is wrong, or the robot does not answer for long.
+            WorldError: of that kind, before the first decision of the run.
         """
         first, count, done, began = int(start), int(rounds), 0, time.monotonic()
         if self.log is None:
@@ -180,8 +184,13 @@ class RobotProgram:
                 jax.block_until_ready(state.key)
                 self.learned, updates = self.learned + 1, updates + 1
             elif row is None:
-                self.process.watch()
-                self.loop.cut |= self.process.ended
+                try:
+                    self.process.watch()
+                except WorldError as error:
+                    if not first + done:
+                        raise
+                    self.loop.fault = error
+                self.loop.cut |= self.process.ended or self.loop.fault is not None
                 time.sleep(POLL_S)
             if time.monotonic() - self.published > self.env.handover_s:
                 self._publish(state, first + done)

@@ -155,12 +155,13 @@ class Player:
         """The programs of a choice; in a thread."""
         subject = self._subject(choice)
         numbers = self._numbers(subject)
-        if subject.episode not in self._made:
-            self._made[subject.episode] = programs.world(subject.episode, numbers)
-        world = self._made[subject.episode]
+        where = choice.reward, tuple(sorted(choice.changes.items()))  # not the episode: one of
+        if where not in self._made:  # the user's may hold a list, which has no hash
+            self._made[where] = programs.world(subject.episode, numbers)
+        world = self._made[where]
         plain = self._subject(replace(choice, changes={}))
         sees = subject.sees_world(choice.mode)
-        who = choice.mode, choice.reward, choice.quick, subject.episode if sees else None
+        who = choice.mode, choice.reward, choice.quick, where if sees else None
         if who not in self._made:
             acting = subject if sees else plain
             self._made[who] = programs.actor(acting, choice.mode, self.params, numbers)

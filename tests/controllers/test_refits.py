@@ -10,19 +10,11 @@ import pytest
 from jax import Array
 from test_adjoint_controller import SPEC, Cart, Speed
 from test_gradient import Doubted
+from test_sampling_controller import Breaking
 
 from hybrid_rl.controllers.refits import RefitsController
 from hybrid_rl.proposals.policy import PolicyProposal
 from hybrid_rl.types import Params
-
-
-@dataclass(frozen=True)
-class Breaking(Cart):
-    """The mass on a line, of which nothing is known beyond u = 0.2."""
-
-    def step(self, params: Any, x: Array, u: Array) -> Array:
-        """The next state [2]."""
-        return jnp.where(u[0] > 0.2, jnp.nan, super().step(params, x, u))
 
 
 @dataclass(frozen=True)
@@ -104,9 +96,10 @@ def test_the_planned_return_is_that_of_the_objective_without_the_price() -> None
 
 def test_candidates_whose_prediction_is_not_finite_rank_last() -> None:
     """J rises with u up to 0.2, beyond which the model gives NaN."""
-    u, state, _ = act(RefitsController(Breaking(), Speed(), horizon=2))
-    assert np.isfinite(state.plan).all()
-    assert 0.1 < float(u[0]) <= 0.2
+    for elites in (16, 128):  # fewer than are finite, and more
+        u, state, _ = act(RefitsController(Breaking(), Speed(), horizon=2, elites=elites))
+        assert np.isfinite(state.plan).all()
+        assert 0.05 < float(u[0]) <= 0.2
 
 
 def test_more_elites_than_candidates_are_refused() -> None:

@@ -11,6 +11,7 @@ import pytest
 from jax import Array
 from test_adjoint_controller import SPEC, Cart, Speed
 
+from hybrid_rl.controllers.refits import RefitsController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.core import sampling
 from hybrid_rl.objectives.predicted_return import PredictedReturn
@@ -100,6 +101,42 @@ def test_a_decision_is_that_of_numpy(staged: bool, execute: str) -> None:
     np.testing.assert_allclose(state.plan, [*after[1:], [0.7]], rtol=1e-4)
     found = [float(metrics[f"planner/{name}"]) for name in ("effective_samples", "planned_return")]
     np.testing.assert_allclose(found, [1 / (w[:, 0] ** 2).sum(), w[:, 0] @ S[:, 0]], rtol=1e-4)
+
+
+@dataclass(frozen=True)
+class Breaking(Cart):
+    """The mass on a line, of which nothing is known beyond u = 0.2."""
+
+    def step(self, params: Any, x: Array, u: Array) -> Array:
+        """The next state [2]."""
+        return jnp.where(u[0] > 0.2, jnp.nan, super().step(params, x, u))
+
+
+@pytest.mark.parametrize("execute", ["mean", "sample", "best"])
+def test_a_candidate_that_breaks_the_model_has_no_weight(execute: Any) -> None:
+    """As in the simulator, where one candidate is unstable: of Grid's, u = 0 alone is finite."""
+    parts = Breaking(), PredictedReturn(Fast()), Grid()
+    controller = SamplingController(*parts, horizon=T, samples=K, execute=execute)
+    given = Params(), controller.init(SPEC), X, jax.random.key(0)
+    u, state, metrics = jax.jit(controller.act)(*given)
+    assert not state.plan.any()
+    assert float(u[0]) == 0
+    assert float(metrics["planner/planned_return"]) == pytest.approx(T * float(X[1]))
+    assert float(metrics["planner/planned_reward"]) == pytest.approx(float(X[1]))
+
+
+@pytest.mark.parametrize("refits", [False, True])
+def test_a_decision_without_a_plan_does_not_spoil_the_next(refits: bool) -> None:
+    """As after one observation of a sensor that failed: its own action is NaN."""
+    if refits:
+        planner: Any = RefitsController(Cart(), Speed(), horizon=T)
+    else:
+        planner = SamplingController(Cart(), Speed(), NoiseProposal(), horizon=T, rest=0.2)
+    act = jax.jit(planner.act)
+    u, state, _ = act(Params(), planner.init(SPEC), jnp.nan * X, jax.random.key(0))
+    assert np.isnan(u).all()
+    assert (np.asarray(state.plan) == np.float32(0.0 if refits else 0.2)).all()
+    assert np.isfinite(act(Params(), state, X, jax.random.key(1))[0]).all()
 
 
 @pytest.mark.parametrize("ends", [False, True])

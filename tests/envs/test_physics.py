@@ -11,6 +11,7 @@ import pytest
 
 from hybrid_rl.envs.mujoco import mjcf, xla_callback
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, resolve
+from hybrid_rl.errors import UsageError
 
 CHEETAH = Physics("halfcheetah.xml", "native")
 SENSING = """
@@ -207,6 +208,12 @@ def test_a_model_outside_the_repository(tmp_path):
     np.testing.assert_allclose(state.qvel[2], -9.81 * 0.02, rtol=1e-5)
     far = physics.step(state.replace(qvel=state.qvel.at[0].set(1e12)), jnp.zeros(0), 1)
     assert not abs(far.qvel[0]) < 1e9  # MuJoCo would have reset what diverges
+
+
+def test_what_mjx_lacks_is_one_line():
+    lacking = Physics(SENSING.replace("<option>", '<option solver="PGS">'), "mjx")
+    with pytest.raises(UsageError, match=r"physics=mjx: .*PGS; physics=native has all"):
+        lacking.reset(jnp.zeros(2), jnp.zeros(2))
 
 
 def test_an_error_in_a_foreign_call_is_raised():

@@ -18,7 +18,7 @@ from hybrid_rl.doctor.__main__ import CHECKS, examine
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.stand_in import Cartpole
 from hybrid_rl.envs.adapters.unstepped import ALONE
-from hybrid_rl.errors import UsageError
+from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run.files.lock import lock
 from hybrid_rl.training.robot_process import RobotProcess
 from hybrid_rl.types import Spec
@@ -73,6 +73,28 @@ def test_a_run_on_a_robot(port, tmp_path, capfd):
     printed = capfd.readouterr()
     assert printed.err == f"hybrid_rl: hybrid_rl.envs.adapters.stand_in_Cartpole: {ALONE}\n"
     assert "compiling" not in printed.out
+
+
+def test_a_robot_that_ends_a_run_leaves_what_was_learned(tmp_path, capfd, monkeypatch):
+    """As an emergency stop that its class raises."""
+
+    def watch(process):
+        log = RowLog(process.folder / "rows", SPEC)
+        for n in range(3 if log.read(0) is None else 0):
+            row = np.zeros((), log.kind)
+            row["number"] = n
+            log.append(row)
+        if process.tries:
+            raise WorldError("arm.py:39: Stop: pressed")
+        process.tries = 1
+
+    monkeypatch.setattr(RobotProcess, "watch", watch)
+    monkeypatch.setattr(RobotProcess, "stop", lambda process: None)
+    line = [*LINE, "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=8"]
+    with pytest.raises(WorldError, match="Stop: pressed"):
+        hybrid_rl.train([*line, "total_steps=100", f"run_dir={tmp_path / 'run'}"])
+    assert (tmp_path / "run" / "checkpoints" / "3").is_dir()
+    assert "continue: python -m hybrid_rl.train resume=" in capfd.readouterr().out
 
 
 def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):

@@ -171,8 +171,13 @@ def lost(obs):
 
 @pytest.mark.parametrize(
     "fault",
-    [lost, lambda obs: (obs * np.nan, time.monotonic()), lambda obs: (obs, time.monotonic() - 1)],
-    ids=["silent", "nan", "stale"],
+    [
+        lost,
+        lambda obs: (obs * np.nan, time.monotonic()),
+        lambda obs: (obs, time.monotonic() - 1),
+        lambda obs: (obs, np.nan),
+    ],
+    ids=["silent", "nan", "stale", "timeless"],
 )
 def test_without_an_observation_the_action_is_safe(agent, tmp_path, fault):
     actor, rows = moved(agent, tmp_path, broken(fault), stale=20.0)
@@ -223,7 +228,7 @@ def test_a_robot_whose_reset_fails_is_tried_again_and_given_up(agent, tmp_path, 
     [
         ("clock", r"observe: its time is 1.+ s ahead of time\.monotonic\(\), whose it must be"),
         ("observe", r"observe: gives \[3\], and the class says obs = 4"),
-        ("alone", r"observe: must return \(observation, its time\.monotonic\(\)\)"),
+        ("untimed", r"observe: must return \(observation, its time\.monotonic\(\)\)"),
         ("reward", r"reward: gives nan"),
         ("apply", r"apply: .*test_actor.py:\d+: ZeroDivisionError"),
     ],
@@ -231,12 +236,12 @@ def test_a_robot_whose_reset_fails_is_tried_again_and_given_up(agent, tmp_path, 
 def test_a_mistake_in_the_class_ends_motion_with_its_line(agent, tmp_path, method, line):
     wrong = {
         "observe": lambda self: (np.zeros(3), time.monotonic()),
-        "alone": lambda self: np.zeros(4),
         "clock": lambda self: (np.zeros(4), time.time()),
+        "untimed": lambda self: (np.zeros(4), None),
         "reward": lambda self, obs, action, next_obs: float("nan"),
         "apply": lambda self, action: 1 / 0,
     }
-    stopped, name = [], "observe" if method in ("alone", "clock") else method
+    stopped, name = [], method if method in ("reward", "apply") else "observe"
     given = {name: wrong[method], "stop": lambda self: stopped.append(1)}
     kind = type("Wrong", (Counting,), given)
     with pytest.raises(WorldError, match=line):

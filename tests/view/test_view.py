@@ -100,6 +100,14 @@ def test_bodies_that_episodes_draw_act_in_the_window():
     assert one.state.info["decision"] == 1
 
 
+def test_a_world_without_a_hash_is_shown(monkeypatch):
+    """As a user's dataclass is for which a YAML file has a list."""
+    monkeypatch.setattr(Pendulum, "__hash__", None)
+    one = player("pendulum", Choice("policy"))
+    one.advance()
+    assert one.decided is not None
+
+
 def test_another_body_acts_between_two_decisions_and_a_bad_one_never():
     one = player("cartpole", Choice("policy"))
     one.advance()
