@@ -246,10 +246,17 @@ def test_learners_that_diverged_come_first(folder):
     assert next(iter(doctor.CHECKS)) == "numbers"
 
 
-def test_a_value_beyond_all_rewards_is_noticed(tmp_path):
-    run(tmp_path, "task=pendulum", "algo=sac", "total_steps=60")
-    given = read(tmp_path)
-    row = {"sac/q": 1.0, "sac/alpha": 0.01}
+@pytest.fixture(scope="module")
+def pair(tmp_path_factory):
+    """A tiny run of two learners without a model, seeds 4 and 5."""
+    folder = tmp_path_factory.mktemp("pair") / "run"
+    run(folder, "task=pendulum", "algo=sac", "total_steps=60", "num_seeds=2", "seed=4")
+    return folder
+
+
+def test_a_value_beyond_all_rewards_is_noticed(pair):
+    given = read(pair).learners[0]
+    row = {"sac/q": 1.0, "sac/alpha": 0.01, "seed": 4}
     assert (
         learned.critic(replace(given, folder=SimpleNamespace(rows=[row | {"sac/q": -5.0}]))) is None
     )
@@ -262,9 +269,8 @@ def test_a_value_beyond_all_rewards_is_noticed(tmp_path):
     assert learned.scale(given) is None  # after 60 decisions values are no sums yet
 
 
-def test_each_learner_is_examined_by_itself(tmp_path):
-    run(tmp_path, "task=pendulum", "algo=sac", "total_steps=60", "num_seeds=2", "seed=4")
-    given = read(tmp_path)
+def test_each_learner_is_examined_by_itself(pair):
+    given = read(pair)
     one, two = given.learners
     np.testing.assert_array_equal(two.made.reward, given.made.reward[1:])
     assert one.by_policy.obs.shape == two.by_policy.obs.shape

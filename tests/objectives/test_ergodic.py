@@ -147,12 +147,11 @@ def test_what_is_covered_is_the_measure_of_the_episode_so_far(name) -> None:
     memory, remember = objective.init(SPEC), remembering(objective)
     for state in x[:-1]:
         memory = remember(memory, state)
-    (got,) = objective.covered(Params(), memory, x[-1], key).values()
+    (got,) = jax.jit(lambda m: objective.covered(Params(), m, x[-1], key))(memory).values()
     whole = replace(objective, barrier=0.0)
     if name == "jensen":
         whole = KLErgodic(TARGET, BOX, samples=50, variance=(0.1,), memory=4)
-    u = jnp.zeros(1)
-    value = whole.prepare(Params(), whole.init(SPEC), x[0], u, key)[0](Path(x, jnp.zeros((3, 1))))
+    value = after(whole, x[:1])(Path(x, jnp.zeros((3, 1))))
     assert float(got) == pytest.approx(-float(value), rel=1e-4)
 
 

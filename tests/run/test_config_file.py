@@ -81,12 +81,17 @@ def test_equal_keys_of_different_parts_have_anchors_of_their_own():
 
 
 def test_a_fresh_process_evaluates_and_resumes(trained, tmp_path):
+    """By the one and then by the other command, as `python -m` begins them."""
     folder = shutil.copytree(trained, tmp_path / "run")
+    code = "import runpy, sys\n"
     for line in (f"evaluate run={folder} episodes=1", f"train resume={folder} total_steps=150"):
         name, *arguments = line.split()
-        whole = [sys.executable, "-m", f"hybrid_rl.{name}", *arguments]
-        done = subprocess.run(whole, cwd=tmp_path, capture_output=True, text=True)
-        assert (done.returncode, done.stderr) == (0, "")
+        code += f"sys.argv = {[name, *arguments]}\n"
+        code += f"runpy.run_module('hybrid_rl.{name}', run_name='__main__')\n"
+    whole = [sys.executable, "-c", code]
+    done = subprocess.run(whole, cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads((folder / "evaluation_full.json").read_text())["step"] == 100
     assert summary_of(folder)["total_steps"] == 150
 
 
