@@ -157,7 +157,7 @@ def test_planned_reward_is_that_of_the_first_decision(ends: bool) -> None:
     given = params, controller.init(SPEC), X, jax.random.key(1)
     both = jax.jit(lambda *of: (controller.act(*of)[2], controller.considered(*of)[3]))
     metrics, found = both(*given)  # the candidates, and the one that weighs most
-    assert float(metrics["planner/planned_reward"]) == pytest.approx(w @ first, rel=1e-4)
+    assert float(metrics["planner/planned_reward"]) == pytest.approx(float(w @ first), rel=1e-4)
     np.testing.assert_allclose(found.paths.x, paths.x, atol=1e-5)
     assert int(found.chosen) == np.argmax(w)
 

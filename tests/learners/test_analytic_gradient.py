@@ -54,7 +54,7 @@ def test_the_loss_and_its_gradient_are_those_of_episodes() -> None:
     plain = dataclasses.replace(LEARNER, clip=1e9)
     _, metrics = updated(plain, state, key)
     assert float(metrics["analytic/policy_loss"]) == pytest.approx(
-        -mean_return(state.policy, key), rel=1e-5
+        -float(mean_return(state.policy, key)), rel=1e-5
     )
     flat, build = jax.flatten_util.ravel_pytree(state.policy)
     h = 1e-2

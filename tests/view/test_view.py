@@ -195,7 +195,6 @@ def test_plots_leave_out_what_does_not_apply():
         ("task=panda_stack reward=speed", "a scripted expert has none"),
         ("task=panda_stack mode=policy", "mode: a scripted expert has none"),
         ("policy=ant expert=babble", "expert: is of a task"),
-        ("task=gymnasium env.id=Pendulum-v1 expert=babble", "has no `scene` and no `pose`: the"),
         ("policy=ant host=192.0.2.1", "host=192.0.2.1 port=8080: cannot be used"),
         ("policy=ant port=70000", "port=70000: must be a whole number, 1 to 65535"),
         ("policy=ant port=0", "port=0: must be a whole number, 1 or more"),
@@ -204,6 +203,13 @@ def test_plots_leave_out_what_does_not_apply():
 def test_what_does_not_fit_is_one_line(words, line, capfd):
     assert call(lambda: command.run(view.main), *words.split()) == 2
     assert line in only_line(capfd)
+
+
+@pytest.mark.skipif(not find_spec("viser"), reason="needs viser")
+def test_a_world_that_cannot_be_drawn_is_one_line(capfd):
+    words = ["task=gymnasium", "env.id=Pendulum-v1", "expert=babble"]
+    assert call(lambda: command.run(view.main), *words) == 2
+    assert "has no `scene` and no `pose`: the" in only_line(capfd)
 
 
 def test_without_viser_it_names_what_to_install(monkeypatch, capfd):
