@@ -2,9 +2,9 @@
 
     python -m scripts.five_robots_picture of=plain_models out=docs/results/plain_models.png
     python -m scripts.five_robots_picture of=fast out=docs/results/fast.png
-    python -m scripts.five_robots_picture of=branch_margin out=docs/results/branch_margin.png
+    python -m scripts.five_robots_picture of=imagined_range out=docs/results/imagined_range.png
 
-of=plain_models: beside models with layer normalisation; fast: beside settings=fast; branch_margin:
+of=plain_models: beside models with layer normalisation; fast: beside settings=fast; imagined_range:
 beside branches of 40 that end near real states, and learning rates that fall.
 """
 
@@ -25,10 +25,10 @@ from scripts.peers_picture import FONTS, evaluated
 OTHERS = {
     "plain_models": "with layer normalisation (10)",
     "fast": "settings=fast (10)",
-    "branch_margin": "near real states (10 to 32)",
+    "imagined_range": "near real states (10 to 32)",
 }
 ARGUMENTS = (
-    Argument("of", "plain_models", "or fast, branch_margin", one_of(*OTHERS)),
+    Argument("of", "plain_models", "or fast, imagined_range", one_of(*OTHERS)),
     Argument("folder", "docs/results", "of the JSON files"),
     Argument("out", "docs/results/plain_models.png", "the picture"),
 )
@@ -44,7 +44,7 @@ SIZE, DPI, LAST = (9.6, 5.6), 170, 100_000
 
 def other(of: str, folder: Path, robot: str) -> tuple[np.ndarray, np.ndarray]:
     """Decisions [G] and returns [S, G] of the other setting."""
-    if of == "branch_margin":
+    if of == "imagined_range":
         file = json.loads((folder / "imagined_range.json").read_text())
         return evaluated(file["margin 3, rates that fall"][robot]["both"])
     name, label = BEFORE[robot] if of == "plain_models" else (of, None)

@@ -45,8 +45,7 @@ def evidence(seen, action, reward=None, terminated=False, rest=None):
     ends = np.zeros(action.shape[:2])
     ends[:, -1] = 1
     reward = -(seen[:, 1:] ** 2).sum(-1) if reward is None else reward
-    none = np.zeros_like(ends)
-    flags = (ends, none) if terminated else (none, ends)
+    flags = (ends, 0 * ends) if terminated else (0 * ends, ends)
     each = (seen[:, :-1], action, reward, *flags, seen[:, 1:])
     made = Transition(*(a.reshape(1, -1, *a.shape[2:]) for a in each))
     agent = SimpleNamespace(spec=Spec(seen.shape[-1], 1, DT))
@@ -257,10 +256,9 @@ def pair(tmp_path_factory):
 def test_a_value_beyond_all_rewards_is_noticed(pair):
     given = read(pair).learners[0]
     row = {"sac/q": 1.0, "sac/alpha": 0.01, "seed": 4}
-    assert (
-        learned.critic(replace(given, folder=SimpleNamespace(rows=[row | {"sac/q": -5.0}]))) is None
-    )
-    line = learned.critic(replace(given, folder=SimpleNamespace(rows=[row | {"sac/q": 70.0}])))
+    low, high = (SimpleNamespace(rows=[row | {"sac/q": q}]) for q in (-5.0, 70.0))
+    assert learned.critic(replace(given, folder=low)) is None
+    line = learned.critic(replace(given, folder=high))
     assert line.startswith("the critic's value 70 (sac/q) is above ")
     for factor, line in ((1e6, "divide the reward by 1e"), (1e-6, "multiply the reward by 1e")):
         rows = SimpleNamespace(rows=[row | {"step": 9_000}], path=given.path)
@@ -270,8 +268,7 @@ def test_a_value_beyond_all_rewards_is_noticed(pair):
 
 
 def test_each_learner_is_examined_by_itself(pair):
-    given = read(pair)
-    one, two = given.learners
+    one, two = (given := read(pair)).learners
     np.testing.assert_array_equal(two.made.reward, given.made.reward[1:])
     assert one.by_policy.obs.shape == two.by_policy.obs.shape
     assert (one.by_policy.action != two.by_policy.action).any()

@@ -280,9 +280,8 @@ def test_a_shipped_policy_can_imagine() -> None:
 def test_without_a_policy_none_imagines(tmp_path, capfd) -> None:
     """Of a method that plans alone."""
     run(tmp_path, "task=cartpole", "algo=nn_mppi", "total_steps=100")
-    given = (f"run={tmp_path}", "imagine=policy")
     capfd.readouterr()
-    assert call(lambda: command.run(evaluate.main), *given) == 2
+    assert call(lambda: command.run(evaluate.main), f"run={tmp_path}", "imagine=policy") == 2
     assert "imagine=policy: there is no policy that could learn" in only_line(capfd)
 
 
@@ -290,13 +289,12 @@ def test_what_was_imagined_acts_where_it_gained(known: Trained) -> None:
     """Policies change only there, and models nowhere; the note says where not."""
     short = ["imagine.updates=4", "imagine.doubt=0", "imagine.episodes=2", "imagine.starts=8"]
     short += ["imagine.learner.steps=1", "imagine.decisions=5", "imagine.walk=3"]
-    was = known
     for first in (0, 4):
         words = [*AT, "imagine=policy", *short, f"imagine.critic_first={first}"]
-        now = retargeted(was, words)
-        apart = jax.tree.map(lambda a, b: (a != b).any(), was.params.policy, now.params.policy)
+        now = retargeted(known, words)
+        apart = jax.tree.map(lambda a, b: (a != b).any(), known.params.policy, now.params.policy)
         old = "by these no gain" in now.notes[-1]
         assert old == (not any(jax.tree.leaves(apart)))
     assert old
-    same = jax.tree.map(np.array_equal, was.params.model, now.params.model)
+    same = jax.tree.map(np.array_equal, known.params.model, now.params.model)
     assert all(jax.tree.leaves(same))

@@ -27,13 +27,12 @@ def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
     with jax.enable_x64(True), jax.ensure_compile_time_eval():
         x, u = world.equilibrium()
 
-        def step(e: Array, u: Array) -> tuple[Array, Array]:
-            after = world.to_local(world.dynamics(world.from_local(e), u))
-            return after, after
+        def step(e: Array, u: Array) -> Array:
+            return world.to_local(world.dynamics(world.from_local(e), u))
 
         e = world.to_local(x)
-        (a, b), after = jax.jacfwd(step, argnums=(0, 1), has_aux=True)(e, u)
-        a, b, moved = np.asarray(a), np.asarray(b), float(np.abs(after - e).max())
+        a, b = map(np.asarray, linearise(step, e, u))
+        moved = float(np.abs(step(e, u) - e).max())
     name = type(world).__name__
     if not moved < STILL * max(1, float(np.abs(x).max())):
         line = f"dynamics(*equilibrium()) differs from equilibrium() by {moved:.2g}"
