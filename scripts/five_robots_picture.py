@@ -5,7 +5,7 @@
     python -m scripts.five_robots_picture of=imagined_range out=docs/results/imagined_range.png
 
 of=plain_models: beside models with layer normalisation; fast: beside settings=fast; imagined_range:
-beside branches of 40 that end near real states, and learning rates that fall.
+beside settings=annealed.
 """
 
 import json
@@ -25,7 +25,7 @@ from scripts.peers_picture import FONTS, evaluated
 OTHERS = {
     "plain_models": "with layer normalisation (10)",
     "fast": "settings=fast (10)",
-    "imagined_range": "near real states (10 to 32)",
+    "imagined_range": "settings=annealed (10 to 32)",
 }
 ARGUMENTS = (
     Argument("of", "plain_models", "or fast, imagined_range", one_of(*OTHERS)),

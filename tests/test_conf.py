@@ -142,6 +142,12 @@ def test_how_a_hybrid_method_learns_is_one_override() -> None:
     config.build(c)
 
 
+def test_settings_annealed_lengthens_branches_and_lowers_rates_at_the_end() -> None:
+    c = config.load(["settings=annealed"])
+    policy = config.build(c).agent.learners["policy"]
+    assert (policy.branch_steps, policy.branch_margin, c.total_steps) == (40, 3, 100_000)
+
+
 PLANNERS = [  # methods that have mode=planner
     name
     for name in options("algo")

@@ -29,7 +29,7 @@ COLOUR_OF = {  # beginnings of labels that have a colour in every picture, plain
     "all velocities, settings=light, make train, its policy alone, kle3, KL, D, "
     "DAIL, fisher, koopman_active, gain",
     GREEN: "nn_mppi, deterministic_mpc, planner alone, entropy, lqr_bayesopt, ou_noise, noise, "
-    "koopman_noise, residual, minie",
+    "koopman_noise, residual, minie, settings=annealed",
     PINK: "flash_sac, informative paths, disagreement, koopman_norm, norm",
     ORANGE: "settings=mbpo, hybrid_deterministic, normal_noise, koopman_babble, features",
     SKY: "one_step_mpc, uniform_noise, gp_active, RQ-DAgger, joint_pd",
@@ -40,6 +40,7 @@ COLOUR_OF = {  # beginnings of labels that have a colour in every picture, plain
 METHODS = {name: colour for colour, names in COLOUR_OF.items() for name in names.split(", ")}
 WORDS = {  # label or its beginning -> what a reader sees
     "settings=mbpo": "hybrid_stochastic, settings=mbpo",
+    "settings=annealed": "hybrid_stochastic, settings=annealed",
     "settings=fast": "hybrid_stochastic, settings=fast",
     "settings=light": "hybrid_stochastic, settings=light",
     "sb3_sac_ours": "SAC of Stable-Baselines3, our world",

@@ -37,7 +37,7 @@ from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.machine.jax_settings import prepare
 
 EXPERIMENT = "thesis/fig_3_2_halfcheetah"
-SETTINGS = ("default", "light", "fast", "thesis")
+SETTINGS = ("default", "light", "fast", "annealed", "thesis")
 LEARNERS = ("plan", "act", "updates", "shares", "loop")
 OF = {"tasks": ("physics",), "worlds": ("physics",), "plans": ("plan",), "learners": LEARNERS}
 OF |= {"settings": ("shares", "loop")}
