@@ -39,7 +39,11 @@ USAGE = [  # overrides of train, words of the line
     (
         "task=pendulum algo=localisation",
         "task=pendulum: has no env.acceleration, which localisation (free_body.acceleration) "
-        "reads; choose one of contact_plane, point_mass, sawyer_probe, sprk",
+        "reads; choose one of contact_plane, sawyer_probe, sprk\n",
+    ),
+    (
+        "task=pendulum algo=mapping",
+        "reads; choose one of contact_plane, point_mass, sawyer_probe, sprk\n",
     ),
     (
         "task=pendulum algo=mppi policy=tanh_gaussian proposal=policy",
