@@ -13,6 +13,7 @@ Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 """
 
 import os
+import re
 import sys
 from collections.abc import Callable
 from functools import cache, partial
@@ -28,6 +29,7 @@ from hybrid_rl.envs.mujoco import mjcf, xla_callback
 
 Names = tuple[str, ...]
 NAME = "hybrid_rl.native:"  # begins the names of the foreign calls
+UNSTABLE = re.compile("unstable|singular|convex")  # what MuJoCo says of states that diverge
 _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
 _ALL = mujoco.mjtStage.mjSTAGE_ACC.value  # also forces
 _WARNED: set[str] = set()  # the kinds of warnings that were printed
@@ -54,8 +56,8 @@ def cores() -> int:
 
 
 def _warn(text: str) -> None:
-    """Print MuJoCo's warning `text`, unless one of its kind was: any instability is one kind."""
-    unstable = "unstable" in text or "Inertia" in text
+    """Print MuJoCo's warning `text`, unless one of its kind was; what UNSTABLE finds is one."""
+    unstable = UNSTABLE.search(text)
     kind = "unstable" if unstable else text.split(".")[0]
     if kind not in _WARNED:
         _WARNED.add(kind)
@@ -108,6 +110,7 @@ def _set_fields(pool: _Pool, own: np.ndarray, finite: np.ndarray | None) -> None
     pool.batch.set_const(ids)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of states that diverge
 def _advance(
     asset: str, threads: int, n: int, reads: Names, fields: Names, x: np.ndarray, y: np.ndarray
 ) -> None:
