@@ -2,7 +2,7 @@
 
 import difflib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields
 from hybrid_rl.errors import UsageError, install, relative
-from hybrid_rl.parts import part_class
+from hybrid_rl.parts import asked, part_class
 from hybrid_rl.training.episode import Episode
 
 HERE = Path(__file__).parent
@@ -90,13 +90,14 @@ def file(group: str, name: str) -> Path:
     raise FileNotFoundError(f"{group}={name}")
 
 
-def tasks_with(method: str, conf: Path = CONF) -> list[str]:
-    """Tasks whose environment has this method: `dynamics` if it is analytic, `equilibrium`."""
+def tasks_with(*methods: str, conf: Path = CONF, keys: Collection[str] = ()) -> list[str]:
+    """Tasks whose environment has these methods, as `dynamics` if it is analytic, and keys."""
     names = []
     for path in sorted((conf / "task").glob("*.yaml")):
         task: Any = OmegaConf.load(path)
         with suppress(ValueError, KeyError, AttributeError):  # an unfinished task of the user
-            names += [path.stem] if hasattr(part_class(task.env._target_), method) else []
+            kind, has = part_class(task.env._target_), {*keys} <= {*task.env}
+            names += [path.stem] if has and all(hasattr(kind, name) for name in methods) else []
     return names
 
 
@@ -153,8 +154,7 @@ def _of_other_tasks(error: InterpolationKeyError, key: str) -> str:
     part: Any = error.parent_node
     whole, text = part._get_root(), str(OmegaConf.to_container(part))
     read = {*re.findall(r"\$\{env\.(\w+)\}", text)}
-    each: dict[str, Any] = {name: OmegaConf.load(file("task", name)) for name in options("task")}
-    having = ", ".join(name for name, task in each.items() if read <= {*(task.get("env") or {})})
+    having = ", ".join(tasks_with(*asked(OmegaConf.to_container(whole)), keys=read))
     line = f"task={whole.task}: has no {key}, which {whole.algo} ({error.full_key}) reads"
     return f"{line}; choose one of {having}" if having else ""
 

@@ -7,7 +7,8 @@
     python -m hybrid_rl.evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
 
 With env.KEY=VALUE or episode.KEY=VALUE the world differs from that of the training, and the
-controller does not; the file is then DIR/evaluation_<mode>_<changes>.json.
+controller does not; the file is then DIR/evaluation_<mode>_<changes>.json, as with another
+precision than the run's.
 
 With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
 model that the run has learned; nothing is trained. planner=NAME is another planner, and
@@ -153,7 +154,10 @@ def _evaluated(given: dict[str, Any], changes: dict[str, str]) -> None:
     each = f"{plural(episodes, 'episode')} a seed"
     trained, changes = load_changed(given, changes)
     if given["precision"]:
+        own = precision.current()
         precision.choose(given["precision"])
+        if (now := precision.current()) != own:
+            changes = {**changes, "precision": now}
     for note in trained.notes:
         print(note)
     _check(trained, given["mode"], episodes)  # before anything is compiled

@@ -137,10 +137,15 @@ def _check(self: Any) -> None:
             check(self, field.name, kind, null)
 
 
+def method_of(kind: Any) -> str:
+    """The method that a value of this type must have; empty: none."""
+    return get_args(kind)[1].has if get_origin(kind) is Annotated else ""
+
+
 def check(part: Any, name: str, kind: Any, null: str = "") -> None:
     """Raise FieldError if the value of a field breaks the rule of an annotated type."""
     if wrong := _wrong(kind, getattr(part, name)):
-        missing = get_args(kind)[1].has if get_origin(kind) is Annotated else ""
+        missing = method_of(kind)
         raise FieldError(part, name, wrong if missing else wrong + null, missing)
 
 

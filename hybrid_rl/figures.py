@@ -1,6 +1,7 @@
 """Learning curves and other studies: a picture, with its numbers as JSON next to it.
 
     python -m hybrid_rl.figures runs="runs/halfcheetah/*/*" metric=train/return out=figure.png
+    python -m hybrid_rl.figures runs="runs/hopper/sac/*,runs/hopper/mppi/*" out=two.png
     python -m hybrid_rl.figures study=model_learning runs="runs/quadcopter_se3/*/*"
     python -m hybrid_rl.figures study=koopman from=docs/results/fig_7_3.json out=fig_7_3.png
     python -m hybrid_rl.figures study=model_learning --help

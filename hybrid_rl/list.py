@@ -59,7 +59,7 @@ def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
     """Group -> name -> what the environment of a task has, or that of a method must have."""
     has: dict[str, list[str]] = {}
     for method, mark in HAS.items():
-        for name in tasks_with(method, conf):
+        for name in tasks_with(method, conf=conf):
             has.setdefault(name, []).append(mark)
     tasks = {name: ", ".join(each) for name, each in has.items()}
     methods = {path.stem: needs(path) for path in sorted((conf / "algo").glob("*.yaml"))}

@@ -13,7 +13,7 @@ import os
 import sys
 import sysconfig
 from collections.abc import Iterator
-from dataclasses import is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib import import_module
 from importlib.machinery import PathFinder
@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, printable, relative, user_line
-from hybrid_rl.fields import FieldError
+from hybrid_rl.fields import FieldError, choices, method_of
 
 TARGET, OURS = "_target_", "hybrid_rl."
 PACKAGE = Path(__file__).parent
@@ -50,6 +50,18 @@ def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
     for name, value in node.items() if isinstance(node, dict) else enumerate(node):
         if isinstance(value, (dict, list)):
             yield from targets(value, f"{where}{name}.")
+
+
+def asked(node: Any, of: str = "${env}") -> set[str]:
+    """The methods that this package's parts in a tree need of `of`, which their fields refer to."""
+    found = set()
+    for value in node.values() if isinstance(node, dict) else node:
+        found |= asked(value, of) if isinstance(value, (dict, list)) else set()
+    if isinstance(node, dict) and str(node.get(TARGET)).startswith(OURS):
+        for field in fields(part_class(node[TARGET])):
+            if node.get(field.name) == of:
+                found |= {*map(method_of, choices(field.type))}
+    return found - {""}
 
 
 def check(node: Any, near: Path | None = None) -> None:

@@ -261,8 +261,7 @@ def _machine(runs: Sequence[RunFolder]) -> str:
 
 def _folders(given: str) -> list[RunFolder]:
     """The run folders that run= names."""
-    each = [given] if Path(given).exists() else given.split(",")
-    return [RunFolder(path) for path in dict.fromkeys(p for one in each for p in find(one, "run"))]
+    return [RunFolder(path) for path in find(given, "run")]
 
 
 def main() -> None:

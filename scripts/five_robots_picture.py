@@ -30,7 +30,7 @@ OTHERS = {
 ARGUMENTS = (
     Argument("of", "plain_models", "or fast, imagined_range", one_of(*OTHERS)),
     Argument("folder", "docs/results", "of the JSON files"),
-    Argument("out", "docs/results/plain_models.png", "the picture"),
+    Argument("out", "plain_models.png", "the picture"),
 )
 BEFORE = {  # robot -> file of the runs with layer normalisation and the curve, or the task in it
     "half-cheetah": ("bf16", None),

@@ -32,7 +32,7 @@ ARGUMENTS = (
     Argument("policy", "halfcheetah", "a policy with its models, NAME of policies/ or a file"),
     Argument("steps", 100, "decisions of an episode", whole()),
     Argument("width", 280, "of one of the four, in pixels", whole(even=True)),
-    Argument("out", "docs/results/four_goals.gif", "the picture"),
+    Argument("out", "four_goals.gif", "the picture"),
 )
 
 

@@ -17,7 +17,7 @@ from hybrid_rl.cli.arguments import Argument, read
 
 ARGUMENTS = (
     Argument("file", "docs/results/new_goals.json", "numbers of scripts.new_goals, by robot"),
-    Argument("out", "docs/results/new_goals.png", "the picture"),
+    Argument("out", "new_goals.png", "the picture"),
 )
 SHOWN = {  # row -> its name and colour
     "policy": ("policy", "#D55E00"),

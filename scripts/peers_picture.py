@@ -27,7 +27,7 @@ from hybrid_rl.cli.arguments import Argument, read
 ARGUMENTS = (
     Argument("file", "docs/results/peers.json", "returns and clocks of others, below h100"),
     Argument("ours", "docs/results/bf16.json", "returns of hybrid_stochastic, below tasks"),
-    Argument("out", "docs/results/peers.png", "the picture"),
+    Argument("out", "peers.png", "the picture"),
 )
 SHOWN = {  # method -> its name, ink and marker
     "hybrid_stochastic": ("hybrid_rl's default (10 seeds)", VERMILION, "o"),

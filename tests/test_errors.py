@@ -38,9 +38,9 @@ USAGE = [  # overrides of train, words of the line
     ),
     (
         "task=pendulum algo=localisation",
-        "task=pendulum: has no env.acceleration, which localisation (free_body.acceleration) "
-        "reads; choose one of contact_plane, point_mass, sawyer_probe, sprk",
+        "which localisation (free_body.acceleration) reads; choose one of contact_plane, sawyer_p",
     ),
+    ("task=pendulum algo=mapping", "has no env.acceleration, which mapping (free_body.accelerat"),
     (
         "task=pendulum algo=mppi policy=tanh_gaussian proposal=policy",
         "policy=TanhGaussian: PolicyProposal acts by it, and no learner of this method trains it",

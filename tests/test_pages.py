@@ -1,6 +1,7 @@
 """Numbers on the pages are those of the JSON of docs/results, as `make pages` writes them."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -108,3 +109,12 @@ def test_an_expression_is_evaluated(results, expression, expected):
 def test_a_wrong_mark_is_an_error(results, wrong):
     with pytest.raises(ValueError, match=r"\w"):
         marks.written(wrong)
+
+
+def test_no_command_of_a_page_replaces_our_numbers():
+    """A reader may copy it."""
+    pages = {path: path.read_text(encoding="utf-8") for path in values.RESULTS.parent.rglob("*.md")}
+    assert {"atlas.md", "chapter6.md"} <= {path.name for path in pages}
+    writes = re.compile(r"^.*(?:\bout=|--out[ =]|> *)docs/.*$", re.MULTILINE)
+    found = {path.name: writes.findall(text) for path, text in pages.items()}
+    assert not {name: lines for name, lines in found.items() if lines}

@@ -140,9 +140,11 @@ def test_a_run_keeps_its_precision_and_can_change_it(tmp_path, capfd):
     assert called() == "bf16"
     assert call_train(f"resume={folder}", "total_steps=700", "precision=float32") == 0
     assert called() == "float32"
-    assert call(evaluate.main, f"run={folder}", "episodes=1", "precision=bf16") == 0
-    found = json.loads((folder / "evaluation_full.json").read_text())
-    assert found["precision"] == "bf16"
+    for name in ("float32", "bf16"):
+        assert call(evaluate.main, f"run={folder}", "episodes=1", f"precision={name}") == 0
+    assert json.loads((folder / "evaluation_full.json").read_text())["precision"] == "float32"
+    found = json.loads((folder / "evaluation_full_precision=bf16.json").read_text())
+    assert (found["precision"], found["changes"]) == ("bf16", {"precision": "bf16"})
     assert np.isfinite(found["mean"]).all()
 
 

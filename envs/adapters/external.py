@@ -11,7 +11,9 @@ their model train on it; those that plan on the true dynamics do not.
 Source: Gymnasium's documentation, "Env", "AutoresetMode".
 """
 
+import os
 import random
+import re
 from collections.abc import Sequence
 from contextlib import suppress
 from functools import cache
@@ -26,6 +28,7 @@ from jax import Array
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
 from hybrid_rl.envs.adapters.unstepped import Made, import_named
 from hybrid_rl.envs.contract import check
+from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
@@ -37,6 +40,7 @@ RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what th
 UNKNOWN = (gymnasium.error.NamespaceNotFound, gymnasium.error.NameNotFound)
 HUGE = 100_000  # entries; an image has as many
 WIDE = 1_000  # of a small image
+DRAWS = re.compile("GLContext|MUJOCO_GL")  # in errors of MuJoCo's Renderer and of Gymnasium's
 
 
 @part
@@ -159,6 +163,20 @@ class Known(NamedTuple):
 
 @cache
 def _known(env: External) -> Known:
+    """What one copy declares; if it fails as it draws, which commands disable, it may."""
+    try:
+        return _read(env)
+    except UsageError as error:
+        if os.environ.get("MUJOCO_GL") != "disable" or not DRAWS.search(str(error)):
+            raise
+        try:
+            offscreen.lend()
+        except offscreen.NoGraphicsError as why:
+            raise UsageError(f"{env.name}: {why}") from error
+        return _read(env)
+
+
+def _read(env: External) -> Known:
     try:
         one, before = env.one(), _generators()
         found = one.reset(seed=0)

@@ -6,12 +6,15 @@
 fields: those of MjModel that a simulation has for itself. Every call passes in and returns
 everything that a step depends on, so that one pool of simulations serves all seeds and
 environments, and the results are the same bit for bit with any number of threads. A state that is
-not finite gives NaN.
+not finite gives NaN. Of MuJoCo's warnings each kind is one line: a planner's candidates may be
+unstable at every decision.
 
 Source: MuJoCo's documentation, "Simulation" and `mujoco.batch`.
 """
 
 import os
+import re
+import sys
 from collections.abc import Callable
 from functools import cache, partial
 from math import isfinite, prod
@@ -26,8 +29,10 @@ from hybrid_rl.envs.mujoco import mjcf, xla_callback
 
 Names = tuple[str, ...]
 NAME = "hybrid_rl.native:"  # begins the names of the foreign calls
+UNSTABLE = re.compile("unstable|singular|convex")  # what MuJoCo says of states that diverge
 _MOVED = mujoco.mjtStage.mjSTAGE_VEL.value  # positions, velocities and their sensors
 _ALL = mujoco.mjtStage.mjSTAGE_ACC.value  # also forces
+_WARNED: set[str] = set()  # the kinds of warnings that were printed
 
 
 class _Pool(NamedTuple):
@@ -50,6 +55,17 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+def _warn(text: str) -> None:
+    """Print MuJoCo's warning `text`, unless one of its kind was; what UNSTABLE finds is one."""
+    unstable = UNSTABLE.search(text)
+    kind = "unstable" if unstable else text.split(".")[0]
+    if kind not in _WARNED:
+        _WARNED.add(kind)
+        harmless = "; harmless for a planner's candidates" if unstable else ""
+        line = f"hybrid_rl: MuJoCo: {text.split(' Time =')[0]} (printed once{harmless})"
+        print(line, file=sys.stderr, flush=True)
+
+
 @cache
 def _idle(asset: str, worlds: int, threads: int, reads: Names, fields: Names) -> list[_Pool]:
     """Pools that are not in use; calls of several devices at the same time need one each."""
@@ -62,6 +78,8 @@ def _pool(asset: str, worlds: int, threads: int, reads: Names, fields: Names) ->
     Raises:
         ValueError: for a model with delays.
     """
+    if mujoco.get_mju_user_warning() is None:  # else MuJoCo writes each to MUJOCO_LOG.TXT, too
+        mujoco.set_mju_user_warning(_warn)
     model = mjcf.load(asset)
     shared = max(cores() // jax.local_device_count(), 1)
     batch = Batch(model, worlds, min(worlds, threads or shared))
@@ -92,6 +110,7 @@ def _set_fields(pool: _Pool, own: np.ndarray, finite: np.ndarray | None) -> None
     pool.batch.set_const(ids)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of states that diverge
 def _advance(
     asset: str, threads: int, n: int, reads: Names, fields: Names, x: np.ndarray, y: np.ndarray
 ) -> None:

@@ -48,7 +48,7 @@ VALUE = number(what=" in the metric's unit")
 
 
 def figure(
-    runs: Annotated[str | Path, 'run folders, as "runs/*/*/*" in quotes; or a JSON to redraw'],
+    runs: Annotated[str | Path, 'run folders, as "runs/*/*/*" or "a/*,b/*"; or a JSON to redraw'],
     metric: Annotated[str, "metrics of metrics.jsonl, with commas between them"] = "train/return",
     x: Annotated[str, "step, wall_s, or a key that was swept"] = "step",
     group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",

@@ -148,27 +148,32 @@ def _matches(settings: Mapping[str, Any], key: str) -> dict[str, Any]:
 def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Path]:
     """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob.
 
-    key: the argument that named them.
+    runs: one, or several, also as "a/*,b/*" or "[a/*,b/*]". key: the argument that named them.
 
     Raises:
-        UsageError: if there is none.
+        UsageError: if there is none, or none at one of the names between commas.
     """
     if not runs:
         raise UsageError(f'{key}: not given; give {key}="PATTERN" of run folders')
-    if isinstance(runs, (str, Path)):
-        path = Path(runs).expanduser()
-        matched = [path] if path.exists() else glob.glob(str(path), recursive=True)
-        matches = [Path(match) for match in matched]
-    else:
-        matches = [Path(run) for run in runs]
+    given = [runs] if isinstance(runs, (str, Path)) else runs
+    matches = [match for each in given for match in _matching(each)]
+    if isinstance(runs, str) and "," in runs and not matches:
+        text = runs[1:-1] if runs[0] + runs[-1] == "[]" else runs
+        several = [each.strip() for each in text.split(",")]
+        return [*dict.fromkeys(path for each in several for path in find(each, key))]
     files = sorted({path for match in matches for path in match.glob("**/metrics.jsonl")})
     if not files:
-        several = '; several need a pattern: "runs/TASK/*/*"' if "," in str(runs) else ""
-        raise UsageError(f"{key}={runs}: no run there (a folder that holds metrics.jsonl){several}")
+        raise UsageError(f"{key}={runs}: no run there (a folder that holds metrics.jsonl)")
     if begun := [path.parent for path in files if path.stat().st_size]:
         return begun  # a start that failed leaves an empty file
     more = f" and {len(files) - 1} more" if len(files) > 1 else ""
     raise UsageError(f"{key}={runs}: {files[0]}{more}: no row of metrics yet")
+
+
+def _matching(run: str | Path) -> list[Path]:
+    """What a glob matches; what exists is itself."""
+    path = Path(run).expanduser()
+    return [path] if path.exists() else [*map(Path, glob.glob(str(path), recursive=True))]
 
 
 def differences(runs: Sequence[RunFolder], expected: Sequence[str] = ()) -> list[dict[str, str]]:

@@ -3,8 +3,9 @@
 Stochastic hybrid learning (thesis Algorithm 3) with proposals from the policy; MPPI on a
 learned model with proposals from noise. `execute` chooses the action from the weighted
 candidates: `mean` executes sum_k w_k v_k (the thesis); `sample` draws one of them, which keeps the
-policy's exploration in the data; `best` executes the candidate of the greatest return. With
-`model=world` candidates run through the world's states.
+policy's exploration in the data; `best` executes the candidate of the greatest return. Where no
+candidate has a finite return, the action is NaN, which ends a run in one line. With `model=world`
+candidates run through the world's states.
 
 An objective that is a sum over time weighs each decision of a candidate by the return from that
 decision on; any other objective weighs all of them by J (Williams et al. 2017).
@@ -100,13 +101,13 @@ class SamplingController:
             samples.log_prob if self.log_density else None,
         )
         plan = jnp.einsum("kt,ktm->tm", w, sampling.kept(w[..., None], samples.path.u))
+        if self.execute == "best":
+            S = jnp.where(jnp.isfinite(returns[:, 0]), returns[:, 0], -jnp.inf)
+            plan = jnp.where(jnp.isfinite(S.max()), samples.path.u[jnp.argmax(S)], jnp.nan)
         action = plan[0]
         if self.execute == "sample":
-            action = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
-        if self.execute == "best":
-            S = returns[:, 0]
-            plan = samples.path.u[jnp.argmax(jnp.where(jnp.isfinite(S), S, -jnp.inf))]
-            action = plan[0]
+            drawn = samples.path.u[jax.random.categorical(choosing, jnp.log(w[:, 0])), 0]
+            action = jnp.where(jnp.isnan(action), action, drawn)
         metrics = {
             "planner/effective_samples": sampling.effective_samples(w)[0],
             "planner/planned_return": w[:, 0] @ sampling.kept(w, returns[:, :-1])[:, 0],

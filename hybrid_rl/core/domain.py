@@ -1,6 +1,7 @@
 """A box in some coordinates of a state: the region that a method explores."""
 
 from math import prod
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -34,6 +35,16 @@ class Box:
             raise FieldError(self, "coordinates", "must differ")
         if not all(a < b for a, b in zip(self.low, self.high, strict=True)):
             raise FieldError(self, "low", f"must lie below high={list(self.high)}")
+
+    def check_target(self, part: Any) -> None:
+        """Raise FieldError if all of the target of `part` lies outside, where a target can say so.
+
+        The weights of points in the box would otherwise follow its faint tails.
+        """
+        target: Any = part.target
+        if hasattr(target, "outside") and target.outside(self.low, self.high):
+            box = f"domain.low={list(self.low)} domain.high={list(self.high)}"
+            raise FieldError(part, "target", f"all of it lies outside {box}; change one of the two")
 
     @property
     def size(self) -> int:

@@ -29,7 +29,11 @@ class FourierState(NamedTuple):
 
 @part
 class FourierErgodic:
-    """Minus the Fourier ergodic metric of a path in a domain."""
+    """Minus the Fourier ergodic metric of a path in a domain.
+
+    Raises:
+        ValueError: for a target outside the domain.
+    """
 
     target: Target
     domain: Box
@@ -38,6 +42,9 @@ class FourierErgodic:
     barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
     share: Fraction = 0.0  # of the uniform density in p; 1: coverage
     forget: Fraction = 1.0  # f, the weight that earlier states keep per decision
+
+    def __post_init__(self) -> None:
+        self.domain.check_target(self)
 
     def init(self, spec: Spec) -> FourierState:
         """An empty memory."""

@@ -24,7 +24,11 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @part
 class InformativePath:
-    """The information, by a target, that a path gathers in a domain."""
+    """The information, by a target, that a path gathers in a domain.
+
+    Raises:
+        ValueError: for a target outside the domain.
+    """
 
     target: Target
     domain: Box
@@ -33,6 +37,9 @@ class InformativePath:
     forget: Fraction = 1.0  # f
     barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
     share: Fraction = 0.0  # of the uniform density in g; 1: coverage
+
+    def __post_init__(self) -> None:
+        self.domain.check_target(self)
 
     @property
     def points(self) -> Array:

@@ -35,7 +35,8 @@ class KLErgodic:
     """Minus the KL-ergodic measure of a path in a domain.
 
     Raises:
-        ValueError: for a number of variances that is neither 1 nor v.
+        ValueError: for a number of variances that is neither 1 nor v, or a target outside the
+            domain.
     """
 
     target: Target
@@ -48,7 +49,8 @@ class KLErgodic:
     share: Fraction = 0.0  # of the uniform density in p; 1: coverage
 
     def __post_init__(self) -> None:
-        """Check the number of variances."""
+        """Check the target and the number of variances."""
+        self.domain.check_target(self)
         if len(self.variance) not in (1, self.domain.size):
             raise FieldError(self, "variance", "must be 1 or v numbers")
 

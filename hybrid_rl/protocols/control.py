@@ -35,7 +35,8 @@ class Target(Protocol):
     """p(s): the density in which a method explores the search space.
 
     One that depends on a teacher's labels so far has `evidence(params, x)`, whose sum over the
-    labelled states x [n] it gets as `params.labels.evidence`.
+    labelled states x [n] it gets as `params.labels.evidence`. One that has `outside(low, high)`,
+    whether all of it lies outside the box [low, high], [v], is refused for such a domain.
     """
 
     def log_density(self, params: Params, s: Array) -> Array:

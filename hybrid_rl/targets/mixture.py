@@ -1,5 +1,7 @@
 """p(s) = sum_j w_j N(s; m_j, s_j^2 I): a known target."""
 
+from math import dist
+
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -28,6 +30,15 @@ class Mixture:
         for name in ("stds", "weights"):
             if len(getattr(self, name)) != len(self.means):
                 raise FieldError(self, name, "one number above 0 for each mean")
+
+    def outside(self, low: tuple[float, ...], high: tuple[float, ...]) -> bool:
+        """Whether each mean lies more than 3 of its stds away from the box [low, high], [v]."""
+        for mean, std in zip(self.means, self.stds, strict=True):
+            full = [*mean, *mean[-1:] * (len(low) - len(mean))][: len(low)]
+            nearest = [min(max(m, a), b) for m, a, b in zip(full, low, high, strict=True)]
+            if dist(full, nearest) <= 3 * std:
+                return False
+        return True
 
     def log_density(self, params: Params, s: Array) -> Array:
         """log p [] at s [v]; the last entry of a shorter mean is repeated."""

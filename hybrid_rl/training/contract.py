@@ -50,11 +50,14 @@ def check_members(agent: Any) -> None:
 
     Raises:
         PartError: in one line, for what is missing or has another form.
-        ValueError: for a part of another kind, or two learners of one field of `Params`.
+        ValueError: for a part of another kind, two learners of one field of `Params`, or
+            demonstrations whose rewards are not those of the run.
     """
     for name, (has, must) in OF_AGENT.items():
         if not (name == "controller" and of_user(agent.controller)):
             _check_kind(name, getattr(agent, name), has, must)
+    if agent.replay.num_demonstrated(agent.num_envs):
+        agent.episode.check_demonstrations()
     _check_members(agent.controller, "controller")
     owners: dict[str, str] = {}
     for name, learner in agent.learners.items():

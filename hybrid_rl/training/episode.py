@@ -210,6 +210,19 @@ class Episode:
         changed = self.reward is not None or self.constraint is not None
         return self if changed and self.relabels else None
 
+    def check_demonstrations(self) -> None:
+        """Raise ValueError if demonstrations would keep another reward than what this one pays."""
+        if (self.reward is None and self.constraint is None) or self.relabels:
+            return
+        what = "constraint takes" if self.reward is None else "reward pays"
+        line = f"what {what} for demonstrations is unknown"
+        if self.action_repeat > 1:
+            line = f"episode.action_repeat={self.action_repeat}: {line}, as they lack the steps"
+            line += " between decisions"
+        else:
+            line = f"constraint: {line}, as {type(self.env).__name__} has no reward_of"
+        raise ValueError(f"{line}; replay.demonstrations=null leaves them out of the memory")
+
     def reward_of(self, x: Array, u: Array, after: Array) -> Array:
         """The reward [], less a violation's price, of action u [m] between observations [o]."""
         goal: Any = self.env if self.reward is None else self.reward

@@ -254,6 +254,10 @@ def test_runs_are_found_by_glob_by_folder_and_by_list(tmp_path):
     odd = run(tmp_path / "a[1]" / "hidden=[8,8]", [1.0])  # exists, so it is no pattern
     assert find(odd) == find(str(odd.parent)) == [odd]
     assert find([folders[2], tmp_path / "a1"]) == [folders[0], folders[2]]
+    for several in (f"{folders[2]},{tmp_path}/a?/x", f"[{tmp_path}/b, {tmp_path}/a[12]]"):
+        assert find(several) == [folders[2], *folders[:2]]
+    with pytest.raises(UsageError, match=r"runs=none/\*: no run there"):
+        find(f"{tmp_path}/b,none/*")
 
 
 def test_the_page_makes_a_table_of_what_stable_baselines_saves(tmp_path, monkeypatch):

@@ -125,13 +125,14 @@ def test_a_candidate_that_breaks_the_model_has_no_weight(execute: Any) -> None:
     assert float(metrics["planner/planned_reward"]) == pytest.approx(float(X[1]))
 
 
-@pytest.mark.parametrize("refits", [False, True])
-def test_a_decision_without_a_plan_does_not_spoil_the_next(refits: bool) -> None:
-    """As after one observation of a sensor that failed: its own action is NaN."""
-    if refits:
+@pytest.mark.parametrize("execute", ["mean", "sample", "best", None])
+def test_a_decision_without_a_plan_does_not_spoil_the_next(execute: Any) -> None:
+    """As after one observation of a sensor that failed: its own action is NaN; None: `refits`."""
+    if refits := execute is None:
         planner: Any = RefitsController(Cart(), Speed(), horizon=T)
     else:
-        planner = SamplingController(Cart(), Speed(), NoiseProposal(), horizon=T, rest=0.2)
+        parts = Cart(), Speed(), NoiseProposal()
+        planner = SamplingController(*parts, horizon=T, rest=0.2, execute=execute)
     act = jax.jit(planner.act)
     u, state, _ = act(Params(), planner.init(SPEC), jnp.nan * X, jax.random.key(0))
     assert np.isnan(u).all()

@@ -12,6 +12,7 @@ from hybrid_rl import config
 from hybrid_rl.data.demonstrations import COLUMNS, Demonstrations, load, save
 from hybrid_rl.data.replay import Replay, unpack
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.errors import UsageError
 from hybrid_rl.types import Transition
 
 LENGTHS = (4, 5, 3)  # of the episodes
@@ -168,6 +169,18 @@ def test_demonstrations_earn_what_the_run_pays(tmp_path: Path) -> None:
     broken = np.abs(kept.action[:, 0]) > 0.5
     assert 0 < broken.sum() < len(broken)
     np.testing.assert_allclose(kept.reward, earned - 3 * broken, rtol=1e-5)
+
+
+def test_demonstrations_whose_pay_is_unknown_are_refused(tmp_path: Path) -> None:
+    """A decision of several steps lacks the states in between."""
+    given = ["task=pendulum", "constraint=torque", "replay.demonstrations=${recorded}"]
+    composed = small.load("sac", *given, "episode.action_repeat=2")
+    composed = small.with_demonstrations(composed, tmp_path)
+    line = r"^episode\.action_repeat=2: what constraint takes .*; replay\.demonstrations=null"
+    with pytest.raises(UsageError, match=line):
+        config.build(composed)
+    composed.constraint = None
+    config.build(composed)
 
 
 def test_a_memory_smaller_than_the_demonstrations_is_refused(file: Path) -> None:

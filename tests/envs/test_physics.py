@@ -8,8 +8,9 @@ import jax.numpy as jnp
 import mujoco
 import numpy as np
 import pytest
+from tiny import only_line
 
-from hybrid_rl.envs.mujoco import mjcf, xla_callback
+from hybrid_rl.envs.mujoco import mjcf, native, xla_callback
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState, resolve
 from hybrid_rl.errors import UsageError
 
@@ -208,6 +209,21 @@ def test_a_model_outside_the_repository(tmp_path):
     np.testing.assert_allclose(state.qvel[2], -9.81 * 0.02, rtol=1e-5)
     far = physics.step(state.replace(qvel=state.qvel.at[0].set(1e12)), jnp.zeros(0), 1)
     assert not abs(far.qvel[0]) < 1e9  # MuJoCo would have reset what diverges
+
+
+def test_an_unstable_simulation_is_one_line_and_no_file(tmp_path, monkeypatch, capfd):
+    """MuJoCo's own warnings are a line at each call, also in MUJOCO_LOG.TXT."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(native, "_WARNED", set())
+    state, ctrl = _states(CHEETAH, 3)
+    huge = jnp.asarray(state.qvel).at[1].set(1e12).at[2].set(1e38)  # NumPy's sum overflows
+    state = state.replace(qvel=huge)
+    step = jax.vmap(lambda state, ctrl: CHEETAH.step(state, ctrl, 5))
+    for _ in range(2):
+        jax.block_until_ready(step(state, ctrl))
+    native._warn("Linesearch objective is not convex")  # which follows from it
+    assert "unstable. (printed once" in only_line(capfd)
+    assert not list(tmp_path.iterdir())
 
 
 def test_what_mjx_lacks_is_one_line():

@@ -6,11 +6,13 @@ import gymnasium
 import imageio.v3 as iio
 import numpy as np
 import pytest
+from mujoco.rendering.classic import gl_context
 
 import hybrid_rl
 from hybrid_rl import render
 from hybrid_rl.envs.adapters.external import External
-from hybrid_rl.errors import WorldError
+from hybrid_rl.envs.mujoco import offscreen
+from hybrid_rl.errors import UsageError, WorldError
 
 pytestmark = pytest.mark.turns(3)
 
@@ -113,3 +115,26 @@ def test_a_gymnasium_environment_draws_itself(tmp_path, monkeypatch, capsys):
     pictures = iio.imread(out)
     assert pictures.shape[:3] == (6, 20, 32)
     assert np.all(np.diff(pictures.astype(int).mean((1, 2, 3))) > 0)
+
+
+def test_an_environment_may_make_mujocos_renderer(tmp_path, monkeypatch):
+    """Though commands disable drawing at MuJoCo's import; where nothing draws, it is one line."""
+    line = "self.renderer = mujoco.Renderer(mujoco.MjModel.from_xml_string('<mujoco/>'), 8, 8)"
+    text = SLEEPER.replace("import numpy", "import mujoco\nimport numpy")
+    text = text.replace("self.fault = fault", f"self.fault = fault\n        {line}")
+    (tmp_path / "seeing.py").write_text(text)
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def nothing():
+        raise offscreen.NoGraphicsError("cannot draw")
+
+    def disable():
+        monkeypatch.setenv("MUJOCO_GL", "disable")
+        monkeypatch.delattr(gl_context, "GLContext", raising=False)
+
+    disable()
+    assert External(make="seeing:Sleeper").spec.obs == 1
+    disable()
+    monkeypatch.setattr(offscreen, "chosen", nothing)
+    with pytest.raises(UsageError, match=r"^seeing:Sleeper: cannot draw"):
+        _ = External(make="seeing:Sleeper", kwargs={"fault": "raise"})
