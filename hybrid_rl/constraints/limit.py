@@ -33,7 +33,6 @@ class Limit:
     chance: Inside | None = None  # a planner's largest probability of a violation; None: any
 
     def __post_init__(self) -> None:
-        """Check the quantity and the limits."""
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
         if self.quantity not in known:
             raise FieldError(self, "quantity", f"choose one of {', '.join(known)}")

@@ -66,7 +66,6 @@ class AdjointController:
     regulator: StabilizingPolicy | None = None  # whose room bounds v; None: no bound
 
     def __post_init__(self) -> None:
-        """Check the gain."""
         if self.gain is None and self.policy is None:
             raise FieldError(self, "gain", "needs a policy, whose variance it takes")
 

@@ -106,7 +106,6 @@ class GradientController:
     priced: bool = False  # whether the objective's reward, learned with it, has its price already
 
     def __post_init__(self) -> None:
-        """Check the model: through the world itself goes no gradient."""
         if hasattr(self.model, "start"):
             words = "has no gradients; choose model=exact, or one that learns, such as ensemble"
             raise FieldError(self, "model", words)

@@ -36,7 +36,6 @@ class StagesController:
     of_run: bool = False  # counts decisions of the run; without a run, the last stage acts
 
     def __post_init__(self) -> None:
-        """Check the number of stages."""
         if len(self.decisions) != (count := len(self.stages) - 1):
             words = f"needs a number for each stage but the last, here {count}"
             raise FieldError(self, "decisions", words)

@@ -37,7 +37,6 @@ class Replay:
     demonstrations: Demonstrations | None = None  # the initial contents
 
     def __post_init__(self) -> None:
-        """Check the demonstrations."""
         if self.capacity < self.num_demonstrated(1):
             words = f"the demonstrations alone have {self.num_demonstrated(1)} decisions"
             raise FieldError(self, "capacity", words)

@@ -30,7 +30,6 @@ class Monomials:
     terms: tuple[tuple[int, ...], ...] = ()  # indices into the coordinates; repeated for powers
 
     def __post_init__(self) -> None:
-        """Check the lists."""
         if not all(len(term) >= 1 and min(term) >= 0 for term in self.terms):
             raise ValueError("features.terms: each must be a list of indices, 0 or more")
         if self.coordinates is not None:

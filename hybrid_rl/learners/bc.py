@@ -63,7 +63,6 @@ class BehaviourCloning:
     during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
-        """Check the saturation."""
         check_saturation(self, "cloning_learner")
 
     def init(self, key: Array, spec: Spec) -> CloningState:

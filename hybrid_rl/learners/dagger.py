@@ -83,7 +83,6 @@ class DAgger:
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check what depends on two fields."""
         teaching.require(self.teacher)
         check_saturation(self, "dagger_learner")
         if self.candidates > 1 and self.spread == 0:

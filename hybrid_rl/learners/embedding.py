@@ -71,7 +71,6 @@ class EmbeddingLearner:
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check what depends on two fields."""
         steps = ("steps", int(self.fit == "adam"))
         for name, low in (steps, ("interval", self.window), ("capacity", self.interval)):
             if getattr(self, name) < low:

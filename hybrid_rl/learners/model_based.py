@@ -72,7 +72,6 @@ class ModelBased:
     batches: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check what depends on two fields."""
         if self.value_steps is not None and not 0 <= self.value_steps <= self.steps:
             words = f"must be a whole number from 0 to steps={self.steps}, or null for all"
             raise FieldError(self, "value_steps", words)

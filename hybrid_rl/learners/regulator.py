@@ -55,7 +55,6 @@ class RegulatorLearner:
     owns: ClassVar[tuple[str, ...]] = ("policy",)
 
     def __post_init__(self) -> None:
-        """Check the environment and the model."""
         if self.thompson < 0 or (self.thompson and not hasattr(self.model, "draw_model")):
             words = "must be 0 or more; above 0 only with a linear model"
             raise FieldError(self, "thompson", words)

@@ -41,7 +41,6 @@ class FisherInformation:
     probes: Natural = 0  # directions that estimate T; 0: exact
 
     def __post_init__(self) -> None:
-        """Check the estimate."""
         if self.probes and self.criterion != "T":
             raise FieldError(self, "probes", "only criterion=T is estimated")
 

@@ -48,7 +48,6 @@ class KLErgodic:
     share: Fraction = 0.0  # of the uniform density in p; 1: coverage
 
     def __post_init__(self) -> None:
-        """Check the number of variances."""
         if len(self.variance) not in (1, self.domain.size):
             raise FieldError(self, "variance", "must be 1 or v numbers")
 

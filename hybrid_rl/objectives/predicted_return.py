@@ -33,7 +33,6 @@ class PredictedReturn:
     policy: Policy | None = None
 
     def __post_init__(self) -> None:
-        """Check the critic and the policy."""
         if (self.critic is None) != (self.policy is None):
             raise ValueError("objective.critic and objective.policy: give both or neither")
 

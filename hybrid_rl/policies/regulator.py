@@ -37,7 +37,6 @@ class Regulator:
     clip: bool = True  # actions to [-1, 1]; false where noise is added to them
 
     def __post_init__(self) -> None:
-        """Check the numbers of weights."""
         self._weights()
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:

@@ -34,7 +34,6 @@ class Run:
     alive: NotNegative | None = None  # b; None: 3 where a fall ends the episode, else 0
 
     def __post_init__(self) -> None:
-        """Check that the environment has what the reward measures."""
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
         for name in ("speed",) if self.level is None else ("speed", "pitch"):
             if name not in known:

@@ -79,7 +79,6 @@ class PoseParticles:
     length: Positive = 0.3  # rho [m]
 
     def __post_init__(self) -> None:
-        """Check the domain."""
         if self.domain.size != 2:
             raise ValueError(f"domain.coordinates: poses need a plane, not {self.domain.size}")
 

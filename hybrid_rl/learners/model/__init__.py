@@ -99,7 +99,6 @@ class ModelLearner:
     during_random: ClassVar[bool] = True  # random decisions inform the model
 
     def __post_init__(self) -> None:
-        """Check what depends on the model."""
         if self.reward_discount and getattr(self.reward, "next_state", False):
             raise ValueError(
                 "reward_model.next_state=true: the value of x' would need the state after it; give "
