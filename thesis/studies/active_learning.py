@@ -31,7 +31,7 @@ from hybrid_rl.analysis.curves import band, iqm
 from hybrid_rl.analysis.recorded import Recorded, read
 from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log, words
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
@@ -246,11 +246,9 @@ def _banded(values: Any) -> str:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """A panel for each quantity; information is that of one reference model."""
-    from matplotlib.figure import Figure
-
     methods, exact = numbers["methods"], numbers["exact_model"]
     styles = line_styles(methods)
-    figure = Figure(figsize=(9, 5.6), layout="constrained")
+    figure = blank(9, 5.6)
     panels = np.ravel(figure.subplots(2, 3))
     for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
         for label, one in methods.items():

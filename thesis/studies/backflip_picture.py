@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.analysis.curves import band, improvement, iqm
-from hybrid_rl.analysis.style import STROKES, line_styles, plain_log, words
+from hybrid_rl.analysis.style import STROKES, blank, line_styles, plain_log, words
 from hybrid_rl.thesis.studies import backflips
 from hybrid_rl.thesis.studies.backflips import (
     Explored,
@@ -84,9 +84,7 @@ def _compared(results: dict[tuple[str, int], np.ndarray]) -> dict[str, Any]:
 
 def bars(numbers: dict[str, Any]) -> Any:
     """Figure 6-9: a panel for each criterion and training length."""
-    from matplotlib.figure import Figure
-
-    figure, rows = Figure(figsize=(9, 7.6), layout="constrained"), numbers["rows"]
+    figure, rows = blank(9, 7.6), numbers["rows"]
     panels = figure.subplots(len(CRITERIA), len(backflips.LENGTHS), sharey=True, sharex=True)
     counts = sorted({most for row in rows.values() for most in row}, key=int)
     styles = line_styles(rows)
@@ -162,9 +160,7 @@ def queries(pattern: str) -> tuple[Any, dict[str, Any]]:
 
 def curves(numbers: dict[str, Any]) -> Any:
     """Figure 6-10: a line with its band for each row, in a panel for each clone."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 4.6), layout="constrained")
+    figure = blank(9, 4.6)
     panels: Any = figure.subplots(1, 2)
     titles = {"own": "by the clone that asks", "reference": "by one reference clone"}
     styles, ticks = line_styles(numbers["rows"]), range(5, int(numbers["queries"]) + 1, 5)

@@ -7,7 +7,7 @@ import numpy as np
 
 from hybrid_rl.analysis.belief.panel import HALF, Panel, View, level
 from hybrid_rl.analysis.curves import band, iqm, plural
-from hybrid_rl.analysis.style import legend_outside, line_styles, words
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
 from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import false_contacts
@@ -92,12 +92,10 @@ def _panels(runs: int, times: int) -> tuple[Any, Any, Any]:
 
     More than ABOVE runs are in two columns.
     """
-    from matplotlib.figure import Figure
-
     across = 1 if runs <= ABOVE else 2
     rows, columns = -(-runs // across), across * times
     height = rows * (min(WIDTH / columns, 2.6) + 0.25) + 0.3
-    figure: Any = Figure(figsize=(WIDTH, height + 3), layout="constrained")
+    figure: Any = blank(WIDTH, height + 3)
     upper, lower = figure.subfigures(2, 1, height_ratios=[height, 3])
     panels = upper.subplots(rows, columns, squeeze=False).reshape(-1, times)
     for axes in panels[runs:].flat:

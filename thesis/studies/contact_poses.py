@@ -10,7 +10,14 @@ from scipy.special import digamma
 
 from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, iqm, plural
-from hybrid_rl.analysis.style import GREY, legend_below, legend_outside, line_styles, plain_log
+from hybrid_rl.analysis.style import (
+    GREY,
+    blank,
+    legend_below,
+    legend_outside,
+    line_styles,
+    plain_log,
+)
 from hybrid_rl.core import poses as moves
 from hybrid_rl.core import resampling
 from hybrid_rl.thesis.studies.contact_maps_picture import marks_of
@@ -66,12 +73,11 @@ def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
 
 def draw_poses(numbers: dict[str, Any]) -> Any:
     """A row for each method: its errors at all times, and each trial's time until found."""
-    from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
     times, methods = numbers["times"], numbers["methods"]
     height = max(2.6, 1.1 + 1.2 * rows.HEIGHT * len(methods))
-    figure = Figure(figsize=(9, height), layout="constrained")
+    figure = blank(9, height)
     errors, angles, waits = figure.subplots(1, 3, sharey=True, width_ratios=(1, 1, 1.2))
     marks = [f"{time:g} s" for time in times]
     for axes, name, title in (
@@ -199,9 +205,7 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
 
 def draw_absence(numbers: dict[str, Any]) -> Any:
     """Entropy over time by the measurements that count; grey: the least that can be measured."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(4.4, 3.4), layout="constrained")
+    figure = blank(4.4, 3.4)
     axes, styles = figure.subplots(), line_styles(numbers["kinds"])
     for kind, one in numbers["kinds"].items():
         style = styles[kind] | {"marker": None, "label": COUNTING[kind]}

@@ -17,7 +17,7 @@ from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import plural
 from hybrid_rl.analysis.recorded import read
 from hybrid_rl.analysis.results import RunFolder, find
-from hybrid_rl.analysis.style import legend_below, line_styles, plain_log, words
+from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log, words
 from hybrid_rl.errors import UsageError
 
 CART, ARM = "cart_pendulum", "two_link"
@@ -136,11 +136,9 @@ def _or_never(value: float) -> str:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """A row of trials per method of the cart, curves of distance of the arm."""
-    from matplotlib.figure import Figure
-
     drawn = {task: numbers[task] for task in (CART, ARM) if numbers[task]}
     most = max(map(len, drawn.values()))
-    figure = Figure(figsize=(4.5 * len(drawn), 2.6 + 0.25 * most), layout="constrained")
+    figure = blank(4.5 * len(drawn), 2.6 + 0.25 * most)
     panels = figure.subplots(1, len(drawn), squeeze=False)[0]
     for axes, (task, methods) in zip(panels, drawn.items(), strict=True):
         (_carts if task == CART else _arms)(axes, methods)

@@ -21,7 +21,7 @@ import numpy as np
 
 from hybrid_rl.analysis.curves import plural, spread
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import legend_below, line_styles, plain_log
+from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.thesis.studies.time_averages import (
@@ -240,9 +240,7 @@ def _seconds(run: Run, repeats: int) -> float:
 
 def _subplots(down: int, across: int) -> tuple[Any, Any]:
     """A figure, and its panels [down, across]."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(min(3.4 * across, 9.0), 2.9 * down), layout="constrained")
+    figure = blank(min(3.4 * across, 9.0), 2.9 * down)
     return figure, figure.subplots(down, across, squeeze=False)
 
 

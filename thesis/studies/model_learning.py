@@ -27,7 +27,7 @@ from jax import Array
 from hybrid_rl.analysis.curves import band, iqm, plural
 from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
@@ -181,9 +181,7 @@ def named(label: str) -> str:
 
 def plot_flights(flights: list[Flight], dt: float) -> Any:
     """Actions and velocities of the first trial of each method."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 0.5 + 1.3 * len(flights)), layout="constrained")
+    figure = blank(9, 0.5 + 1.3 * len(flights))
     panels: Any = figure.subplots(len(flights), 3, squeeze=False, sharex=True, sharey="col")
     for row, flight in zip(panels, flights, strict=True):
         t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
@@ -200,13 +198,11 @@ def plot_flights(flights: list[Flight], dt: float) -> Any:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """Distance to the target of each method's best setting; error and distance over power loss."""
-    from matplotlib.figure import Figure
-
     methods: dict[str, list[dict[str, Any]]] = {}
     for label, one in numbers.items():
         methods.setdefault(EXACT if label == EXACT else label.split()[0], []).append(one)
     styles = line_styles(methods)
-    figure = Figure(figsize=(9, 3.6), layout="constrained")
+    figure = blank(9, 3.6)
     over_time, errors, tracking = figure.subplots(1, 3)
     for name, each in methods.items():
         _over_time(over_time, min(each, key=lambda one: one["tracking"][0]), styles[name], name)

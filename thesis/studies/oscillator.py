@@ -15,7 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.style import BLACK, BLUE, GREY, VERMILION, legend_below, plain_log
+from hybrid_rl.analysis.style import BLACK, BLUE, GREY, VERMILION, blank, legend_below, plain_log
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import riccati
 from hybrid_rl.core.analytic import at_equilibrium, linearise
@@ -230,9 +230,7 @@ def _spread(values: Sequence[float]) -> str:
 
 def _picture(numbers: dict[str, Any], paths: Any, dt: float) -> Any:
     """Error over time, paths, and ratios of cost by horizon and by data."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9.5, 7.6), layout="constrained")
+    figure = blank(9.5, 7.6)
     (over_time, plane), (by_horizon, by_data) = figure.subplots(2, 2)
     t = dt * np.arange(paths.shape[2])
     strokes = ("-", "-", "--")  # the third lies on the second

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.style import legend_outside, line_styles, words
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import json_file
 from hybrid_rl.thesis.studies import queries
@@ -58,12 +58,10 @@ def _arrays(one: Any) -> Any:
 
 def picture(made: dict[str, Any]) -> Any:
     """Shares over demonstrations, a panel for each schedule."""
-    from matplotlib.figure import Figure
-
     methods = made["methods"]
     refits = [one for one in methods.values() if "refit" in one]
     schedules = ["printed", *(["refit"] if refits else [])]
-    figure = Figure(figsize=(4.4 * len(schedules), 4.2), layout="constrained")
+    figure = blank(4.4 * len(schedules), 4.2)
     styles = line_styles(methods)
     panels = figure.subplots(1, len(schedules), sharey=True, squeeze=False)[0]
     alpha = min(0.15, 0.6 / len(methods))
