@@ -110,9 +110,7 @@ class ModelBased:
         kept, batch, key = self._started(state.branches, params, batch, key)
         learner, alpha = state.learner, jnp.exp(state.learner.log_alpha)
         factor = decay.of_rates(self.schedule, params.decisions)
-        learner = steps.observed(
-            learner, self.policy, self.critic, batch.obs, batch.reward, self.discount
-        )
+        learner = steps.observed(self, learner, batch)
         acting, ahead = jax.random.split(key)
         noise = jax.random.normal(acting, (2, *batch.action.shape))
         of_critic = None
