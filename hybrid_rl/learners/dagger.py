@@ -130,7 +130,7 @@ class DAgger:
         if evidence is None:
             return None
         shapes = jax.eval_shape(evidence, Params(policy=policy), jnp.zeros(spec.obs))
-        return jax.tree.map(lambda each: jnp.zeros(each.shape, each.dtype), shapes)
+        return jax.tree.map(jnp.zeros_like, shapes)
 
     def params(self, state: DAggerState) -> dict[str, Any]:
         """The policy, and what targets consult about the labels."""

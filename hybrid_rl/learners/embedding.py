@@ -94,7 +94,7 @@ class EmbeddingLearner:
         batch = Batch(none.obs, none.action, flag, flag, flag, none.next_obs)
         params = Params(model=model, decisions=jnp.zeros((), jnp.int32))
         shapes = jax.eval_shape(self.regulator.update, regulator, params, batch, unused)[1]
-        metrics = {name: jnp.zeros(m.shape, m.dtype) for name, m in shapes.items()}
+        metrics = jax.tree.map(jnp.zeros_like, shapes)
         return EmbeddingState(model, optimiser, memory, regulator, metrics)
 
     def params(self, state: EmbeddingState) -> dict[str, Any]:

@@ -199,7 +199,7 @@ class Agent:
             plan = trace_once(plan)
             shapes = jax.eval_shape(plan)
             draw = jax.random.uniform(keys.at_random, shapes[0].shape, minval=-1, maxval=1)
-            first = draw, state.control, _zeros(shapes[2])
+            first = draw, state.control, jax.tree.map(jnp.zeros_like, shapes[2])
             u, control, metrics = jax.lax.cond(step < self.random_steps, lambda: first, plan)
         else:
             u, control, metrics = plan()
@@ -257,7 +257,7 @@ class Agent:
                 return of, jax.tree.map(lambda m: m[-1], rows)
 
             before = state.learners[name]
-            nothing = _zeros(jax.eval_shape(update, before, k)[1])
+            nothing = jax.tree.map(jnp.zeros_like, jax.eval_shape(update, before, k)[1])
             due = (step >= starts[name]) & ((step // self.num_envs) % every == 0)
             learned[name], latest = jax.lax.cond(
                 due, update, lambda of, k, nothing=nothing: (of, nothing), before, k
@@ -292,8 +292,3 @@ def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, in
 def trace_once(f: Any) -> Any:
     """`f`, jitted inline, so that repeated calls and `eval_shape` share one trace."""
     return jax.jit(f, inline=True)
-
-
-def _zeros(shapes: Any) -> Any:
-    """Zeros with the shapes that `jax.eval_shape` returned."""
-    return jax.tree.map(lambda m: jnp.zeros(m.shape, m.dtype), shapes)
