@@ -10,6 +10,7 @@ and the last one kept. Source: thesis section 7.1.1, Algorithm 7, line 3; `thomp
 draws of the model (Thompson sampling; Abeille and Lazaric 2017).
 """
 
+from functools import partial
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -104,10 +105,7 @@ class RegulatorLearner:
 
     def solve(self, model: Any, policy: dict[str, Array]) -> dict[str, Array]:
         """The policy's parameters for the model's; those before are where u is linearised."""
-
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(model, x, u)
-
+        step = partial(self.model.step, model)
         obs, _ = self.world.equilibrium()
         goal = self.model.lift(model, obs.astype(policy["goal"].dtype))
         A, B = linearise(step, goal, policy["hold"])
