@@ -180,13 +180,10 @@ class ModelLearner:
             reward, metrics["model/reward_loss"] = {**reward, "weights": r}, of_reward
         state = ModelState({**model, "weights": f}, reward, optimiser, state.held_out)
         if held is not None:
-            state = self._judged(state, *held_out.only(whole, held, self._num_held(whole)))
+            count = max(1, round(self.holdout * len(whole.obs)))  # held out, on average
+            state = self._judged(state, *held_out.only(whole, held, count))
             metrics["model/held_out_loss"] = state.held_out.mean.mean()
         return state, metrics
-
-    def _num_held(self, batch: Batch) -> int:
-        """Decisions of a batch that are held out, on average."""
-        return max(1, round(self.holdout * len(batch.obs)))
 
     def _judged(self, state: ModelState, rows: Batch, real: Array) -> ModelState:
         """The state after losses on held-out decisions `rows` [B], of which `real` [B] count."""
