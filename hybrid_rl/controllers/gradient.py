@@ -37,6 +37,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, agreement, sampling
+from hybrid_rl.core.batching import join, prepend
 from hybrid_rl.core.members import predict_members
 from hybrid_rl.fields import (
     Count,
@@ -133,9 +134,9 @@ class GradientController:
         drawn = self._drawn(state, drawing)
         first = score(drawn)
         best = jax.lax.top_k(self._rank(first), min(self.refined, self.samples))[1]
-        starts = jax.tree.map(lambda a, b: jnp.concatenate([a[None], b[best]]), state.plan, drawn)
+        starts = prepend(state.plan, jax.tree.map(lambda leaf: leaf[best], drawn))
         refined = self._refined(params, value, x, starts)
-        each = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), refined, starts)
+        each = join(refined, starts)
         found = score(each)
         winner = jnp.argmax(self._rank(found))
         plan, chosen = jax.tree.map(lambda leaf: leaf[winner], (each, found))
@@ -152,10 +153,7 @@ class GradientController:
             **self._agreement(params, value, x, u),
         }
         after = GradientState(Candidate(plan.s, sampling.shift(plan.v)), u, memory)
-        paths = jax.tree.map(
-            lambda one, *leaves: jnp.concatenate([one[None], *leaves]),
-            *(chosen.path, found.path, first.path),
-        )
+        paths = prepend(chosen.path, join(found.path, first.path))
         return u, after, metrics, Considered(paths, jnp.int32(0))
 
     def greedy(self) -> "GradientController":

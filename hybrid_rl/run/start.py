@@ -16,6 +16,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
+from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
@@ -51,12 +52,8 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
         return None
     have = [start.memory for start in known]
     each = [start.learners for start in known]
-    memory = None if have[0] is None else _concatenated(have)
-    return Start(_concatenated(each), memory, known[0].line)
-
-
-def _concatenated(each: Sequence[Any]) -> Any:
-    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *each)
+    memory = None if have[0] is None else join(*have)
+    return Start(join(*each), memory, known[0].line)
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
