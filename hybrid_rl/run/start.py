@@ -74,9 +74,7 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
         CheckpointError: if none of its checkpoints is sound.
     """
     source = Path(str(config.run))
-    then = folder.read(source, "run")
-    if not checkpoint.steps(source / "checkpoints"):
-        raise UsageError(f"run={source}: holds no checkpoint yet; train it further first")
+    then = folder.read_trained(source, "run")
     if config.get("distributed"):
         raise UsageError("distributed=true: a run that begins with run=DIR has one process")
     if config.pretrain:
@@ -131,7 +129,7 @@ def _learners(
         UsageError: if they have other shapes than those of `run`.
     """
     try:
-        path, seeds = source / "checkpoints", _seeds(then)
+        path, seeds = source / "checkpoints", configuration.seeds(then)
         step, state, notes = read_part(path, run.agent, seeds, "learners")
     except MisfitError as error:
         lines = changes(_values(then), _values(config))
@@ -170,13 +168,8 @@ def _memory(
         return None, "reward differs"
     path = source / "checkpoints"
     sized = with_capacity(agent, checkpoint.meta(path)["capacity"])
-    state = read_part(path, sized, _seeds(then), "memory", step)[1]
+    state = read_part(path, sized, configuration.seeds(then), "memory", step)[1]
     return state.memory, "" if same else RELABELLED
-
-
-def _seeds(config: DictConfig) -> tuple[int, ...]:
-    """The seeds [S'] of the run that has this configuration."""
-    return tuple(range(config.seed, config.seed + config.num_seeds))
 
 
 def _world(config: DictConfig) -> dict[str, Any]:
