@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import band, improvement, iqm
+from hybrid_rl.analysis.curves import band_of, improvement
 from hybrid_rl.analysis.style import STROKES, blank, line_styles, plain_log, words
 from hybrid_rl.thesis.studies import backflips
 from hybrid_rl.thesis.studies.backflips import (
@@ -55,8 +55,7 @@ def flips(pattern: str) -> tuple[Any, dict[str, Any]]:
 
 def _spread(values: np.ndarray) -> dict[str, Any]:
     """Mean, IQM and its band of [S], and each."""
-    low, high = band(values)
-    return {"mean": values.mean(), "iqm": iqm(values), "low": low, "high": high, "each": values}
+    return {"mean": values.mean(), **band_of(values), "each": values}
 
 
 def _safety(one: Explored) -> dict[str, Any]:
@@ -152,8 +151,7 @@ def queries(pattern: str) -> tuple[Any, dict[str, Any]]:
         for name, information in (("own", one.own), ("reference", by_reference(one))):
             known = np.isfinite(information).all(0)  # queries that all seeds asked
             if known.any():
-                middle, (low, high) = iqm(information[:, known]), band(information[:, known])
-                rows[one.label][name] = {"iqm": middle, "low": low, "high": high}
+                rows[one.label][name] = band_of(information[:, known])
     numbers = {"queries": most, "rows": rows}
     return curves(numbers), numbers
 

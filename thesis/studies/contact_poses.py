@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import digamma
 
 from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.curves import band, iqm, plural
+from hybrid_rl.analysis.curves import band, band_of, plural
 from hybrid_rl.analysis.style import (
     GREY,
     blank,
@@ -192,10 +192,9 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     for kind, counts in KINDS.items():
         means, theta = filtered(counts(run.y))
         entropy = np.array([[entropy_of(each[j]) for j in at] for each in theta])
-        low, high = band(entropy)
         position, angle = (each[:, at] for each in errors(run._replace(rows=means)))
         each = {"each": entropy, "position": position, "angle": angle}
-        kinds[kind] = {"iqm": iqm(entropy), "low": low, "high": high, **each}
+        kinds[kind] = {**band_of(entropy), **each}
     less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
     least = _entropy_of_balls(np.full(SOME, CLOSEST))
     head = {"times": dt * (at + 1), "trials": len(run.y), "least_entropy": least}

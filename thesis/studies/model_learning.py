@@ -24,7 +24,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.curves import band, iqm, plural
+from hybrid_rl.analysis.curves import banded, plural
 from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.significant import rounded
 from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log
@@ -157,20 +157,15 @@ def reported(values: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     if "lost" in values:
         numbers["kept_hover"] = 1 - values["lost"].mean()
     if "error" in values:
-        numbers["error"] = _banded(values["error"])
+        numbers["error"] = banded(values["error"])
     if "distance" in values:
         distance = values["distance"]
-        numbers["tracking"] = _banded(distance.mean(1))
+        numbers["tracking"] = banded(distance.mean(1))
         for mark in MARKS:
             if round(mark / dt) < distance.shape[1]:
-                numbers[f"distance_after_{mark:g}_s"] = _banded(distance[:, round(mark / dt)])
+                numbers[f"distance_after_{mark:g}_s"] = banded(distance[:, round(mark / dt)])
         numbers["turned_over_tracking"] = values["turned_over"].mean()
     return rounded(numbers)
-
-
-def _banded(each: np.ndarray) -> list[Any]:
-    """IQM over trials [S], and its band."""
-    return [iqm(each), *band(each)]
 
 
 def named(label: str) -> str:

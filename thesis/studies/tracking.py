@@ -20,7 +20,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.curves import band, iqm, plural
+from hybrid_rl.analysis.curves import banded, plural
 from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read
 from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log, words
@@ -162,7 +162,7 @@ def reported(track: Track) -> dict[str, Any]:
 def _spread(values: np.ndarray) -> list[float] | None:
     """IQM and its band over the trials that have a value; None: no trial has one."""
     known = values[np.isfinite(values)]
-    return [iqm(known), *band(known)] if len(known) else None
+    return banded(known) if len(known) else None
 
 
 def lines(numbers: dict[str, Any]) -> list[str]:
