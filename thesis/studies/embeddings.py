@@ -115,7 +115,7 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     """A line for each run."""
     result = []
     for label, one in numbers[CART].items():
-        middle, low, high = (_or_never(value) for value in one["iterations"])
+        middle, low, high = (f"{value:g}".replace("inf", "never") for value in one["iterations"])
         result.append(
             f"{CART} {label}, {plural(one['trials'], 'trial')}: stabilised after {middle} "
             f"[{low}, {high}] iterations, {one['share_by_100']:.0%} by {MARK}, "
@@ -128,10 +128,6 @@ def lines(numbers: dict[str, Any]) -> list[str]:
             f"[{low:.3g}, {high:.3g}] rad, within 0.05 rad {one['share_within'][-1]:.0%} at the end"
         )
     return result
-
-
-def _or_never(value: float) -> str:
-    return f"{value:g}" if np.isfinite(value) else "never"
 
 
 def draw(numbers: dict[str, Any]) -> Any:

@@ -200,11 +200,14 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
             print(f"{NAMES[algo]}, {v} dimensions: timed", flush=True)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}
-    return draw_cost(numbers), numbers
+    return draw(numbers), numbers
 
 
-def draw_cost(numbers: dict[str, Any]) -> Any:
-    """Milliseconds of a plan over the dimension, a line for each controller."""
+def draw(numbers: dict[str, Any]) -> Any:
+    """Milliseconds of a plan over the dimension, a line for each controller.
+
+    Of view=cost, also from its JSON; the JSON of other views has no densities.
+    """
     figure, ((axes,),) = _subplots(1, 1)
     styles = line_styles(("kle3", "fourier_ergodic"))
     for algo, style in styles.items():
@@ -214,11 +217,6 @@ def draw_cost(numbers: dict[str, Any]) -> Any:
     plain_log(axes.yaxis)
     legend_below(axes)
     return figure
-
-
-def draw(numbers: dict[str, Any]) -> Any:
-    """The picture of numbers from a JSON of view=cost; the JSON of other views has no densities."""
-    return draw_cost(numbers)
 
 
 def _seconds(run: Run, repeats: int) -> float:

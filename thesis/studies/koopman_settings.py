@@ -94,9 +94,8 @@ def falls(run: Run, forgetting: np.ndarray, priors: np.ndarray, trials: int) -> 
 
     settings = np.meshgrid(forgetting, priors, np.arange(trials), indexing="ij")
     keys = jax.vmap(jax.random.key)(run.config.seed + jnp.asarray(settings[2].ravel()))
-    each = (jnp.asarray(value.ravel(), jnp.float32) for value in settings[:2])
-    program = jax.jit(jax.vmap(one)).lower(*each, keys).compile()
     each = [jnp.asarray(value.ravel(), jnp.float32) for value in settings[:2]]
+    program = jax.jit(jax.vmap(one)).lower(*each, keys).compile()
     began = perf_counter()
     last = np.asarray(program(*each, keys)).reshape(settings[0].shape)
     taken, stays = perf_counter() - began, last < steps

@@ -32,6 +32,7 @@ from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.thesis.studies.flights import Flight, cost, equal_size, read_all
+from hybrid_rl.thesis.studies.unseen import transitions
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 
@@ -115,9 +116,8 @@ class Tracked(NamedTuple):
 def track(run: Run, params: Params, steps: int, key: Array) -> Tracked:
     """MPPI with the model in `params`, for B = `steps` decisions. The key is consumed."""
     u, states = rollout_with_actions(run.agent.episode, run.controllers["full"], params, key, steps)
-    no, x = jnp.zeros(steps), states.obs
-    distance = jnp.linalg.norm(x[:, :3], axis=-1)
-    return Tracked(Batch(x[:-1], u, no, no, no, x[1:]), distance, states.terminated[-1])
+    x, distance = states.obs, jnp.linalg.norm(states.obs[:, :3], axis=-1)
+    return Tracked(transitions(x[:-1], u, x[1:]), distance, states.terminated[-1])
 
 
 def measure(flights: list[Flight], updates: int, steps: int) -> Results:
