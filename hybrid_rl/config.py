@@ -51,12 +51,7 @@ class Run:
     @property
     def seeds(self) -> tuple[int, ...]:
         """One seed per learner."""
-        return seeds(self.config)
-
-
-def seeds(config: DictConfig) -> tuple[int, ...]:
-    """One seed per learner of a configuration."""
-    return tuple(range(config.seed, config.seed + config.num_seeds))
+        return tuple(range(self.config.seed, self.config.seed + self.config.num_seeds))
 
 
 def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) -> DictConfig:

@@ -9,11 +9,11 @@ from typing import Any
 
 import jax
 
-from hybrid_rl.core.batching import join
 from hybrid_rl.run.checkpoints.store import End, Record, Store
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.logs.rows import Gathered
+from hybrid_rl.run.start import concatenated
 from hybrid_rl.training.loop import Loop
 
 
@@ -108,4 +108,4 @@ class Shelf:
         """The state [S, ...] of those of all folders."""
         if len(states) == 1:
             return states[0]
-        return self.loop.on_devices(join(*states).replace(numbers=self.loop.numbers))
+        return self.loop.on_devices(concatenated(states).replace(numbers=self.loop.numbers))

@@ -16,7 +16,6 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
-from hybrid_rl.core.batching import join
 from hybrid_rl.errors import MisfitError, UsageError
 from hybrid_rl.run import folder
 from hybrid_rl.run.checkpoints import checkpoint
@@ -52,8 +51,13 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
         return None
     have = [start.memory for start in known]
     each = [start.learners for start in known]
-    memory = None if have[0] is None else join(*have)
-    return Start(join(*each), memory, known[0].line)
+    memory = None if have[0] is None else concatenated(have)
+    return Start(concatenated(each), memory, known[0].line)
+
+
+def concatenated(states: Sequence[Any]) -> Any:
+    """The trees [S, ...] of the learners of several runs as one."""
+    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *states)
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
@@ -129,7 +133,7 @@ def _learners(
         UsageError: if they have other shapes than those of `run`.
     """
     try:
-        path, seeds = source / "checkpoints", configuration.seeds(then)
+        path, seeds = source / "checkpoints", _seeds(then)
         step, state, notes = read_part(path, run.agent, seeds, "learners")
     except MisfitError as error:
         lines = changes(_values(then), _values(config))
@@ -168,8 +172,13 @@ def _memory(
         return None, "reward differs"
     path = source / "checkpoints"
     sized = with_capacity(agent, checkpoint.meta(path)["capacity"])
-    state = read_part(path, sized, configuration.seeds(then), "memory", step)[1]
+    state = read_part(path, sized, _seeds(then), "memory", step)[1]
     return state.memory, "" if same else RELABELLED
+
+
+def _seeds(config: DictConfig) -> tuple[int, ...]:
+    """The seeds [S'] of the run that has this configuration."""
+    return tuple(range(config.seed, config.seed + config.num_seeds))
 
 
 def _world(config: DictConfig) -> dict[str, Any]:
