@@ -17,11 +17,7 @@ from hybrid_rl.types import Spec
 
 @part
 class Monomials:
-    """Coordinates of the observation, a constant, and products of the coordinates.
-
-    Raises:
-        ValueError: for indices out of range, or lists of the wrong length.
-    """
+    """Coordinates of the observation, a constant, and products of the coordinates."""
 
     coordinates: tuple[int, ...] | None = None  # of the observation; None: all
     scale: tuple[float, ...] = (1.0,)  # one for all coordinates, or one each

@@ -36,11 +36,7 @@ class SolutionState:
 
 @part
 class RegulatorLearner:
-    """A linear policy that regulates a model to the equilibrium of `world`.
-
-    Raises:
-        ValueError: for draws of a model that is not linear.
-    """
+    """A linear policy that regulates a model to the equilibrium of `world`."""
 
     model: Model
     policy: GoalPolicy

@@ -28,11 +28,7 @@ from hybrid_rl.types import Spec
 
 @part
 class TanhGaussian(Squashed):
-    """A stochastic policy on [-1, 1]^m.
-
-    Raises:
-        ValueError: for bounds out of order.
-    """
+    """A stochastic policy on [-1, 1]^m."""
 
     hidden: Widths = (256, 256)
     activation: Activation = "relu"
