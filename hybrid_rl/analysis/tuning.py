@@ -30,9 +30,7 @@ KINDS: dict[str, dict[str, Any]] = {  # state of a trial -> its points
 }
 
 
-def figure(
-    runs: Annotated[str, "folder of a tuned sweep"],
-) -> tuple["Figure", dict[str, Any]]:
+def figure(runs: Annotated[str, "folder of a tuned sweep"]) -> tuple["Figure", dict[str, Any]]:
     """The picture of the study in a folder, and its numbers."""
     file = Path(runs) / "trials.json"
     try:

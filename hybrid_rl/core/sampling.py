@@ -68,10 +68,7 @@ def imagine(
 
 
 def weights(
-    reward_to_go: Array,
-    temperature: float,
-    normalise: bool = False,
-    log_prob: Array | None = None,
+    reward_to_go: Array, temperature: float, normalise: bool = False, log_prob: Array | None = None
 ) -> Array:
     """Weights [K, T] that sum to one over K, from reward_to_go S [K, T].
 
