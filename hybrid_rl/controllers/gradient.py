@@ -254,6 +254,5 @@ class GradientController:
         """Metrics of the action u [m] against the policy's."""
         if self.policy is None:
             return {}
-
         step = partial(self.model.step, params.model)
         return agreement.metrics(step, self.policy, params, value, x, u, self.horizon)

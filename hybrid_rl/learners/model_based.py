@@ -153,9 +153,10 @@ class ModelBased:
         m = batch.action.shape[-1]
         if kept is None:
             return None, branches.sample_fresh(step, batch.obs, m, self.branch_steps, drawing), key
-        going_on, recalling = jax.random.split(drawing)
-        going = kept, step, batch.obs, m, self.branch_steps, going_on
-        kept = branches.extended(*going, self.branch_margin)
+        extending, recalling = jax.random.split(drawing)
+        kept = branches.extended(
+            kept, step, batch.obs, m, self.branch_steps, extending, self.branch_margin
+        )
         return kept, branches.sample_kept(kept, m, recalling), key
 
     def imagine(self, params: Params, batch: Batch, key: Array) -> Imagined:
