@@ -111,9 +111,7 @@ class Quadcopter(Body):
         """
         return {"spin": obs[3:6], "velocity": obs[6:9], "motion": obs[3:9]}
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text(SCENE)
+    scene = mjcf.scene(SCENE)
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [10] for rendering: the quadcopter's, then the target's."""

@@ -187,9 +187,7 @@ class SawyerPush:
         """The block's position seen from the target, and from the rod [m] at obs [o]."""
         return {"block": obs[2:4] / self.state_scale, "reach": obs[:2] / self.state_scale}
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text(SCENE)
+    scene = mjcf.scene(SCENE)
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [16] for rendering: arm and block, then the target's x and y."""

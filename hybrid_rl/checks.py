@@ -22,13 +22,8 @@ from hybrid_rl.overrides import SHOW, closest_hint
 from hybrid_rl.types import NAME
 
 COUNTS = (
-    "num_seeds",
-    "num_envs",
-    "total_steps",
-    "eval_every",
-    "eval_episodes",
-    "checkpoint_every",
-    "log_every",
+    *("num_seeds", "num_envs", "total_steps", "eval_every", "eval_episodes"),
+    *("checkpoint_every", "log_every"),
 )
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys

@@ -29,8 +29,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
-import numpy as np
-
 from hybrid_rl.analysis.style import STYLE
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import HELP, Argument, output, read
@@ -39,7 +37,7 @@ from hybrid_rl.drafts import replacing
 from hybrid_rl.errors import UsageError, user_line
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.reading import json_file
-from hybrid_rl.run.logs.records import json_value
+from hybrid_rl.run.logs.records import arrays, json_value
 from hybrid_rl.run.machine.jax_settings import prepare
 
 if TYPE_CHECKING:
@@ -182,18 +180,6 @@ def redrawn(study: Study, file: str) -> tuple["Figure", dict[str, Any]]:
         raise UsageError(f"from={error}") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"from={file}: has no numbers of this study") from error
-
-
-def arrays(value: Any) -> Any:
-    """A value from JSON with lists of numbers as arrays, and null in them as NaN."""
-    if isinstance(value, dict):
-        return {name: arrays(each) for name, each in value.items()}
-    if not isinstance(value, list):
-        return value
-    try:
-        return np.array(value, float)
-    except (TypeError, ValueError):
-        return [arrays(each) for each in value]
 
 
 def _listing(known: dict[str, str]) -> str:

@@ -96,11 +96,11 @@ class OnlineLearner:
         self._start(0)
 
     def _start(self, decisions: int) -> None:
-        """Go on after so many decisions, in another episode."""
+        """Begin to learn after so many decisions, in a new episode."""
         self.decisions = self._seen = self._learned = self._began = decisions
         self._first, self._handed, self._error = True, 0.0, None
         self._closed = False
-        self._params = self._now()
+        self._params = self._newest()
         if self._mode == "background":
             self._thread = threading.Thread(target=self._follow, daemon=True)
             self._thread.start()
@@ -175,7 +175,7 @@ class OnlineLearner:
         if self._mode == "inline" or (self._mode == "between_episodes" and self._first):
             while self._advance():
                 pass
-            self._params = self._now()
+            self._params = self._newest()
 
     def interrupt(self) -> None:
         """The episode was broken off without an outcome: the last action is forgotten."""
@@ -189,7 +189,7 @@ class OnlineLearner:
                 if not self._advance():
                     time.sleep(1e-3)
                 if time.monotonic() - self._handed > HANDOVER_S:
-                    self._params, self._handed = self._now(), time.monotonic()
+                    self._params, self._handed = self._newest(), time.monotonic()
         except Exception as error:  # the caller's thread raises it
             self._error = error
 
@@ -212,7 +212,7 @@ class OnlineLearner:
                 return False
             return True
 
-    def _now(self) -> Params:
+    def _newest(self) -> Params:
         """A copy of the newest parameters."""
         with self._lock:
             params = jax.vmap(self._loop.agent.params)(self._state)
@@ -225,7 +225,7 @@ class OnlineLearner:
             UsageError: if it cannot be written to, or holds another kind of run.
             CheckpointError: if the checkpoint could not be written.
         """
-        path = _free(folder)
+        path = _writable(folder)
         while self._waiting:
             self._advance()
         with lock(path, "folder"), self._lock:
@@ -275,8 +275,8 @@ class OnlineLearner:
             raise UsageError("this learner is closed")
 
 
-def _free(folder: Path | str) -> Path:
-    """The folder, if it holds no run but one of `OnlineLearner.save`."""
+def _writable(folder: Path | str) -> Path:
+    """The folder, unless it holds a run that `OnlineLearner.save` has not written."""
     path = Path(folder)
     if not str(folder):
         raise UsageError("folder=: give the folder that save writes")
@@ -287,7 +287,7 @@ def _free(folder: Path | str) -> Path:
     return path
 
 
-def _config(method: Any, sizes: dict[str, Any], seed: int, own: Any) -> DictConfig:
+def _config(method: Any, sizes: dict[str, Any], seed: int, config_dir: Any) -> DictConfig:
     """The configuration of a method in a world of these sizes; that of `load` stays as it is."""
     if isinstance(method, DictConfig):
         return method
@@ -297,4 +297,4 @@ def _config(method: Any, sizes: dict[str, Any], seed: int, own: Any) -> DictConf
         if key in ELSEWHERE:
             raise UsageError(f"OnlineLearner: {key}=: {ELSEWHERE[key]}")
     given = [f"env.{name}={value}" for name, value in sizes.items()]
-    return configuration.load(["task=online", *given, f"seed={seed}", *method], own)
+    return configuration.load(["task=online", *given, f"seed={seed}", *method], config_dir)

@@ -30,7 +30,6 @@ from hybrid_rl.envs.mujoco.physics import resolve
 from hybrid_rl.errors import UsageError, printable
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run import folder as run_folder
-from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import read_part
 from hybrid_rl.run.files.reading import from_json
 from hybrid_rl.run.logs.progress import say
@@ -118,9 +117,7 @@ def load(folder: Path | str, key: str = "run") -> Trained:
         CheckpointError: if none of its checkpoints is sound.
     """
     folder = Path(folder)
-    config = run_folder.read(folder, key)
-    if not checkpoint.steps(folder / "checkpoints"):
-        raise UsageError(f"{key}={folder}: holds no checkpoint yet; train it further first")
+    config = run_folder.read_trained(folder, key)
     with run_folder.blame_config(folder):
         check(config)
         prepare(config)

@@ -60,14 +60,8 @@ GOALS = {
     "halfcheetah, settings=light": (["task=halfcheetah", "settings=light"], "speed 2"),
 }
 WHO = (
-    "policy",
-    "planner: noise",
-    "both: mixture",
-    "both: strengths",
-    "refits",
-    "planner: gradient",
-    "both: gradient",
-    "both: gradient, quick",
+    *("policy", "planner: noise", "both: mixture", "both: strengths", "refits"),
+    *("planner: gradient", "both: gradient", "both: gradient, quick"),
 )
 
 

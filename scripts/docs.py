@@ -37,14 +37,8 @@ TASKS = ("pendulum", "cart_double_pendulum", "quadcopter_se3", "sprk_sand", "con
 TASKS += ("sawyer_torque", "cart_swing_up", "lander", "no_dynamics", "halfcheetah")
 PACKAGES = {  # page of the reference -> folders and modules
     "Commands": (
-        "train",
-        "evaluate",
-        "render",
-        "figures",
-        "demonstrate",
-        "export",
-        "report",
-        "list",
+        *("train", "evaluate", "render", "figures"),
+        *("demonstrate", "export", "report", "list"),
     ),
     "From Python": ("online", "trained", "goals", "robot"),
     "Configuration": ("config", "overrides", "named"),

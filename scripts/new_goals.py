@@ -36,10 +36,7 @@ from scripts.seeds import Row, every, split_names, write
 
 FACTORS = (0.8, 0.6, 0.4, 0.2)
 IMAGINED = "imagined"
-SIGNALS = {
-    "share": "planner/policy_share",
-    "insertion": "planner/mode_insertion_gradient",
-}
+SIGNALS = {"share": "planner/policy_share", "insertion": "planner/mode_insertion_gradient"}
 ARGUMENTS = (
     Argument("run", "", "folder of a run with a learned model", needed="run=DIR"),
     Argument("goals", "speed 2", "REWARD TARGET; several with ; between them"),

@@ -13,15 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from hybrid_rl.analysis.curves import band, iqm
-from hybrid_rl.analysis.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    PINK,
-    STYLE,
-    VERMILION,
-    thousands,
-)
+from hybrid_rl.analysis.style import BLACK, BLUE, GREEN, PINK, STYLE, VERMILION, thousands
 from hybrid_rl.cli.arguments import Argument, read
 
 ARGUMENTS = (

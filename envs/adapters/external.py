@@ -58,7 +58,6 @@ class External(Made):
     timeout_s: Positive | None = None  # [s] for a step, with processes; then the run ends
 
     def __post_init__(self) -> None:
-        """Check the fields, and the spaces."""
         if not (self.id or self.make):
             raise UsageError("env.id: give an id of Gymnasium, or env.make=MODULE:CLASS")
         if self.timeout_s is not None and not self.processes:

@@ -200,10 +200,7 @@ class GymnasiumVectorEnv(VectorEnv):
         self._carry: tuple[EnvState, Array, Array] | None = None  # states, keys, steps so far
 
     def reset(
-        self,
-        *,
-        seed: int | Sequence[int] | None = None,
-        options: dict[str, Any] | None = None,
+        self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, Info]:
         """Initial observations [E, o], and metrics. With one seed, environment i gets seed + i."""
         first = seed if seed is None or isinstance(seed, int) else int(seed[0])

@@ -38,7 +38,6 @@ class Playground:
     config: Mapping[str, Any] | None = None  # its own settings; {"impl": "jax"} unless it says warp
 
     def __post_init__(self) -> None:
-        """Load it."""
         object.__setattr__(self, "config", Items({"impl": "jax"} | dict(self.config or {})))
         _ = self.spec
 

@@ -60,7 +60,6 @@ class Robot(Made):
     handover_s: Positive = 0.2  # [s] between two sets of parameters that the robot gets
 
     def __post_init__(self) -> None:
-        """Check the class."""
         super().__post_init__()
         _ = self.spec
 

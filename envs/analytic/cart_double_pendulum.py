@@ -62,9 +62,7 @@ class CartDoublePendulum(Euclidean):
         """Both rods upright, the cart in the middle of the rail."""
         return jnp.zeros(6), jnp.zeros(1)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("cart_double_pendulum.xml")
+    scene = mjcf.scene("cart_double_pendulum.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [3] for rendering; the second angle is relative to the first rod."""

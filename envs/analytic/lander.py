@@ -90,9 +90,7 @@ class Lander(Euclidean):
         """Upright at rest, on half the thrust."""
         return jnp.zeros(6), jnp.full(2, 0.5)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("lander.xml")
+    scene = mjcf.scene("lander.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Position and angle, qpos [3], for rendering."""

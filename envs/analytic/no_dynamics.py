@@ -45,9 +45,7 @@ class NoDynamics(Euclidean):
         """The middle of the rail."""
         return jnp.zeros(1), jnp.zeros(1)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("no_dynamics.xml")
+    scene = mjcf.scene("no_dynamics.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [1] for rendering."""

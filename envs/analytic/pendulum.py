@@ -67,9 +67,7 @@ class Pendulum:
         """The observation [3] at local coordinates e [2]."""
         return _obs(e)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("pendulum.xml")
+    scene = mjcf.scene("pendulum.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [1] for rendering."""

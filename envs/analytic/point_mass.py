@@ -50,9 +50,7 @@ class PointMass(Euclidean):
         """At rest in the middle of the unit square."""
         return jnp.array([*MIDDLE, 0.0, 0.0]), jnp.zeros(2)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("point_mass.xml")
+    scene = mjcf.scene("point_mass.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Joint positions qpos [2] for rendering."""

@@ -135,9 +135,7 @@ class QuadcopterSE3:
         R = jnp.eye(3) + s + s @ s / (1 + cos)
         return jnp.concatenate([e[:3], R.reshape(9), e[6:]])
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("quadcopter_se3.xml")
+    scene = mjcf.scene("quadcopter_se3.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Position and quaternion, qpos [7], for rendering."""

@@ -125,9 +125,7 @@ class SprkSand:
         later = obs[4:]
         return jnp.concatenate([obs[4:8], later]), jnp.concatenate([obs[8:], later])
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("sprk_sand.xml")
+    scene = mjcf.scene("sprk_sand.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Positions of the ball and of the reference, qpos [4], for rendering."""

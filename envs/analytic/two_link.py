@@ -98,9 +98,7 @@ class TwoLink:
         """The observation [6] at local coordinates e [4], with target 0."""
         return jnp.concatenate([e, jnp.zeros(2)])
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering."""
-        return mjcf.text("two_link.xml")
+    scene = mjcf.scene("two_link.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Joint angles of the arm and of the target, qpos [4], for rendering."""

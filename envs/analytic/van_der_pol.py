@@ -50,9 +50,7 @@ class VanDerPol(Euclidean):
         """At rest at the origin."""
         return jnp.zeros(2), jnp.zeros(1)
 
-    def scene(self) -> str:
-        """MJCF text of the scene for rendering: the phase plane."""
-        return mjcf.text("van_der_pol.xml")
+    scene = mjcf.scene("van_der_pol.xml")
 
     def pose(self, state: EnvState) -> Array:
         """Position of the ball, qpos [2], for rendering."""

@@ -8,10 +8,11 @@
 Source: the MJCF reference of MuJoCo, "XML Reference".
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
+from typing import Any
 
 import jax.numpy as jnp
 import mujoco
@@ -55,6 +56,16 @@ def text(asset: str) -> str:
     spec = mujoco.MjSpec.from_file(str(path(asset)))
     spec.compile()
     return spec.to_xml()
+
+
+def scene(asset: str) -> Callable[[Any], str]:
+    """The method `scene` of a world that is drawn by the file `asset`."""
+
+    def scene(self: Any) -> str:
+        """MJCF text of the scene for rendering."""
+        return text(asset)
+
+    return scene
 
 
 def friction(pairs: Iterable[str], coefficient: float) -> dict[str, float]:

@@ -176,11 +176,7 @@ class Physics:
         qpos, qvel, act, rest = jnp.split(out, ends)
         warmstart, sensors = jnp.split(rest, (model.nv,))
         return state.replace(
-            qpos=qpos,
-            qvel=qvel,
-            act=_or_none(act),
-            warmstart=warmstart,
-            sensors=_or_none(sensors),
+            qpos=qpos, qvel=qvel, act=_or_none(act), warmstart=warmstart, sensors=_or_none(sensors)
         )
 
     def _accelerated(self, state: PhysicsState, n: int, impl: str) -> PhysicsState:

@@ -15,85 +15,37 @@ from collections.abc import Callable
 from ctypes import POINTER, c_char_p, c_int, c_int64, c_size_t, c_uint32, c_void_p
 from functools import lru_cache
 from math import prod
+from typing import Any
 
 import jax
 import numpy as np
 
-_HEAD = [("size", c_size_t), ("extension", c_void_p)]
 _INTERNAL = 13  # XLA_FFI_Error_Code_INTERNAL
 
 
-class _Buffer(ctypes.Structure):
-    _fields_ = [
-        *_HEAD,
-        ("dtype", c_int),
-        ("data", c_void_p),
-        ("rank", c_int64),
-        ("dims", POINTER(c_int64)),
-    ]
+def _structure(**kinds: Any) -> Any:
+    """A structure of C whose fields have these kinds, in order."""
+    return type("Structure", (ctypes.Structure,), {"_fields_": [*kinds.items()]})
 
 
-class _Buffers(ctypes.Structure):
-    _fields_ = [
-        *_HEAD,
-        ("count", c_int64),
-        ("types", c_void_p),
-        ("items", POINTER(POINTER(_Buffer))),
-    ]
-
-
-class _Version(ctypes.Structure):
-    _fields_ = [*_HEAD, ("major", c_int), ("minor", c_int)]
-
-
-class _Metadata(ctypes.Structure):
-    _fields_ = [
-        ("size", c_size_t),
-        ("version", _Version),
-        ("traits", c_uint32),
-        ("state_type", c_int64),
-    ]
-
-
-class _Extension(ctypes.Structure):
-    _fields_ = [
-        ("size", c_size_t),
-        ("kind", c_int),
-        ("next", c_void_p),
-        ("metadata", POINTER(_Metadata)),
-    ]
-
-
-class _ErrorArgs(ctypes.Structure):
-    _fields_ = [*_HEAD, ("message", c_char_p), ("code", c_int)]
-
-
-class _Api(ctypes.Structure):
-    _fields_ = [
-        *_HEAD,
-        ("version", _Version),
-        ("internal", c_void_p),
-        ("error", ctypes.CFUNCTYPE(c_void_p, POINTER(_ErrorArgs))),
-    ]
-
-
-class _Frame(ctypes.Structure):
-    _fields_ = [
-        ("size", c_size_t),
-        ("extension", POINTER(_Extension)),
-        ("api", POINTER(_Api)),
-        ("context", c_void_p),
-        ("stage", c_int),
-        ("args", _Buffers),
-        ("results", _Buffers),
-    ]
-
-
+_HEAD = {"size": c_size_t, "extension": c_void_p}
+_Buffer = _structure(**_HEAD, dtype=c_int, data=c_void_p, rank=c_int64, dims=POINTER(c_int64))
+_Buffers = _structure(**_HEAD, count=c_int64, types=c_void_p, items=POINTER(POINTER(_Buffer)))
+_Version = _structure(**_HEAD, major=c_int, minor=c_int)
+_Metadata = _structure(size=c_size_t, version=_Version, traits=c_uint32, state_type=c_int64)
+_Extension = _structure(size=c_size_t, kind=c_int, next=c_void_p, metadata=POINTER(_Metadata))
+_ErrorArgs = _structure(**_HEAD, message=c_char_p, code=c_int)
+_Error = ctypes.CFUNCTYPE(c_void_p, POINTER(_ErrorArgs))
+_Api = _structure(**_HEAD, version=_Version, internal=c_void_p, error=_Error)
+_Called = {"api": POINTER(_Api), "context": c_void_p, "stage": c_int}
+_Frame = _structure(
+    size=c_size_t, extension=POINTER(_Extension), **_Called, args=_Buffers, results=_Buffers
+)
 _Handler = ctypes.CFUNCTYPE(c_void_p, POINTER(_Frame))
 _HANDLERS = []  # never freed: XLA holds their addresses
 
 
-def _view(buffers: _Buffers) -> np.ndarray:
+def _view(buffers: Any) -> np.ndarray:
     """A view [N, D] of the first buffer of `buffers`, which is float32."""
     buffer = buffers.items[0].contents
     return _array(buffer.data, *buffer.dims[: buffer.rank])
@@ -113,7 +65,7 @@ def register(name: str, function: Callable[[np.ndarray, np.ndarray], None]) -> N
     leading axes are flattened into N.
     """
 
-    def handle(pointer: "ctypes._Pointer[_Frame]") -> int | None:
+    def handle(pointer: Any) -> int | None:
         frame = pointer.contents
         if frame.extension:  # XLA queries the API version of this handler
             version, own = frame.extension.contents.metadata.contents.version, frame.api.contents

@@ -128,6 +128,16 @@ def band(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
+def banded(values: np.ndarray) -> list[Any]:
+    """The IQM and the ends of its band, over the first axis: [n, ...] -> three of [...]."""
+    return [iqm(values), *band(values)]
+
+
+def band_of(values: np.ndarray) -> dict[str, Any]:
+    """What `banded` returns, as the JSON of a picture has it."""
+    return dict(zip(("iqm", "low", "high"), banded(values), strict=True))
+
+
 def format_number(value: float) -> str:
     """A value with four digits, or with all digits of its whole part: "0.1234", "11,387"."""
     return f"{value:,.4g}" if abs(value) < 1000 else f"{value:,.0f}"

@@ -14,6 +14,7 @@ from hybrid_rl.analysis.style import (
     LEGEND_WIDTH,
     NOTE_WIDTH,
     STYLE,
+    blank,
     legend_below,
     legend_outside,
     line_styles,
@@ -68,7 +69,6 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
     all seeds have a value. Many lines with few points each are rows.
     """
     import matplotlib
-    from matplotlib.figure import Figure
 
     pairs = [(curve.metric, curve.task) for curve in drawn]
     metrics, tasks = (list(dict.fromkeys(names)) for names in zip(*pairs, strict=True))
@@ -88,7 +88,7 @@ def plot(drawn: Sequence[Curve], x: str = "step") -> "Figure":
     entries = 1 if short else len(each[0]) if one_legend else down * max(map(len, each))
     with matplotlib.rc_context(STYLE):
         size = width * across, height * down + ENTRY * (entries + len(notes))
-        figure = Figure(figsize=size, layout="constrained")
+        figure = blank(*size)
         panels = list(figure.subplots(down, across, squeeze=False).flat)
         for axes, some, (metric, task) in zip(panels, each, wanted, strict=False):
             axes.set_title(words(task))

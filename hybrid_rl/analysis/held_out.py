@@ -21,7 +21,7 @@ from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import band, iqm
 from hybrid_rl.analysis.recorded import labels
 from hybrid_rl.analysis.results import find
-from hybrid_rl.analysis.style import words
+from hybrid_rl.analysis.style import blank, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.errors import UsageError
 from hybrid_rl.trained import Trained, load
@@ -135,13 +135,11 @@ def errors(run: Trained, obs: Array, action: Array, after: Array) -> np.ndarray:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """A panel for each kind of decisions, a point with its band for each run; grey: each seed."""
-    from matplotlib.figure import Figure
-
     runs = numbers["runs"]
     steps = [f"{int(one['step']):,}" for one in runs.values()]
     names = [run.removesuffix(step).rstrip(" ,:") for run, step in zip(runs, steps, strict=True)]
     entries = [f"{words(name)}, {step} decisions" for name, step in zip(names, steps, strict=True)]
-    figure = Figure(figsize=(8, 1.0 + rows.HEIGHT * len(runs)), layout="constrained")
+    figure = blank(8, 1.0 + rows.HEIGHT * len(runs))
     for axes, kind in zip(figure.subplots(1, 2, sharey=True), SETS, strict=True):
         for row, one in enumerate(runs.values()):
             each = one[kind]["each"]

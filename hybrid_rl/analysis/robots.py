@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from hybrid_rl.analysis.results import find
-from hybrid_rl.analysis.style import legend_below, line_styles, words
+from hybrid_rl.analysis.style import blank, legend_below, line_styles, words
 from hybrid_rl.data.row_log import row_type
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
@@ -80,10 +80,8 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """The picture."""
-    from matplotlib.figure import Figure
-
     robots = numbers["robots"]
-    picture = Figure(figsize=(4.4 * len(robots), 4.2), layout="constrained")
+    picture = blank(4.4 * len(robots), 4.2)
     for axes, (robot, rows) in zip(
         np.atleast_1d(picture.subplots(1, len(robots))), robots.items(), strict=True
     ):

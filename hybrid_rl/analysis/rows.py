@@ -14,10 +14,7 @@ NEVER = 1.1, 1.25, 1.4  # over the end of an axis: where it is grey, the dots th
 
 
 def points(
-    axes: Any,
-    spreads: Mapping[str, Any],
-    marks: Sequence[str] = (),
-    entries: Iterable[str] = (),
+    axes: Any, spreads: Mapping[str, Any], marks: Sequence[str] = (), entries: Iterable[str] = ()
 ) -> None:
     """Middle, low and high [K, 3] of each label above each other; the later a point, the fuller.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 COLOURS = (  # Okabe and Ito, wine of Tol: distinct for colour-blind readers, too
     "#0072B2",
@@ -92,6 +93,13 @@ STYLE: dict[Any, Any] = {
     "svg.hashsalt": "hybrid_rl",  # equal numbers give equal files
     "text.parse_math": False,  # names in run folders may hold a $
 }
+
+
+def blank(width: float, height: float) -> "Figure":
+    """A figure [in] without panels, in which panels and legends make room for each other."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
 
 
 def colours(labels: Iterable[str]) -> dict[str, str]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from hybrid_rl.analysis.style import BLUE, GREY, STYLE, VERMILION, legend_outside, plain_log
+from hybrid_rl.analysis.style import BLUE, GREY, STYLE, VERMILION, blank, legend_outside, plain_log
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import json_file
 
@@ -30,9 +30,7 @@ KINDS: dict[str, dict[str, Any]] = {  # state of a trial -> its points
 }
 
 
-def figure(
-    runs: Annotated[str, "folder of a tuned sweep"],
-) -> tuple["Figure", dict[str, Any]]:
+def figure(runs: Annotated[str, "folder of a tuned sweep"]) -> tuple["Figure", dict[str, Any]]:
     """The picture of the study in a folder, and its numbers."""
     file = Path(runs) / "trials.json"
     try:
@@ -58,13 +56,12 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 def draw(numbers: dict[str, Any]) -> "Figure":
     """The picture: the importances, then a panel for each key."""
     import matplotlib
-    from matplotlib.figure import Figure
 
     keys = numbers["keys"]
     across = min(ACROSS, len(keys) + 1)
     down = math.ceil((len(keys) + 1) / across)
     with matplotlib.rc_context(STYLE):
-        picture = Figure(figsize=(3.0 * across, 2.6 * down + 0.4), layout="constrained")
+        picture = blank(3.0 * across, 2.6 * down + 0.4)
         panels = picture.subplots(down, across, squeeze=False).flat
         _importances(next(panels), numbers["importances"])
         for key, kind in keys.items():

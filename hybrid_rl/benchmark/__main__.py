@@ -42,14 +42,8 @@ LEARNERS = ("plan", "act", "updates", "shares", "loop")
 OF = {"tasks": ("physics",), "worlds": ("physics",), "plans": ("plan",), "learners": LEARNERS}
 OF |= {"settings": ("shares", "loop")}
 PLANNED = (
-    "planner",
-    "objective",
-    "reward_model",
-    "model",
-    "policy",
-    "critic",
-    "model_learner",
-    "policy_learner",
+    *("planner", "objective", "reward_model", "model", "policy", "critic"),
+    *("model_learner", "policy_learner"),
 )
 LOOP = {"experiment": "", "physics": "native"}  # what is not given, of part loop
 SIZES = {  # of all parts, on a CPU and elsewhere

@@ -46,9 +46,7 @@ def bare_native(task: str, count: int, steps: int) -> Contestant:
     control = np.repeat(np.asarray(first.ctrl, float)[:, None], steps, 1)
     pool = rollout.Rollout(nthread=threads)
     return Contestant(
-        "bare mujoco.rollout",
-        lambda: pool.rollout(model, data, start, control),
-        count * steps,
+        "bare mujoco.rollout", lambda: pool.rollout(model, data, start, control), count * steps
     )
 
 

@@ -175,15 +175,8 @@ def compiling(settings: Settings, rounds: int) -> Iterator[Table]:
     yield {"part": "compile", "what": settings["algo"], "unit": "starts/s", "rows": rows}
 
 
-PARTS = {
-    "physics": physics,
-    "plan": plan,
-    "act": act,
-    "updates": updates,
-    "shares": shares,
-    "loop": loop,
-    "compile": compiling,
-}
+PARTS = {part.__name__: part for part in (physics, plan, act, updates, shares, loop)}
+PARTS["compile"] = compiling
 
 
 def _agent(settings: Settings, physics: str = "auto", size: str = "default") -> Agent:

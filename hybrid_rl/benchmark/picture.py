@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.analysis.style import GREY, STYLE, VERMILION
+from hybrid_rl.analysis.style import GREY, STYLE, VERMILION, blank
 from hybrid_rl.drafts import replacing
 
 Table = dict[str, Any]  # part, what, unit, rows of name and rate
@@ -31,7 +31,6 @@ def draw(tables: Sequence[Table], out: Path) -> list[Path]:
 def _picture(tables: Sequence[Table], out: Path) -> None:
     """A panel a table: bars from zero, each with its value."""
     from matplotlib import rc_context
-    from matplotlib.figure import Figure
 
     across = min(
         range(1, min(len(tables), MOST_ACROSS) + 1),
@@ -40,7 +39,7 @@ def _picture(tables: Sequence[Table], out: Path) -> None:
     heights = _heights(tables, across)
     with rc_context(STYLE):
         size = (WIDTH * across, sum(heights) + HEAD)
-        figure = Figure(figsize=size, layout="constrained")
+        figure = blank(*size)
         grid = figure.subplots(len(heights), across, squeeze=False, height_ratios=heights)
         for i, (axes, table) in enumerate(zip(grid.flat, tables, strict=False)):
             _bars(axes, table, room=heights[i // across])

@@ -16,12 +16,7 @@ Bound = tuple[float | None, ...] | float | None  # one for all entries, or each 
 
 @part
 class Limit:
-    """A quantity of `world` between `least` and `most`.
-
-    Raises:
-        ValueError: for an environment without quantities, or one that has no such quantity or
-            another number of entries; without a limit, or with limits that exclude everything.
-    """
+    """A quantity of `world` between `least` and `most`."""
 
     world: Measured
     quantity: str = "speed"
@@ -33,7 +28,6 @@ class Limit:
     chance: Inside | None = None  # a planner's largest probability of a violation; None: any
 
     def __post_init__(self) -> None:
-        """Check the quantity and the limits."""
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
         if self.quantity not in known:
             raise FieldError(self, "quantity", f"choose one of {', '.join(known)}")

@@ -44,11 +44,7 @@ class AdjointState(NamedTuple):
 
 @part
 class AdjointController:
-    """A gradient-based planner around a policy, or around zero.
-
-    Raises:
-        ValueError: without a gain and without a policy, whose variance is the gain.
-    """
+    """A gradient-based planner around a policy, or around zero."""
 
     model: Model
     objective: Objective
@@ -66,7 +62,6 @@ class AdjointController:
     regulator: StabilizingPolicy | None = None  # whose room bounds v; None: no bound
 
     def __post_init__(self) -> None:
-        """Check the gain."""
         if self.gain is None and self.policy is None:
             raise FieldError(self, "gain", "needs a policy, whose variance it takes")
 

@@ -9,11 +9,7 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class ConstantController:
-    """The same action at every decision.
-
-    Raises:
-        ValueError: for an action outside [-1, 1].
-    """
+    """The same action at every decision."""
 
     action: float = 0.0  # of every actuator
 

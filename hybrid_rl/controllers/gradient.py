@@ -37,6 +37,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import adjoint, agreement, sampling
+from hybrid_rl.core.batching import join, prepend
 from hybrid_rl.core.members import predict_members
 from hybrid_rl.fields import (
     Count,
@@ -80,11 +81,7 @@ class Scored(NamedTuple):
 
 @part
 class GradientController:
-    """A planner over K candidates and T decisions.
-
-    Raises:
-        ValueError: for the world itself as the model, which has no gradients.
-    """
+    """A planner over K candidates and T decisions."""
 
     model: Model
     objective: Objective
@@ -106,7 +103,6 @@ class GradientController:
     priced: bool = False  # whether the objective's reward, learned with it, has its price already
 
     def __post_init__(self) -> None:
-        """Check the model: through the world itself goes no gradient."""
         if hasattr(self.model, "start"):
             words = "has no gradients; choose model=exact, or one that learns, such as ensemble"
             raise FieldError(self, "model", words)
@@ -134,9 +130,9 @@ class GradientController:
         drawn = self._drawn(state, drawing)
         first = score(drawn)
         best = jax.lax.top_k(self._rank(first), min(self.refined, self.samples))[1]
-        starts = jax.tree.map(lambda a, b: jnp.concatenate([a[None], b[best]]), state.plan, drawn)
+        starts = prepend(state.plan, jax.tree.map(lambda leaf: leaf[best], drawn))
         refined = self._refined(params, value, x, starts)
-        each = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), refined, starts)
+        each = join(refined, starts)
         found = score(each)
         winner = jnp.argmax(self._rank(found))
         plan, chosen = jax.tree.map(lambda leaf: leaf[winner], (each, found))
@@ -153,10 +149,7 @@ class GradientController:
             **self._agreement(params, value, x, u),
         }
         after = GradientState(Candidate(plan.s, sampling.shift(plan.v)), u, memory)
-        paths = jax.tree.map(
-            lambda one, *leaves: jnp.concatenate([one[None], *leaves]),
-            *(chosen.path, found.path, first.path),
-        )
+        paths = prepend(chosen.path, join(found.path, first.path))
         return u, after, metrics, Considered(paths, jnp.int32(0))
 
     def greedy(self) -> "GradientController":
@@ -261,6 +254,5 @@ class GradientController:
         """Metrics of the action u [m] against the policy's."""
         if self.policy is None:
             return {}
-
         step = partial(self.model.step, params.model)
         return agreement.metrics(step, self.policy, params, value, x, u, self.horizon)

@@ -37,7 +37,6 @@ class GuardedController:
         if self.level is None:
             return u, state, metrics
         x = self.model.lift(params.model, obs)
-
         step = partial(self.model.step, params.model)
         out = lyapunov.exits_level_set(self.policy.lyapunov, step, x, u, self.level)
         u = jnp.where(out, jnp.clip(self.policy.mean(params.policy, x), -1, 1), u)

@@ -11,6 +11,7 @@ Source: the planner of TD-MPC2 (Hansen et al. 2024), which is MPPI (Williams et 
 elites of the cross-entropy method; there with a critic at the end of a short horizon.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
@@ -36,11 +37,7 @@ class RefitsState(NamedTuple):
 
 @part
 class RefitsController:
-    """A planner over K candidates, T decisions and several refits.
-
-    Raises:
-        ValueError: for more elites than candidates.
-    """
+    """A planner over K candidates, T decisions and several refits."""
 
     model: Model
     objective: Objective
@@ -111,7 +108,7 @@ class RefitsController:
             return jnp.zeros((0, *state.plan.shape))
         noise = jax.random.normal(key, (self._own, *state.plan.shape))
         return sampling.imagine(
-            lambda x, u: self.model.step(params.model, x, u),
+            partial(self.model.step, params.model),
             lambda carry, x, *a: proposal(params, carry, lifting.policy_input(x), *a),
             state.carries,
             x,

@@ -14,7 +14,7 @@ decision on; any other objective weighs all of them by J (Williams et al. 2017).
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, cast
 
 import jax
 import jax.numpy as jnp
@@ -39,11 +39,7 @@ class SamplingState(NamedTuple):
 
 @part
 class SamplingController:
-    """A planner over K candidates and T decisions.
-
-    Raises:
-        ValueError: for `log_density` of candidates without a density.
-    """
+    """A planner over K candidates and T decisions."""
 
     model: Model
     objective: Objective
@@ -157,13 +153,10 @@ class SamplingController:
 
     def _comparison(self, params: Params, x: Array, plan: Array, to_go: ToGo) -> dict[str, Array]:
         """The metrics of `_agreement`."""
-        step = partial(self.model.step, params.model)
-
-        def value(path: Path) -> Array:
-            return to_go(path)[0]
-
-        policy: Any = self.policy
-        return agreement.metrics(step, policy, params, value, x, plan[0], self.horizon)
+        step, policy = partial(self.model.step, params.model), cast(Policy, self.policy)
+        return agreement.metrics(
+            step, policy, params, lambda path: to_go(path)[0], x, plan[0], self.horizon
+        )
 
     def greedy(self) -> "SamplingController":
         """The controller that executes the weighted mean, or the best candidate."""

@@ -26,9 +26,6 @@ class StagesController:
 
     A stage of 0 decisions is skipped. A stage that is not acting keeps its state. Metrics that the
     acting stage lacks are NaN.
-
-    Raises:
-        ValueError: unless every stage but the last has a number of decisions.
     """
 
     stages: Mapping[str, Controller]  # in order
@@ -36,7 +33,6 @@ class StagesController:
     of_run: bool = False  # counts decisions of the run; without a run, the last stage acts
 
     def __post_init__(self) -> None:
-        """Check the number of stages."""
         if len(self.decisions) != (count := len(self.stages) - 1):
             words = f"needs a number for each stage but the last, here {count}"
             raise FieldError(self, "decisions", words)

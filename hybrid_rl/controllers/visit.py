@@ -51,7 +51,6 @@ class VisitController:
         near = jax.vmap(self.model.lift, (None, 0))(params.model, obs[None] + offsets)
         spread = jnp.linalg.norm(jax.vmap(self.model.std, (None, 0))(params.model, near), axis=-1)
         goal = near[jnp.argmax(spread)]
-
         step = partial(self.model.step, params.model)
         policy = self.policy.aim(params.policy, goal, goal, step)
         return self.controller.act(params._replace(policy=policy), state, obs, acting)

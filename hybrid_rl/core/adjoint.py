@@ -148,13 +148,7 @@ def insertion_ahead(
 
 
 def plan(
-    step: Step,
-    reward: Reward,
-    x: Array,
-    before: Array,
-    *,
-    iterations: int = 10,
-    gain: float = 0.2,
+    step: Step, reward: Reward, x: Array, before: Array, *, iterations: int = 10, gain: float = 0.2
 ) -> Array:
     """The plan [T, m] from x [n]: gradient ascent on the sum of rewards from `before` [T, m].
 

@@ -1,5 +1,7 @@
 """How far a plan follows the policy, and what the planner's first action gains by the model."""
 
+from functools import partial
+
 import jax.numpy as jnp
 from jax import Array
 
@@ -17,10 +19,7 @@ def metrics(
 
     value: J of a path. horizon: decisions over which the insertion of u is valued.
     """
-
-    def mean(x: Array) -> Array:
-        return policy.mean(params.policy, x)
-
+    mean = partial(policy.mean, params.policy)
     insertion = adjoint.insertion_ahead(step, mean, value, x, u, horizon)
     own, correction = jnp.linalg.norm(mean(x)), jnp.linalg.norm(u - mean(x))
     return {

@@ -21,6 +21,11 @@ def prepend(first: Any, rest: Any) -> Any:
     return jax.tree.map(lambda a, b: jnp.concatenate([a[None], b]), first, rest)
 
 
+def join(*trees: Any) -> Any:
+    """The members of all trees [n_i, ...] as one tree [sum n_i, ...]."""
+    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *trees)
+
+
 def batch_all(size: int, batched: Any, arguments: Any) -> Any:
     """The arguments of a `custom_vmap` rule, all with the leading axis: [size, ...].
 

@@ -138,5 +138,5 @@ def sample_fresh(step: Transitions, start: Array, m: int, steps: int, key: Array
         return (where(ended, start, new.next_obs), last_one), None
 
     shapes = jax.eval_shape(step, start, *(each[0] for each in along[:3]))
-    empty = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
-    return jax.lax.scan(forward, (start, empty), along, unroll=min(steps, 4))[0][1]
+    first = start, jax.tree.map(jnp.zeros_like, shapes)
+    return jax.lax.scan(forward, first, along, unroll=min(steps, 4))[0][1]

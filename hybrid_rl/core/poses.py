@@ -87,12 +87,7 @@ def log_leap(frame: Frame, theta: Array, contact: Array) -> Array:
 
 
 def move(
-    frame: Frame,
-    theta: Array,
-    contact: Array,
-    known: Array,
-    chances: tuple[float, ...],
-    key: Array,
+    frame: Frame, theta: Array, contact: Array, known: Array, chances: tuple[float, ...], key: Array
 ) -> tuple[Array, Array]:
     """A proposal theta' [3], and log q(theta) - log q(theta') [] of its densities.
 

@@ -74,11 +74,7 @@ def finite_horizon(A: Array, B: Array, Q: Array, R: Array, steps: int) -> Array:
             return P
         both = solve(eye + G @ H, jnp.concatenate([A, G], axis=1))
         forward, spread = jnp.split(both, 2, axis=1)
-        A, G, H = (
-            A @ forward,
-            _symmetric(G + A @ spread @ A.T),
-            _symmetric(H + A.T @ H @ forward),
-        )
+        A, G, H = A @ forward, _symmetric(G + A @ spread @ A.T), _symmetric(H + A.T @ H @ forward)
 
 
 def gain(A: Array, B: Array, P: Array, R: Array) -> Array:

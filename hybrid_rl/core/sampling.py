@@ -68,10 +68,7 @@ def imagine(
 
 
 def weights(
-    reward_to_go: Array,
-    temperature: float,
-    normalise: bool = False,
-    log_prob: Array | None = None,
+    reward_to_go: Array, temperature: float, normalise: bool = False, log_prob: Array | None = None
 ) -> Array:
     """Weights [K, T] that sum to one over K, from reward_to_go S [K, T].
 
@@ -96,7 +93,7 @@ def weights(
 
 
 def kept(w: Array, x: Array) -> Array:
-    """x, 0 where its weight is: a path without weight may be NaN. w and x broadcast."""
+    """x, or 0 where its weight is 0: a path without weight may be NaN. w and x broadcast."""
     return jnp.where(w > 0, x, 0.0)
 
 

@@ -18,7 +18,6 @@ from jax import Array
 
 from hybrid_rl.core import statistics
 from hybrid_rl.core.optimisers import adam_step
-from hybrid_rl.protocols import Critic, LearnedPolicy
 from hybrid_rl.types import Batch, Spec
 
 
@@ -51,13 +50,12 @@ def init(part: Any, key: Array, spec: Spec) -> SACState:
     )
 
 
-def observed(
-    state: Any, policy: LearnedPolicy, critic: Critic, x: Array, reward: Array, discount: float
-) -> Any:
-    """`state` with the running statistics of states x [B, n] and rewards [B]."""
+def observed(part: Any, state: Any, batch: Batch) -> Any:
+    """`state` with the running statistics of the states and rewards in `batch`."""
+    x, values = batch.obs, batch.reward / (1 - part.discount)
+    policy, critic = part.policy, part.critic
     return state.replace(
-        policy=policy.observe(state.policy, x),
-        critic=critic.observe(state.critic, x, reward / (1 - discount)),
+        policy=policy.observe(state.policy, x), critic=critic.observe(state.critic, x, values)
     )
 
 

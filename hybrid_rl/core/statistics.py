@@ -67,8 +67,7 @@ def soft_target_update(old: Any, new: Any, tau: float) -> Any:
     """
 
     def one(new: Any, old: Any) -> Any:
-        running = isinstance(new, Running)
-        return new if running else optax.incremental_update(new, old, tau)
+        return new if isinstance(new, Running) else optax.incremental_update(new, old, tau)
 
     return jax.tree.map(one, new, old, is_leaf=lambda node: isinstance(node, Running))
 

@@ -32,10 +32,7 @@ PARTS = ("policy", "model", "reward_model", "critic")  # whose parameters a poli
 WRITE = "`python -m hybrid_rl.demonstrate run=DIR policy=FILE` writes one"
 WORDS = ("task", ABOUT)  # arrays that hold text
 SMALL, RATIO = 2**26, 100  # [bytes] of all arrays that any file may hold; bytes of one on the disk
-HEADERS = {
-    (1, 0): np.lib.format.read_array_header_1_0,
-    (2, 0): np.lib.format.read_array_header_2_0,
-}
+HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 
 
 def write(file: Path | str, task: str, spec: Spec, arrays: Mapping[str, np.ndarray]) -> None:

@@ -27,17 +27,12 @@ class Memory:
 
 @part
 class Replay:
-    """A memory of `capacity` decisions, over all environments of one learner.
-
-    Raises:
-        ValueError: for a capacity that is too small for the demonstrations.
-    """
+    """A memory of `capacity` decisions, over all environments of one learner."""
 
     capacity: Count = 1_000_000
     demonstrations: Demonstrations | None = None  # the initial contents
 
     def __post_init__(self) -> None:
-        """Check the demonstrations."""
         if self.capacity < self.num_demonstrated(1):
             words = f"the demonstrations alone have {self.num_demonstrated(1)} decisions"
             raise FieldError(self, "capacity", words)

@@ -17,11 +17,7 @@ from hybrid_rl.types import Spec
 
 @part
 class Monomials:
-    """Coordinates of the observation, a constant, and products of the coordinates.
-
-    Raises:
-        ValueError: for indices out of range, or lists of the wrong length.
-    """
+    """Coordinates of the observation, a constant, and products of the coordinates."""
 
     coordinates: tuple[int, ...] | None = None  # of the observation; None: all
     scale: tuple[float, ...] = (1.0,)  # one for all coordinates, or one each
@@ -30,7 +26,6 @@ class Monomials:
     terms: tuple[tuple[int, ...], ...] = ()  # indices into the coordinates; repeated for powers
 
     def __post_init__(self) -> None:
-        """Check the lists."""
         if not all(len(term) >= 1 and min(term) >= 0 for term in self.terms):
             raise ValueError("features.terms: each must be a list of indices, 0 or more")
         if self.coordinates is not None:

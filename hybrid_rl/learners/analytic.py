@@ -8,6 +8,7 @@ appendix C trains its backflip expert by a policy gradient and gives the rate of
 our choice.
 """
 
+from functools import partial
 from typing import Any, ClassVar
 
 import jax
@@ -84,12 +85,7 @@ class AnalyticGradient:
         m = self.world.spec.act
         x, memory = self.model.lift(params.model, obs), self.objective.init(self.world.spec)
         value, _ = self.objective.prepare(params, memory, x, jnp.zeros(m), key)
-
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(params.model, x, u)
-
-        def mean(x: Array) -> Array:
-            return self.policy.mean(params.policy, x)
-
+        step = partial(self.model.step, params.model)
+        mean = partial(self.policy.mean, params.policy)
         path = adjoint.roll(step, mean, x, jnp.zeros((self.horizon, m)))
         return value(path) / self.horizon

@@ -42,9 +42,6 @@ class BehaviourCloning:
     """Gradient steps on the log-likelihood of demonstrated actions.
 
     Without `demonstrations` it only holds the parameters of a trained policy.
-
-    Raises:
-        ValueError: for a policy whose saturation is above the edge.
     """
 
     policy: LearnedPolicy
@@ -63,7 +60,6 @@ class BehaviourCloning:
     during_random: ClassVar[bool] = False  # starts after the random decisions
 
     def __post_init__(self) -> None:
-        """Check the saturation."""
         check_saturation(self, "cloning_learner")
 
     def init(self, key: Array, spec: Spec) -> CloningState:

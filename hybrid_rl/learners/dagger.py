@@ -53,9 +53,6 @@ class DAgger:
     """Queries to a teacher, and gradient steps on its answers.
 
     Query i begins at row `first` + i `length` of the labels.
-
-    Raises:
-        ValueError: without a teacher, or for fields that contradict each other.
     """
 
     policy: LearnedPolicy
@@ -83,7 +80,6 @@ class DAgger:
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check what depends on two fields."""
         teaching.require(self.teacher)
         check_saturation(self, "dagger_learner")
         if self.candidates > 1 and self.spread == 0:
@@ -131,7 +127,7 @@ class DAgger:
         if evidence is None:
             return None
         shapes = jax.eval_shape(evidence, Params(policy=policy), jnp.zeros(spec.obs))
-        return jax.tree.map(lambda each: jnp.zeros(each.shape, each.dtype), shapes)
+        return jax.tree.map(jnp.zeros_like, shapes)
 
     def params(self, state: DAggerState) -> dict[str, Any]:
         """The policy, and what targets consult about the labels."""

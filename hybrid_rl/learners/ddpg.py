@@ -77,9 +77,7 @@ class DDPG:
     ) -> tuple[DDPGState, dict[str, Array]]:
         """One step of critic, policy and targets."""
         factor = decay.of_rates(self.schedule, params.decisions)
-        state = steps.observed(
-            state, self.policy, self.critic, batch.obs, batch.reward, self.discount
-        )
+        state = steps.observed(self, state, batch)
         after = self.critic.value(
             state.target_critic,
             batch.next_obs,

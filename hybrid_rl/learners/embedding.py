@@ -51,9 +51,6 @@ class EmbeddingLearner:
     """Features and K of a linear model and, with a regulator, its policy.
 
     Features without weights stay as they are, as do all with steps = 0.
-
-    Raises:
-        ValueError: for an interval below the window, or a capacity below the interval.
     """
 
     model: LinearModel
@@ -71,7 +68,6 @@ class EmbeddingLearner:
     every: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check what depends on two fields."""
         steps = ("steps", int(self.fit == "adam"))
         for name, low in (steps, ("interval", self.window), ("capacity", self.interval)):
             if getattr(self, name) < low:
@@ -95,7 +91,7 @@ class EmbeddingLearner:
         batch = Batch(none.obs, none.action, flag, flag, flag, none.next_obs)
         params = Params(model=model, decisions=jnp.zeros((), jnp.int32))
         shapes = jax.eval_shape(self.regulator.update, regulator, params, batch, unused)[1]
-        metrics = {name: jnp.zeros(m.shape, m.dtype) for name, m in shapes.items()}
+        metrics = jax.tree.map(jnp.zeros_like, shapes)
         return EmbeddingState(model, optimiser, memory, regulator, metrics)
 
     def params(self, state: EmbeddingState) -> dict[str, Any]:

@@ -38,12 +38,7 @@ class ModelBasedState:
 
 @part
 class ModelBased:
-    """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model.
-
-    Raises:
-        ValueError: for more value steps than steps, a memory that batches do not fill, or a margin
-            without kept branches.
-    """
+    """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model."""
 
     policy: LearnedPolicy
     critic: Critic
@@ -72,7 +67,6 @@ class ModelBased:
     batches: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        """Check what depends on two fields."""
         if self.value_steps is not None and not 0 <= self.value_steps <= self.steps:
             words = f"must be a whole number from 0 to steps={self.steps}, or null for all"
             raise FieldError(self, "value_steps", words)
@@ -111,9 +105,7 @@ class ModelBased:
         kept, batch, key = self._started(state.branches, params, batch, key)
         learner, alpha = state.learner, jnp.exp(state.learner.log_alpha)
         factor = decay.of_rates(self.schedule, params.decisions)
-        learner = steps.observed(
-            learner, self.policy, self.critic, batch.obs, batch.reward, self.discount
-        )
+        learner = steps.observed(self, learner, batch)
         acting, ahead = jax.random.split(key)
         noise = jax.random.normal(acting, (2, *batch.action.shape))
         of_critic = None
@@ -161,9 +153,10 @@ class ModelBased:
         m = batch.action.shape[-1]
         if kept is None:
             return None, branches.sample_fresh(step, batch.obs, m, self.branch_steps, drawing), key
-        going_on, recalling = jax.random.split(drawing)
-        going = kept, step, batch.obs, m, self.branch_steps, going_on
-        kept = branches.extended(*going, self.branch_margin)
+        extending, recalling = jax.random.split(drawing)
+        kept = branches.extended(
+            kept, step, batch.obs, m, self.branch_steps, extending, self.branch_margin
+        )
         return kept, branches.sample_kept(kept, m, recalling), key
 
     def imagine(self, params: Params, batch: Batch, key: Array) -> Imagined:

@@ -10,6 +10,7 @@ and the last one kept. Source: thesis section 7.1.1, Algorithm 7, line 3; `thomp
 draws of the model (Thompson sampling; Abeille and Lazaric 2017).
 """
 
+from functools import partial
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -35,11 +36,7 @@ class SolutionState:
 
 @part
 class RegulatorLearner:
-    """A linear policy that regulates a model to the equilibrium of `world`.
-
-    Raises:
-        ValueError: for draws of a model that is not linear.
-    """
+    """A linear policy that regulates a model to the equilibrium of `world`."""
 
     model: Model
     policy: GoalPolicy
@@ -55,7 +52,6 @@ class RegulatorLearner:
     owns: ClassVar[tuple[str, ...]] = ("policy",)
 
     def __post_init__(self) -> None:
-        """Check the environment and the model."""
         if self.thompson < 0 or (self.thompson and not hasattr(self.model, "draw_model")):
             words = "must be 0 or more; above 0 only with a linear model"
             raise FieldError(self, "thompson", words)
@@ -105,10 +101,7 @@ class RegulatorLearner:
 
     def solve(self, model: Any, policy: dict[str, Array]) -> dict[str, Array]:
         """The policy's parameters for the model's; those before are where u is linearised."""
-
-        def step(x: Array, u: Array) -> Array:
-            return self.model.step(model, x, u)
-
+        step = partial(self.model.step, model)
         obs, _ = self.world.equilibrium()
         goal = self.model.lift(model, obs.astype(policy["goal"].dtype))
         A, B = linearise(step, goal, policy["hold"])

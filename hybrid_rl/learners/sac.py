@@ -58,9 +58,7 @@ class SAC:
     ) -> tuple[SACState, dict[str, Array]]:
         """One step of critic, policy, temperature and target. The key is consumed."""
         alpha, factor = jnp.exp(state.log_alpha), decay.of_rates(self.schedule, params.decisions)
-        state = steps.observed(
-            state, self.policy, self.critic, batch.obs, batch.reward, self.discount
-        )
+        state = steps.observed(self, state, batch)
         noise = jax.random.normal(jax.random.split(key)[0], (2, *batch.action.shape))
         y = steps.target(self, state, alpha, batch, noise[0])
         state, (critic_loss, q) = steps.critic_step(

@@ -21,11 +21,7 @@ from hybrid_rl.types import Spec
 
 @part
 class Ensemble:
-    """`members` copies of `model`, each with its own "weights", with shared statistics.
-
-    Raises:
-        ValueError: for a number of elites that is not between 1 and that of the members.
-    """
+    """`members` copies of `model`, each with its own "weights", with shared statistics."""
 
     model: Trainable
     members: Count = 5

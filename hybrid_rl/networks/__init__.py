@@ -19,13 +19,7 @@ from hybrid_rl.core import statistics
 from hybrid_rl.fields import Count, Must
 from hybrid_rl.networks import precision
 
-ACTIVATIONS = {
-    "relu": nn.relu,
-    "sin": jnp.sin,
-    "silu": nn.silu,
-    "tanh": jnp.tanh,
-    "elu": nn.elu,
-}
+ACTIVATIONS = {"relu": nn.relu, "sin": jnp.sin, "silu": nn.silu, "tanh": jnp.tanh, "elu": nn.elu}
 LAYER_NORMS = (False, True, "shift")  # shift: without a learned scale
 Widths = tuple[Count, ...]  # types of a part's fields
 Activation = Annotated[str, Must(lambda a: a in ACTIVATIONS, f"be one of {', '.join(ACTIVATIONS)}")]

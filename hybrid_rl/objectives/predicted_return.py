@@ -21,11 +21,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @part
 class PredictedReturn:
-    """The discounted sum of `reward` along a path, plus the critic's value of the last state.
-
-    Raises:
-        ValueError: for a critic without a policy or the reverse.
-    """
+    """The discounted sum of `reward` along a path, plus the critic's value of the last state."""
 
     reward: Reward
     discount: Share = 1.0  # per decision
@@ -33,7 +29,6 @@ class PredictedReturn:
     policy: Policy | None = None
 
     def __post_init__(self) -> None:
-        """Check the critic and the policy."""
         if (self.critic is None) != (self.policy is None):
             raise ValueError("objective.critic and objective.policy: give both or neither")
 

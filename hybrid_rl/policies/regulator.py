@@ -24,11 +24,7 @@ from hybrid_rl.types import Room, Spec
 
 @part
 class Regulator:
-    """The regulator of `world` around its equilibrium, by the discrete Riccati equation.
-
-    Raises:
-        ValueError: for weights that are neither one nor one for each coordinate or action.
-    """
+    """The regulator of `world` around its equilibrium, by the discrete Riccati equation."""
 
     world: Analytic
     state_weights: tuple[Positive, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
@@ -37,7 +33,6 @@ class Regulator:
     clip: bool = True  # actions to [-1, 1]; false where noise is added to them
 
     def __post_init__(self) -> None:
-        """Check the numbers of weights."""
         self._weights()
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:

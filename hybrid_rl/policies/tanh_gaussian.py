@@ -18,7 +18,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.core.squashing import log_density
+from hybrid_rl.core.squashing import Squashed
 from hybrid_rl.data import archive
 from hybrid_rl.fields import FieldError, part
 from hybrid_rl.networks import MLP, Activation, Perceptron, Widths, outputs, perceptron
@@ -27,12 +27,8 @@ from hybrid_rl.types import Spec
 
 
 @part
-class TanhGaussian:
-    """A stochastic policy on [-1, 1]^m.
-
-    Raises:
-        ValueError: for bounds out of order.
-    """
+class TanhGaussian(Squashed):
+    """A stochastic policy on [-1, 1]^m."""
 
     hidden: Widths = (256, 256)
     activation: Activation = "relu"
@@ -79,37 +75,6 @@ class TanhGaussian:
             mu = self._net(m).apply(params["mean"], x)
             log_std: Any = self._net(m, self.log_std_activation).apply(params["log_std"], x)
         return mu, jnp.exp(jnp.clip(log_std, self.log_std_min, self.log_std_max))
-
-    def mean(self, params: dict[str, Any], x: Array) -> Array:
-        """tanh(mu(x)) [..., m]."""
-        return jnp.tanh(self.gaussian(params, x)[0])
-
-    def variance(self, params: dict[str, Any], x: Array) -> Array:
-        """Variance of the action [..., m], to first order around the mean: (1 - mean^2)^2 sigma^2.
-
-        The delta method, accurate for a narrow policy; for a wide one it is too large in the middle
-        of the range and too small near the bounds. Its ratio to the true variance, by quadrature:
-
-            sigma     0.1   0.3   0.55  1     2
-            mu = 0    1.02  1.17  1.52  2.54  6.30
-            mu = 0.5  1.00  1.04  1.20  1.76  4.04
-            mu = 1    0.97  0.83  0.69  0.71  1.29
-            mu = 2    0.95  0.62  0.25  0.08  0.06
-        """
-        mu, sigma = self.gaussian(params, x)
-        return ((1 - jnp.tanh(mu) ** 2) * sigma) ** 2
-
-    def sample(self, params: dict[str, Any], x: Array, noise: Array) -> tuple[Array, Array]:
-        """The action u [..., m] for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
-        mu, sigma = self.gaussian(params, x)
-        z = mu + sigma * noise
-        return jnp.tanh(z), log_density(z, noise, sigma)
-
-    def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """The log-density log pi(u|x) [...] of u [..., m] inside (-1, 1), at x [..., n]."""
-        mu, sigma = self.gaussian(params, x)
-        z = jnp.arctanh(u)
-        return log_density(z, (z - mu) / sigma, sigma)
 
     def perceptron(self, params: dict[str, Any], spec: Spec) -> Perceptron:
         """The mean as plain arrays."""

@@ -12,7 +12,7 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.squashing import log_density
+from hybrid_rl.core.squashing import Squashed, sampled
 from hybrid_rl.fields import FieldError, part
 from hybrid_rl.networks import Widths, normalised
 from hybrid_rl.networks.normalised import NormalisedNet
@@ -20,12 +20,8 @@ from hybrid_rl.types import Spec
 
 
 @part
-class UnitGaussian:
-    """A stochastic policy on [-1, 1]^m.
-
-    Raises:
-        ValueError: for several widths, or bounds out of order.
-    """
+class UnitGaussian(Squashed):
+    """A stochastic policy on [-1, 1]^m."""
 
     hidden: Widths = (128, 128)  # the width, once for each residual block
     log_std_min: float = -10.0
@@ -60,37 +56,10 @@ class UnitGaussian:
         low, high = self.log_std_min, self.log_std_max
         return mu, jnp.exp(low + (high - low) * (1 + jnp.tanh(s)) / 2)
 
-    def mean(self, params: dict[str, Any], x: Array) -> Array:
-        """tanh(mu(x)) [..., m]."""
-        return jnp.tanh(self.gaussian(params, x)[0])
-
-    def variance(self, params: dict[str, Any], x: Array) -> Array:
-        """Variance of the action [..., m], to first order around the mean: (1 - mean^2)^2 sigma^2.
-
-        The table in hybrid_rl.policies.tanh_gaussian has its accuracy.
-        """
-        mu, sigma = self.gaussian(params, x)
-        return ((1 - jnp.tanh(mu) ** 2) * sigma) ** 2
-
-    def sample(self, params: dict[str, Any], x: Array, noise: Array) -> tuple[Array, Array]:
-        """The action u [..., m] for noise [..., m] ~ N(0, I), and log pi(u|x) [...]."""
-        return _sampled(*self.gaussian(params, x), noise)
-
     def in_batch(
         self, params: dict[str, Any], x: Array, noise: Array
     ) -> tuple[Array, Array, dict[str, Any]]:
         """`sample` at x [B, n], normalised by that batch; parameters with its statistics."""
         net = self._net(normalised.outputs(params))
         both, params = normalised.apply_in_batch(net, params, x)
-        return *_sampled(*self._split(both), noise), params
-
-    def log_prob(self, params: dict[str, Any], x: Array, u: Array) -> Array:
-        """The log-density log pi(u|x) [...] of u [..., m] inside (-1, 1), at x [..., n]."""
-        mu, sigma = self.gaussian(params, x)
-        z = jnp.arctanh(u)
-        return log_density(z, (z - mu) / sigma, sigma)
-
-
-def _sampled(mu: Array, sigma: Array, noise: Array) -> tuple[Array, Array]:
-    z = mu + sigma * noise
-    return jnp.tanh(z), log_density(z, noise, sigma)
+        return *sampled(*self._split(both), noise), params

@@ -3,12 +3,7 @@
 Parts do not inherit from them: a class that has these methods and fields is a part.
 """
 
-from hybrid_rl.protocols.control import (
-    Controller,
-    Objective,
-    Proposal,
-    Target,
-)
+from hybrid_rl.protocols.control import Controller, Objective, Proposal, Target
 from hybrid_rl.protocols.environments import (
     Analytic,
     AnalyticEnv,

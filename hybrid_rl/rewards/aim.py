@@ -14,11 +14,7 @@ from hybrid_rl.protocols import Measured
 
 @part
 class Aim:
-    """A quantity of `world` at its target.
-
-    Raises:
-        ValueError: for an environment without the quantity, or a target of another size.
-    """
+    """A quantity of `world` at its target."""
 
     world: Measured
     quantity: str = "speed"
@@ -27,7 +23,6 @@ class Aim:
     alive: NotNegative | None = None  # b; None: 3 where a fall ends the episode, else 0
 
     def __post_init__(self) -> None:
-        """Check the quantity and its size."""
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
         if self.quantity not in known:
             raise FieldError(self, "quantity", f"choose one of {', '.join(known)}")

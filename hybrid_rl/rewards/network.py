@@ -100,13 +100,7 @@ class RewardNetwork:
         return r, out[:, 1:].sum(1)
 
     def loss(
-        self,
-        params: dict[str, Any],
-        x: Array,
-        u: Array,
-        after: Array,
-        target: Array,
-        ended: Array,
+        self, params: dict[str, Any], x: Array, u: Array, after: Array, target: Array, ended: Array
     ) -> Array:
         """Half the squared error [] against target [], and the cross entropy of `ended` [].
 

@@ -16,11 +16,7 @@ QUANTITIES = ("block", "reach")
 
 @part
 class Push:
-    """The quantities `block` and `reach` of `world`.
-
-    Raises:
-        ValueError: for an environment that lacks one of them.
-    """
+    """The quantities `block` and `reach` of `world`."""
 
     world: Measured
     target: tuple[float, ...] = (0.1, 0.0)  # q* [m]
@@ -29,7 +25,6 @@ class Push:
     alive: NotNegative | None = 0.0  # b
 
     def __post_init__(self) -> None:
-        """Check that the environment has what the reward measures."""
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
         if missing := [name for name in QUANTITIES if name not in known]:
             raise FieldError(self, "world", f"has no {missing[0]}, only {', '.join(known)}")

@@ -19,12 +19,7 @@ WIDTH = 0.04  # [rad] of the sigmoid
 
 @part
 class Run:
-    """The speed of `world`.
-
-    Raises:
-        ValueError: for an environment without the quantity `speed`, or without `pitch` where a
-            level is asked for.
-    """
+    """The speed of `world`."""
 
     world: Measured
     direction: float = 1.0  # d; -1: backwards
@@ -34,7 +29,6 @@ class Run:
     alive: NotNegative | None = None  # b; None: 3 where a fall ends the episode, else 0
 
     def __post_init__(self) -> None:
-        """Check that the environment has what the reward measures."""
         known = self.world.quantities(jnp.zeros(self.world.spec.obs))
         for name in ("speed",) if self.level is None else ("speed", "pitch"):
             if name not in known:

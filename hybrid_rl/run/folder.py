@@ -143,6 +143,14 @@ def read(folder: Path, key: str) -> DictConfig:
     return config
 
 
+def read_trained(folder: Path, key: str) -> DictConfig:
+    """As `read`; UsageError also of a run without a checkpoint."""
+    config = read(folder, key)
+    if not checkpoint.steps(folder / "checkpoints"):
+        raise UsageError(f"{key}={folder}: holds no checkpoint yet; train it further first")
+    return config
+
+
 def _check_version(folder: Path, key: str, config: DictConfig) -> None:
     """Raise UsageError if another minor version made the run."""
     version = config.get("version")

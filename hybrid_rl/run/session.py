@@ -30,7 +30,6 @@ from hybrid_rl.run.schedule import Pace, Schedule, Speed
 from hybrid_rl.run.shelf import Shelf
 from hybrid_rl.run.start import Start
 from hybrid_rl.training.loop import Loop
-from hybrid_rl.types import Params
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
 LONG, SURE = 1800.0, 100  # [s] of a run; decisions after which its speed is known
@@ -122,7 +121,8 @@ class Session:
             self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
             began = perf_counter()
-            modes, params = {m: self.controllers[m] for m in plan.eval_modes}, self._params()
+            modes = {mode: self.controllers[mode] for mode in plan.eval_modes}
+            params = self.loop.params(self.state)
             self.evaluations = Evaluations(self.loop, modes, plan.eval_episodes, params)
             self.loop.compile_s += perf_counter() - began
         self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
@@ -216,15 +216,12 @@ class Session:
         speed = self.recent.rate
         return {} if speed is None else {"perf/env_steps_per_s": speed / folders}
 
-    def _params(self) -> Params:
-        """The parameters of all learners [S, ...]."""
-        return self.loop.params(self.state)
-
     def _evaluate(self) -> None:
         """The outcomes of every evaluated mode, unless a signal comes."""
         assert self.evaluations is not None
         with self.progress.doing("evaluating"):
-            outcomes = self.evaluations(self._params(), lambda: self.stop is not None)
+            params = self.loop.params(self.state)
+            outcomes = self.evaluations(params, lambda: self.stop is not None)
         if outcomes is None:
             return
         self.record.unevaluated = False

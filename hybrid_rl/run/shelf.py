@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 
 from hybrid_rl.run.checkpoints.store import End, Record, Store
 from hybrid_rl.run.logs.log import RunLog
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.logs.rows import Gathered
+from hybrid_rl.run.start import concatenated
 from hybrid_rl.training.loop import Loop
 
 
@@ -108,5 +108,4 @@ class Shelf:
         """The state [S, ...] of those of all folders."""
         if len(states) == 1:
             return states[0]
-        whole = jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *states)
-        return self.loop.on_devices(whole.replace(numbers=self.loop.numbers))
+        return self.loop.on_devices(concatenated(states).replace(numbers=self.loop.numbers))

@@ -51,12 +51,13 @@ def joined(starts: Sequence[Start | None]) -> Start | None:
         return None
     have = [start.memory for start in known]
     each = [start.learners for start in known]
-    memory = None if have[0] is None else _concatenated(have)
-    return Start(_concatenated(each), memory, known[0].line)
+    memory = None if have[0] is None else concatenated(have)
+    return Start(concatenated(each), memory, known[0].line)
 
 
-def _concatenated(each: Sequence[Any]) -> Any:
-    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *each)
+def concatenated(states: Sequence[Any]) -> Any:
+    """The trees [S, ...] of the learners of several runs as one."""
+    return jax.tree.map(lambda *leaves: jnp.concatenate(leaves), *states)
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
@@ -77,9 +78,7 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
         CheckpointError: if none of its checkpoints is sound.
     """
     source = Path(str(config.run))
-    then = folder.read(source, "run")
-    if not checkpoint.steps(source / "checkpoints"):
-        raise UsageError(f"run={source}: holds no checkpoint yet; train it further first")
+    then = folder.read_trained(source, "run")
     if config.get("distributed"):
         raise UsageError("distributed=true: a run that begins with run=DIR has one process")
     if config.pretrain:

@@ -24,7 +24,6 @@ class Mixture:
     weights: tuple[Positive, ...] = (0.5, 0.5)  # [J], up to a factor
 
     def __post_init__(self) -> None:
-        """Check the numbers."""
         if not self.means or not all(self.means):
             raise FieldError(self, "means", "must be lists of 1 number or more")
         for name in ("stds", "weights"):

@@ -129,7 +129,7 @@ class Actor:
             if obs is None:
                 if time.monotonic() - heard > self.env.silence_s:
                     return self._silent(f"no observation for {self.env.silence_s:g} s")
-                past, pending = [self._safe(), *past[:-1]], self._broken(pending)
+                past, pending = [self._safe(), *past[:-1]], self._left_out(pending)
                 k += 1
                 continue
             heard = time.monotonic()
@@ -139,7 +139,7 @@ class Actor:
                     return None
             action = self._limited(self._decide(self.params, obs, self._number), past[0])
             if not np.isfinite(action).all():
-                past, pending = [self._safe(), *past[:-1]], self._broken(pending)
+                past, pending = [self._safe(), *past[:-1]], self._left_out(pending)
                 k += 1
                 continue
             self._apply(action)
@@ -148,7 +148,7 @@ class Actor:
             k += 1
             if now - begin > self.spec.dt:
                 self.counts.missed += 1
-                pending, k = self._broken(pending), math.ceil((now - began) / self.spec.dt)
+                pending, k = self._left_out(pending), math.ceil((now - began) / self.spec.dt)
         return None
 
     def _record(self, pending: tuple, obs: np.ndarray, taken: int) -> bool:
@@ -228,8 +228,8 @@ class Actor:
             time.sleep(RETRY_S)
         (self.folder / "error").unlink(missing_ok=True)
 
-    def _broken(self, pending: tuple | None) -> None:
-        """The decision without an outcome is left out, and another stretch begins."""
+    def _left_out(self, pending: tuple | None) -> None:
+        """None; if a decision has no outcome, another stretch begins behind it."""
         self._stretch += pending is not None
 
     def _limited(self, u: np.ndarray, previous: np.ndarray) -> np.ndarray:

@@ -71,9 +71,9 @@ class Agent:
                 f"pretrain={self.pretrain}: the memory has no demonstrations to learn from; "
                 "give replay.demonstrations, or 0"
             )
-        if strange := [name for name in self.frozen if name not in self.learners]:
+        if unknown := [name for name in self.frozen if name not in self.learners]:
             known = ", ".join(self.learners) or "none"
-            raise ValueError(f"freeze={strange}: the method's learners are {known}")
+            raise ValueError(f"freeze={unknown}: the method's learners are {known}")
         contract.check_members(self)
         for name, learner in self.learners.items():
             update_schedule(name, learner, self.num_envs)
@@ -199,7 +199,7 @@ class Agent:
             plan = trace_once(plan)
             shapes = jax.eval_shape(plan)
             draw = jax.random.uniform(keys.at_random, shapes[0].shape, minval=-1, maxval=1)
-            first = draw, state.control, _zeros(shapes[2])
+            first = draw, state.control, jax.tree.map(jnp.zeros_like, shapes[2])
             u, control, metrics = jax.lax.cond(step < self.random_steps, lambda: first, plan)
         else:
             u, control, metrics = plan()
@@ -246,21 +246,21 @@ class Agent:
                 continue
             count, every = update_schedule(name, learner, self.num_envs)
 
-            def one(of: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
+            def one(own: Any, keys: Array, learner: Learner = learner) -> tuple[Any, Any]:
                 drawing, updating = keys
                 batch = self._batch(state.memory, learner, params, drawing)
-                return learner.update(of, params, batch, updating)
+                return learner.update(own, params, batch, updating)
 
             @trace_once
-            def update(of: Any, k: Array, count: int = count, one: Any = one) -> Any:
-                of, rows = jax.lax.scan(one, of, jax.random.split(k, (count, 2)))
-                return of, jax.tree.map(lambda m: m[-1], rows)
+            def update(own: Any, k: Array, count: int = count, one: Any = one) -> Any:
+                own, rows = jax.lax.scan(one, own, jax.random.split(k, (count, 2)))
+                return own, jax.tree.map(lambda m: m[-1], rows)
 
             before = state.learners[name]
-            nothing = _zeros(jax.eval_shape(update, before, k)[1])
+            nothing = jax.tree.map(jnp.zeros_like, jax.eval_shape(update, before, k)[1])
             due = (step >= starts[name]) & ((step // self.num_envs) % every == 0)
             learned[name], latest = jax.lax.cond(
-                due, update, lambda of, k, nothing=nothing: (of, nothing), before, k
+                due, update, lambda own, k, nothing=nothing: (own, nothing), before, k
             )
             metrics |= masked_mean(latest, due)
         return state.replace(learners=learned, key=keys.next), metrics
@@ -292,8 +292,3 @@ def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, in
 def trace_once(f: Any) -> Any:
     """`f`, jitted inline, so that repeated calls and `eval_shape` share one trace."""
     return jax.jit(f, inline=True)
-
-
-def _zeros(shapes: Any) -> Any:
-    """Zeros with the shapes that `jax.eval_shape` returned."""
-    return jax.tree.map(lambda m: jnp.zeros(m.shape, m.dtype), shapes)

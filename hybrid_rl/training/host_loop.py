@@ -99,7 +99,7 @@ class HostLoop(Loop):
 
         u [S, E, m], got [S, E, ...]: of the decision before, if it is still to be observed. at:
         the row, the decision of the run, whether there is one before, and the ticket. If there is
-        none, the last row of the call is written, as it will be again.
+        none, the last row of the call is written; its own decision replaces it later.
         """
         row, step, made, ticket = at
         if self.early:
@@ -137,7 +137,7 @@ class HostLoop(Loop):
     ) -> tuple[AgentState, dict[str, Array]]:
         """One learner after the newest actions u [E, m] had the outcome `got` [E, ...].
 
-        made: 0 if there are none; then the next row of the memory is written, as it will be again.
+        made: 0 if there are none; then the next row of the memory is written, and replaced later.
         """
         (now, after), count = states(state.env, got), state.memory.count
         before = state.replace(memory=state.memory.replace(count=count - made))
@@ -184,7 +184,7 @@ class HostProgram:
 
 
 def outcome_like(env: EnvState) -> Outcome:
-    """An outcome of the shapes of one at `env`, in place of one that is not there."""
+    """An outcome with the shapes of those at `env`, where there is none yet."""
     return Outcome(env.obs, env.reward, env.terminated, env.truncated, env.obs)
 
 
@@ -192,7 +192,7 @@ class HostEvaluator:
     """Episodes of every learner under `controller`, on environments that are not those of training.
 
     It compiles when it is made. params: [S, ...]; keys: [S, N], one per episode, which seed them;
-    numbers: those of a loop's axis by path [S]; of: them, one learner's -> its `controller`.
+    numbers: of a loop's axis by path [S]; of: maps one learner's numbers to its controller.
     """
 
     def __init__(

@@ -168,7 +168,7 @@ class Loop:
         """The state after `rounds` rounds, and their metrics [:rounds] of [stride, S, ...]."""
         step = trace_once(jax.vmap(self.step, in_axes=(0, None)))
         shapes = self.rows_of(jax.eval_shape(step, state, start)[1])
-        rows = {name: jnp.zeros(row.shape, row.dtype) for name, row in shapes.items()}
+        rows = jax.tree.map(jnp.zeros_like, shapes)
 
         def body(i: Array, carry: tuple[AgentState, Any]) -> tuple[AgentState, Any]:
             state, rows = carry

@@ -59,7 +59,7 @@ class RobotLoop(Loop):
         parts = (SEEDS, METRICS, SEEDS, SEEDS, *[REPLICATED] * 3), (SEEDS, METRICS)
         observe = self.shard(self._observe, *parts, donate_argnums=(0, 1))
         parts = (SEEDS, METRICS, REPLICATED, REPLICATED), (SEEDS, METRICS)
-        learn = self.shard(self._learned, *parts, donate_argnums=(0, 1))
+        learn = self.shard(self._learn, *parts, donate_argnums=(0, 1))
         traced = [
             observe.trace(state, self.rows, action, got, no, no, zero),
             learn.trace(state, self.rows, zero, zero),
@@ -118,8 +118,8 @@ class RobotLoop(Loop):
         state, metrics = jax.vmap(one)(state, action, got)
         return state, put(rows, metrics, i)
 
-    def _learned(self, state: Any, rows: Any, i: Array, step: Array) -> tuple[Any, Any]:
-        """The updates of decision `step`, with their metrics in row i."""
+    def _learn(self, state: Any, rows: Any, i: Array, step: Array) -> tuple[Any, Any]:
+        """All learners after the updates of decision `step`, with their metrics in row i."""
         state, metrics = jax.vmap(self.agent.learn, (0, None))(state, step)
         return state, put(rows, metrics, i)
 

@@ -23,17 +23,8 @@ from jax.extend import core
 from hybrid_rl.envs.mujoco import mjcf, native
 
 MOVES = {
-    *(
-        "slice",
-        "squeeze",
-        "concatenate",
-        "broadcast_in_dim",
-        "reshape",
-        "split",
-        "stack",
-        "unstack",
-    ),
-    *("transpose", "rev", "expand_dims", "gather", "dynamic_slice", "copy"),
+    *("slice", "squeeze", "concatenate", "broadcast_in_dim", "reshape", "split", "stack"),
+    *("unstack", "transpose", "rev", "expand_dims", "gather", "dynamic_slice", "copy"),
 }
 INLINED = {"jit", "pjit", "closed_call", "custom_jvp_call", "custom_vjp_call"}
 INDEXED = {"gather", "dynamic_slice"}  # their first operand moves, the others say to where
@@ -187,13 +178,8 @@ def _text(x: np.ndarray) -> np.ndarray:
     """Numbers as JavaScript's; expressions stay."""
     if x.dtype == object:
         return x
-    special = {
-        "inf": "Infinity",
-        "-inf": "-Infinity",
-        "nan": "NaN",
-        "True": "true",
-        "False": "false",
-    }
+    special = {"inf": "Infinity", "-inf": "-Infinity", "nan": "NaN"}
+    special |= {"True": "true", "False": "false"}
     words = [repr(number) for number in x.ravel().tolist()]
     # A negative number stands in brackets: - -1 would be read as --1 after another minus.
     words = [f"({word})" if word.startswith("-") else word for word in words]

@@ -44,23 +44,14 @@ def at(path: str) -> Any:
     name, *steps = way.split("/")
     found = _follow(read(name), steps)
     if isinstance(found, list) and found and isinstance(found[0], dict):
-        found = _only(found, path)
+        if len(found) > 1:
+            raise LookupError(f"{path}: {len(found)} rows; a further step must choose one")
+        found = found[0]
     if x and isinstance(found, dict):
-        return np.array(found["each"], float)[:, _index(found["x"], x)]
+        return np.array(found["each"], float)[:, -1 if x == "end" else found["x"].index(float(x))]
     if isinstance(found, dict) and not BAND - found.keys() and "x" not in found:
         return np.array([found[key] for key in ("iqm", "low", "high")])
     return _array(found) if isinstance(found, list) else found
-
-
-def _index(xs: list[float], x: str) -> int:
-    """The index of X; `end`: of the last one."""
-    return len(xs) - 1 if x == "end" else xs.index(float(x))
-
-
-def _only(rows: list[Any], path: str) -> Any:
-    if len(rows) > 1:
-        raise LookupError(f"{path}: {len(rows)} rows; a further step must choose one")
-    return rows[0]
 
 
 def _follow(data: Any, steps: list[str]) -> Any:

@@ -27,11 +27,11 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.curves import band, iqm
+from hybrid_rl.analysis.curves import banded
 from hybrid_rl.analysis.recorded import Recorded, read
 from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log, words
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log, words
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run
 from hybrid_rl.errors import UsageError
@@ -84,7 +84,7 @@ def figure(
     _check_size(each)
     numbers = {
         "exact_model": {
-            "cost": [iqm(data.cost), *band(data.cost)],
+            "cost": banded(data.cost),
             "upright": float((data.upright[:, -SECOND:] > UPRIGHT).all(1).mean()),
         },
         "reference_loss": {
@@ -149,10 +149,7 @@ def refitted(recorded: Recorded, data: Unseen, small: Run, updates: int) -> dict
     keys = jax.random.split(jax.random.key(SEED), len(made.obs))
     losses = jax.jit(jax.vmap(one))(*map(jnp.asarray, (made.obs, made.action, made.next_obs)), keys)
     logs = [np.log10(np.asarray(each)) for each in losses]
-    return {
-        name: [iqm(each), *band(each)]
-        for name, each in zip(("loss_box", "loss_swing_up"), logs, strict=True)
-    }
+    return dict(zip(("loss_box", "loss_swing_up"), map(banded, logs), strict=True))
 
 
 def history(recorded: Recorded, count: int) -> Any:
@@ -184,10 +181,10 @@ def reported(one: dict[str, np.ndarray]) -> dict[str, Any]:
     areas = area(one)
     return {
         "seeds": len(one["cost"]),
-        **{name: [iqm(each), *band(each)] for name, each in one.items() if name != "upright"},
+        **{name: banded(each) for name, each in one.items() if name != "upright"},
         "upright": one["upright"].mean(0),
         "first_cost": one["cost"][:, 0],
-        "area": {name: [iqm(values), *band(values)] for name, values in areas.items()},
+        "area": {name: banded(values) for name, values in areas.items()},
     }
 
 
@@ -220,7 +217,7 @@ def differences(methods: dict[str, Any], against: str) -> dict[str, Any]:
 def summary(numbers: dict[str, Any]) -> list[str]:
     """The exact model, then a line of areas for each method."""
     exact = numbers["exact_model"]
-    lines = [f"exact model: cost {_banded(exact['cost'])}, upright {exact['upright']:.0%}"]
+    lines = [f"exact model: cost {_text(exact['cost'])}, upright {exact['upright']:.0%}"]
     for label, one in numbers["methods"].items():
         areas = one["area"]
         apart = [
@@ -228,29 +225,27 @@ def summary(numbers: dict[str, Any]) -> list[str]:
         ]
         words = f"; against {numbers['against']}: {', '.join(apart)}" if apart else ""
         lines.append(
-            f"{label}, {one['seeds']} seeds: cost {_banded(areas['cost'])}, last three episodes "
-            f"{_banded(areas['last_cost'])}, log10 loss: uniform {_banded(areas['loss_box'])}, "
-            f"swing-ups {_banded(areas['loss_swing_up'])}, log det {_banded(areas['log_det'])}, "
-            f"upright {_banded(areas['upright'])}{words}"
+            f"{label}, {one['seeds']} seeds: cost {_text(areas['cost'])}, last three episodes "
+            f"{_text(areas['last_cost'])}, log10 loss: uniform {_text(areas['loss_box'])}, "
+            f"swing-ups {_text(areas['loss_swing_up'])}, log det {_text(areas['log_det'])}, "
+            f"upright {_text(areas['upright'])}{words}"
         )
     for label, one in numbers.get("refit", {}).items():
-        box, swing_up = (_banded(one[name]) for name in ("loss_box", "loss_swing_up"))
+        box, swing_up = (_text(one[name]) for name in ("loss_box", "loss_swing_up"))
         lines.append(f"{label}, fitted again: log10 loss: uniform {box}, swing-ups {swing_up}")
     return lines
 
 
-def _banded(values: Any) -> str:
+def _text(values: Any) -> str:
     middle, low, high = values
     return f"{middle:.4g} [{low:.4g}, {high:.4g}]"
 
 
 def draw(numbers: dict[str, Any]) -> Any:
     """A panel for each quantity; information is that of one reference model."""
-    from matplotlib.figure import Figure
-
     methods, exact = numbers["methods"], numbers["exact_model"]
     styles = line_styles(methods)
-    figure = Figure(figsize=(9, 5.6), layout="constrained")
+    figure = blank(9, 5.6)
     panels = np.ravel(figure.subplots(2, 3))
     for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
         for label, one in methods.items():

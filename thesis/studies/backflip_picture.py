@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from hybrid_rl.analysis.curves import band, improvement, iqm
-from hybrid_rl.analysis.style import STROKES, line_styles, plain_log, words
+from hybrid_rl.analysis.curves import band_of, improvement
+from hybrid_rl.analysis.style import STROKES, blank, line_styles, plain_log, words
 from hybrid_rl.thesis.studies import backflips
 from hybrid_rl.thesis.studies.backflips import (
     Explored,
@@ -55,8 +55,7 @@ def flips(pattern: str) -> tuple[Any, dict[str, Any]]:
 
 def _spread(values: np.ndarray) -> dict[str, Any]:
     """Mean, IQM and its band of [S], and each."""
-    low, high = band(values)
-    return {"mean": values.mean(), "iqm": iqm(values), "low": low, "high": high, "each": values}
+    return {"mean": values.mean(), **band_of(values), "each": values}
 
 
 def _safety(one: Explored) -> dict[str, Any]:
@@ -84,9 +83,7 @@ def _compared(results: dict[tuple[str, int], np.ndarray]) -> dict[str, Any]:
 
 def bars(numbers: dict[str, Any]) -> Any:
     """Figure 6-9: a panel for each criterion and training length."""
-    from matplotlib.figure import Figure
-
-    figure, rows = Figure(figsize=(9, 7.6), layout="constrained"), numbers["rows"]
+    figure, rows = blank(9, 7.6), numbers["rows"]
     panels = figure.subplots(len(CRITERIA), len(backflips.LENGTHS), sharey=True, sharex=True)
     counts = sorted({most for row in rows.values() for most in row}, key=int)
     styles = line_styles(rows)
@@ -154,17 +151,14 @@ def queries(pattern: str) -> tuple[Any, dict[str, Any]]:
         for name, information in (("own", one.own), ("reference", by_reference(one))):
             known = np.isfinite(information).all(0)  # queries that all seeds asked
             if known.any():
-                middle, (low, high) = iqm(information[:, known]), band(information[:, known])
-                rows[one.label][name] = {"iqm": middle, "low": low, "high": high}
+                rows[one.label][name] = band_of(information[:, known])
     numbers = {"queries": most, "rows": rows}
     return curves(numbers), numbers
 
 
 def curves(numbers: dict[str, Any]) -> Any:
     """Figure 6-10: a line with its band for each row, in a panel for each clone."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 4.6), layout="constrained")
+    figure = blank(9, 4.6)
     panels: Any = figure.subplots(1, 2)
     titles = {"own": "by the clone that asks", "reference": "by one reference clone"}
     styles, ticks = line_styles(numbers["rows"]), range(5, int(numbers["queries"]) + 1, 5)

@@ -18,6 +18,7 @@ from hybrid_rl.analysis.curves import Curve, curves, plural, spread
 from hybrid_rl.analysis.style import (
     ENTRY,
     NOTE_WIDTH,
+    blank,
     colours,
     legend_below,
     plain_log,
@@ -37,7 +38,6 @@ def figure(
     group: Annotated[str, "key of the configuration, with a curve for each value"] = "algo",
 ) -> tuple[Any, dict[str, Any]]:
     """Best values and V of each method, and the measurements of its first trial."""
-    from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
     by_metric = {
@@ -49,7 +49,7 @@ def figure(
     notes = wrapped([note for one in numbers.values() for note in one["notes"]], 2 * NOTE_WIDTH)
     own = colours(best)
     heights = (3.2 + ENTRY * len(best), 1.9 * len(best) + ENTRY * len(notes))
-    figure = Figure(figsize=(9, sum(heights)), layout="constrained")
+    figure = blank(9, sum(heights))
     halves: Any = figure.subfigures(2, 1, height_ratios=heights)
     above, below = halves
     values, energies = above.subplots(1, 2)

@@ -6,7 +6,7 @@ import numpy as np
 
 from hybrid_rl.analysis.belief.frames import Drawn, beliefs, trial_of, truth
 from hybrid_rl.analysis.belief.panel import Panel
-from hybrid_rl.analysis.style import legend_outside
+from hybrid_rl.analysis.style import blank, legend_outside
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import contacts
 from hybrid_rl.thesis.studies.contact_maps_picture import marks_of
@@ -46,14 +46,12 @@ def frames(pattern: str, times: str, trial: int) -> tuple[Any, dict[str, Any]]:
 
 def _picture(drawn: Drawn, views: list[Any], seconds: list[float], rows: int) -> Any:
     """Blocks of `rows` panels above each other, at most COLUMNS side by side."""
-    from matplotlib.figure import Figure
-
     blocks, true = -(-len(views) // COLUMNS), truth(drawn.trial)
     columns = -(-len(views) // blocks)
     (a, b), (c, d) = drawn.low, drawn.high
     side = SIDE if columns > 4 else 1.5 * SIDE
     size = side * columns, side * (d - b) / (c - a) * rows * blocks + 0.25 * blocks + 0.4
-    figure = Figure(figsize=size, layout="constrained")
+    figure = blank(*size)
     panels = figure.subplots(rows * blocks, columns, squeeze=False)
     for axes in panels.flat:
         axes.set_axis_off()

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.analysis.belief.panel import HALF, Panel, View, level
-from hybrid_rl.analysis.curves import band, iqm, plural
-from hybrid_rl.analysis.style import legend_outside, line_styles, words
+from hybrid_rl.analysis.curves import band_of, banded, plural
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
 from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.errors import UsageError
 from hybrid_rl.thesis.studies import false_contacts
@@ -74,7 +74,7 @@ def maps(
         panels[i][0].set_title(f"{run.label}\n{marks[0] * dt:g} s", fontsize=7, loc="left")
         line = styles[run.label] | {"marker": None, "label": words(run.label)}
         for axes, (name, title) in zip(below, NAMES.items(), strict=True):
-            middle, (low, high) = iqm(measured[name]), band(measured[name])
+            middle, low, high = banded(measured[name])
             axes.plot(np.array(fine) * dt, middle, **line)
             axes.fill_between(np.array(fine) * dt, low, high, alpha=0.2, color=line["color"])
             axes.set(title=title, xlabel="Time [s]")
@@ -92,12 +92,10 @@ def _panels(runs: int, times: int) -> tuple[Any, Any, Any]:
 
     More than ABOVE runs are in two columns.
     """
-    from matplotlib.figure import Figure
-
     across = 1 if runs <= ABOVE else 2
     rows, columns = -(-runs // across), across * times
     height = rows * (min(WIDTH / columns, 2.6) + 0.25) + 0.3
-    figure: Any = Figure(figsize=(WIDTH, height + 3), layout="constrained")
+    figure: Any = blank(WIDTH, height + 3)
     upper, lower = figure.subfigures(2, 1, height_ratios=[height, 3])
     panels = upper.subplots(rows, columns, squeeze=False).reshape(-1, times)
     for axes in panels[runs:].flat:
@@ -122,9 +120,7 @@ def _reported(measured: dict[str, np.ndarray]) -> dict[str, Any]:
     """IQM and band of each measure at each time; the trials that touched every object."""
     result: dict[str, Any] = {"trials": len(measured["objects"])}
     for name, values in measured.items():
-        low, high = band(values)
-        median = np.median(values, 0)
-        result[name] = {"iqm": iqm(values), "low": low, "high": high, "median": median}
+        result[name] = {**band_of(values), "median": np.median(values, 0)}
     result["objects"]["each"] = measured["objects"]
     return result
 
@@ -133,13 +129,12 @@ def speed(run: Trials, iou: np.ndarray, times: np.ndarray) -> dict[str, Any]:
     """Mean over time of iou [S, times], which is 0 at first; seconds until all are touched."""
     shown = run.y[:, : round(times[-1] / run.world.spec.dt)]
     area = np.trapezoid(np.pad(iou, ((0, 0), (1, 0))), np.pad(times, (1, 0)), axis=1)
-    mean = area[:, None] / times[-1]
-    low, high = band(mean)
+    mean = area / times[-1]
     seconds = touched_all(run._replace(s=run.s[:, : shown.shape[1]], y=shown))
     known = np.where(np.isnan(seconds), np.inf, seconds)
     median = float(np.median(known))
     return {
-        "mean_iou": {"iqm": iqm(mean)[0], "low": low[0], "high": high[0], "each": mean[:, 0]},
+        "mean_iou": {**band_of(mean), "each": mean},
         "seconds_to_all": {
             "median": median if np.isfinite(median) else None,
             "trials": int(np.isfinite(known).sum()),

@@ -9,8 +9,15 @@ import numpy as np
 from scipy.special import digamma
 
 from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.curves import band, iqm, plural
-from hybrid_rl.analysis.style import GREY, legend_below, legend_outside, line_styles, plain_log
+from hybrid_rl.analysis.curves import band, band_of, plural
+from hybrid_rl.analysis.style import (
+    GREY,
+    blank,
+    legend_below,
+    legend_outside,
+    line_styles,
+    plain_log,
+)
 from hybrid_rl.core import poses as moves
 from hybrid_rl.core import resampling
 from hybrid_rl.thesis.studies.contact_maps_picture import marks_of
@@ -66,12 +73,11 @@ def poses(pattern: str, names: str, times: str) -> tuple[Any, dict[str, Any]]:
 
 def draw_poses(numbers: dict[str, Any]) -> Any:
     """A row for each method: its errors at all times, and each trial's time until found."""
-    from matplotlib.figure import Figure
     from matplotlib.ticker import MaxNLocator
 
     times, methods = numbers["times"], numbers["methods"]
     height = max(2.6, 1.1 + 1.2 * rows.HEIGHT * len(methods))
-    figure = Figure(figsize=(9, height), layout="constrained")
+    figure = blank(9, height)
     errors, angles, waits = figure.subplots(1, 3, sharey=True, width_ratios=(1, 1, 1.2))
     marks = [f"{time:g} s" for time in times]
     for axes, name, title in (
@@ -186,10 +192,9 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
     for kind, counts in KINDS.items():
         means, theta = filtered(counts(run.y))
         entropy = np.array([[entropy_of(each[j]) for j in at] for each in theta])
-        low, high = band(entropy)
         position, angle = (each[:, at] for each in errors(run._replace(rows=means)))
         each = {"each": entropy, "position": position, "angle": angle}
-        kinds[kind] = {"iqm": iqm(entropy), "low": low, "high": high, **each}
+        kinds[kind] = {**band_of(entropy), **each}
     less = np.sum(kinds["absences"]["each"] <= kinds["contacts"]["each"], 0)
     least = _entropy_of_balls(np.full(SOME, CLOSEST))
     head = {"times": dt * (at + 1), "trials": len(run.y), "least_entropy": least}
@@ -199,9 +204,7 @@ def absence(pattern: str, times: str) -> tuple[Any, dict[str, Any]]:
 
 def draw_absence(numbers: dict[str, Any]) -> Any:
     """Entropy over time by the measurements that count; grey: the least that can be measured."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(4.4, 3.4), layout="constrained")
+    figure = blank(4.4, 3.4)
     axes, styles = figure.subplots(), line_styles(numbers["kinds"])
     for kind, one in numbers["kinds"].items():
         style = styles[kind] | {"marker": None, "label": COUNTING[kind]}

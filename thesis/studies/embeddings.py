@@ -17,7 +17,7 @@ from hybrid_rl.analysis import rows
 from hybrid_rl.analysis.curves import plural
 from hybrid_rl.analysis.recorded import read
 from hybrid_rl.analysis.results import RunFolder, find
-from hybrid_rl.analysis.style import legend_below, line_styles, plain_log, words
+from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log, words
 from hybrid_rl.errors import UsageError
 
 CART, ARM = "cart_pendulum", "two_link"
@@ -115,7 +115,7 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     """A line for each run."""
     result = []
     for label, one in numbers[CART].items():
-        middle, low, high = (_or_never(value) for value in one["iterations"])
+        middle, low, high = (f"{value:g}".replace("inf", "never") for value in one["iterations"])
         result.append(
             f"{CART} {label}, {plural(one['trials'], 'trial')}: stabilised after {middle} "
             f"[{low}, {high}] iterations, {one['share_by_100']:.0%} by {MARK}, "
@@ -130,17 +130,11 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     return result
 
 
-def _or_never(value: float) -> str:
-    return f"{value:g}" if np.isfinite(value) else "never"
-
-
 def draw(numbers: dict[str, Any]) -> Any:
     """A row of trials per method of the cart, curves of distance of the arm."""
-    from matplotlib.figure import Figure
-
     drawn = {task: numbers[task] for task in (CART, ARM) if numbers[task]}
     most = max(map(len, drawn.values()))
-    figure = Figure(figsize=(4.5 * len(drawn), 2.6 + 0.25 * most), layout="constrained")
+    figure = blank(4.5 * len(drawn), 2.6 + 0.25 * most)
     panels = figure.subplots(1, len(drawn), squeeze=False)[0]
     for axes, (task, methods) in zip(panels, drawn.items(), strict=True):
         (_carts if task == CART else _arms)(axes, methods)

@@ -21,7 +21,7 @@ import numpy as np
 
 from hybrid_rl.analysis.curves import plural, spread
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import legend_below, line_styles, plain_log
+from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log
 from hybrid_rl.cli.arguments import one_of, whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.thesis.studies.time_averages import (
@@ -200,11 +200,14 @@ def cost(repeats: int = 9) -> tuple[Any, dict]:
             times[v] = _seconds(build(load([*more, *box.replace(", ", ",").split()])), repeats)
             print(f"{NAMES[algo]}, {v} dimensions: timed", flush=True)
         numbers[algo] = {"dimension": list(times), "seconds": list(times.values())}
-    return draw_cost(numbers), numbers
+    return draw(numbers), numbers
 
 
-def draw_cost(numbers: dict[str, Any]) -> Any:
-    """Milliseconds of a plan over the dimension, a line for each controller."""
+def draw(numbers: dict[str, Any]) -> Any:
+    """Milliseconds of a plan over the dimension, a line for each controller.
+
+    Of view=cost, also from its JSON; the JSON of other views has no densities.
+    """
     figure, ((axes,),) = _subplots(1, 1)
     styles = line_styles(("kle3", "fourier_ergodic"))
     for algo, style in styles.items():
@@ -214,11 +217,6 @@ def draw_cost(numbers: dict[str, Any]) -> Any:
     plain_log(axes.yaxis)
     legend_below(axes)
     return figure
-
-
-def draw(numbers: dict[str, Any]) -> Any:
-    """The picture of numbers from a JSON of view=cost; the JSON of other views has no densities."""
-    return draw_cost(numbers)
 
 
 def _seconds(run: Run, repeats: int) -> float:
@@ -240,9 +238,7 @@ def _seconds(run: Run, repeats: int) -> float:
 
 def _subplots(down: int, across: int) -> tuple[Any, Any]:
     """A figure, and its panels [down, across]."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(min(3.4 * across, 9.0), 2.9 * down), layout="constrained")
+    figure = blank(min(3.4 * across, 9.0), 2.9 * down)
     return figure, figure.subplots(down, across, squeeze=False)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import jax
 import numpy as np
 
-from hybrid_rl.analysis.style import thousands, words
+from hybrid_rl.analysis.style import blank, thousands, words
 from hybrid_rl.envs.analytic.quadcopter_se3 import DT, QuadcopterSE3
 from hybrid_rl.envs.analytic.state import fully_observed
 from hybrid_rl.thesis.studies.falls import Fall, falls
@@ -16,10 +16,8 @@ HEIGHT, WIDTH, CROP = 480, 640, 150  # [pixels] of a tile before it is cut to a 
 
 def frames(pattern: str) -> tuple[Any, dict[str, Any]]:
     """A strip for each run; the numbers are the heights [m] at the times of the pictures."""
-    from matplotlib.figure import Figure
-
     each = falls(pattern)
-    figure = Figure(figsize=(9, 1.5 * len(each)), layout="constrained")
+    figure = blank(9, 1.5 * len(each))
     parts: Any = np.ravel(np.asarray(figure.subfigures(len(each), 1)))
     heights = {fall.label: _strip(part, fall) for part, fall in zip(parts, each, strict=True)}
     return figure, {"time": list(TILES), "height": heights}

@@ -49,13 +49,10 @@ def falls(pattern: str) -> list[Fall]:
         UsageError: for runs that cannot be compared.
     """
     folders = find(pattern)
-    each = [of(read(path, "quadcopter_se3"), label) for path, label in _named(folders)]
+    named = zip(folders, labels(folders), strict=True)
+    each = [of(read(path, "quadcopter_se3"), label) for path, label in named]
     check_starts(each, folders)
     return each
-
-
-def _named(folders: list[Path]) -> list[tuple[Path, str]]:
-    return list(zip(folders, labels(folders), strict=True))
 
 
 def of(recorded: Recorded, label: str) -> Fall:
@@ -154,6 +151,7 @@ def reported(fall: Fall, s: np.ndarray) -> dict[str, Any]:
     at_rest = {mark: int((time <= mark + 1e-9).sum()) for mark in marks}
     begun = round(FIRST / DT)
     known = {mark: error[:, round(mark / DT)] for mark in MARKS if round(mark / DT) < length}
+    greatest = np.sqrt(error[:, : begun + 1].max(1))
     u = THRUST * fall.action
     return {
         "trials": trials,
@@ -165,15 +163,11 @@ def reported(fall: Fall, s: np.ndarray) -> dict[str, Any]:
         "error": {f"{m:g}": np.nanquantile(v, [0.5, 0.1, 0.9]) for m, v in known.items()},
         "trace_1_s": np.quantile(trace(s[:, :begun])[:, -1], [0.5, 0.1, 0.9]),
         "log_det_1_s": np.quantile(log_det(s[:, :begun]), [0.5, 0.1, 0.9]),
-        "greatest_twist_1_s": _middle_and_most(np.sqrt(error[:, : begun + 1].max(1))),
+        "greatest_twist_1_s": [float(np.median(greatest)), float(greatest.max())],
         "rms_u": float(np.sqrt((u**2).mean())),
         "rms_u_1_s": float(np.sqrt((u[:, :begun] ** 2).mean())),
         "microseconds_a_decision": 1e6 * fall.seconds,
     }
-
-
-def _middle_and_most(values: np.ndarray) -> list[float]:
-    return [float(np.median(values)), float(values.max())]
 
 
 def lines(numbers: dict[str, Any]) -> list[str]:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log, thousands, words
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log, thousands, words
 from hybrid_rl.thesis.studies.falls import STILL, falls, regressors, reported
 
 POINTS = 400  # of a line over time
@@ -31,11 +31,10 @@ def _measured(pattern: str) -> dict[str, Any]:
 
 def draw_information(numbers: dict[str, Any]) -> Any:
     """Information after a second as rows, error and share at rest as lines over time."""
-    from matplotlib.figure import Figure
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     methods = numbers["methods"]
-    figure = Figure(figsize=(9, 2.9 + 2.4 + rows.HEIGHT * len(methods)), layout="constrained")
+    figure = blank(9, 2.9 + 2.4 + rows.HEIGHT * len(methods))
     grid: Any = figure.subplots(2, 2, height_ratios=(1 + rows.HEIGHT * len(methods), 3.2))
     (traces, determinants), (errors, shares) = grid
     for axes, name in ((traces, "trace_1_s"), (determinants, "log_det_1_s")):
@@ -65,10 +64,8 @@ def draw_information(numbers: dict[str, Any]) -> Any:
 
 def draw_initial(numbers: dict[str, Any]) -> Any:
     """A row for each first K: error and share of the trials at rest at two times."""
-    from matplotlib.figure import Figure
-
     methods = numbers["methods"]
-    figure = Figure(figsize=(9, 1.3 + 1.3 * rows.HEIGHT * len(methods)), layout="constrained")
+    figure = blank(9, 1.3 + 1.3 * rows.HEIGHT * len(methods))
     errors, shares = figure.subplots(1, 2, sharey=True)
     both = [set(one["error"]) & set(one["at_rest"]) for one in methods.values()]
     times = sorted(set.intersection(*both), key=float)

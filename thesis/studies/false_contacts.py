@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from hybrid_rl.analysis.curves import band, iqm
+from hybrid_rl.analysis.curves import band_of
 from hybrid_rl.thesis.studies.contacts import CLOSE, Trials, distances, grid
 
 TOUCH = "world/touch"
@@ -41,7 +41,8 @@ def measures(run: Trials, f: np.ndarray) -> dict[str, Any]:
         for name, when in (("returned", false), ("elsewhere", others)):
             ratio = returned(run.world, free, s, when)
             each[name] += [ratio] if np.isfinite(ratio) else []
-    return {name: _summary(np.array(values, float)) for name, values in each.items() if values}
+    known = {name: np.array(values, float) for name, values in each.items() if values}
+    return {name: {**band_of(values), "each": values} for name, values in known.items()}
 
 
 def returned(world: Any, free: np.ndarray, s: np.ndarray, when: np.ndarray) -> float:
@@ -69,8 +70,3 @@ def _at(world: Any, f: np.ndarray, s: np.ndarray) -> np.ndarray:
     low, high = np.array(world.low), np.array(world.high)
     index = (s - low) / (high - low) * (len(f) - 1)
     return ndimage.map_coordinates(f, index.T, order=1, mode="nearest")
-
-
-def _summary(each: np.ndarray) -> dict[str, Any]:
-    low, high = band(each[:, None])
-    return {"iqm": iqm(each[:, None])[0], "low": low[0], "high": high[0], "each": each}

@@ -18,6 +18,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from hybrid_rl.analysis.style import blank
 from hybrid_rl.cli.arguments import numbers as numbers_kind
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
@@ -93,9 +94,8 @@ def falls(run: Run, forgetting: np.ndarray, priors: np.ndarray, trials: int) -> 
 
     settings = np.meshgrid(forgetting, priors, np.arange(trials), indexing="ij")
     keys = jax.vmap(jax.random.key)(run.config.seed + jnp.asarray(settings[2].ravel()))
-    each = (jnp.asarray(value.ravel(), jnp.float32) for value in settings[:2])
-    program = jax.jit(jax.vmap(one)).lower(*each, keys).compile()
     each = [jnp.asarray(value.ravel(), jnp.float32) for value in settings[:2]]
+    program = jax.jit(jax.vmap(one)).lower(*each, keys).compile()
     began = perf_counter()
     last = np.asarray(program(*each, keys)).reshape(settings[0].shape)
     taken, stays = perf_counter() - began, last < steps
@@ -126,13 +126,11 @@ def _median(times: np.ndarray) -> np.ndarray:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """Share of successes by forgetting and prior, a panel for each horizon."""
-    from matplotlib.figure import Figure
-
     horizons, forgetting, priors = (numbers[name] for name in ("horizons", "forgetting", "priors"))
     across = min(len(horizons), MOST_ACROSS)
     down = -(-len(horizons) // across)
     size = (1.0 + 2.6 * across, down * (0.8 + 0.26 * len(forgetting)))
-    figure = Figure(figsize=size, layout="constrained")
+    figure = blank(*size)
     axes: Any = figure.subplots(down, across, squeeze=False, sharey=True)
     for panel in axes.flat[len(horizons) :]:
         panel.remove()

@@ -24,14 +24,15 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.curves import band, iqm, plural
+from hybrid_rl.analysis.curves import banded, plural
 from hybrid_rl.analysis.results import find
 from hybrid_rl.analysis.significant import rounded
-from hybrid_rl.analysis.style import legend_outside, line_styles, plain_log
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, plain_log
 from hybrid_rl.cli.arguments import whole
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.envs.analytic.quadcopter_se3 import QuadcopterSE3
 from hybrid_rl.thesis.studies.flights import Flight, cost, equal_size, read_all
+from hybrid_rl.thesis.studies.unseen import transitions
 from hybrid_rl.training.rollout import rollout_with_actions
 from hybrid_rl.types import Batch, Params
 
@@ -115,9 +116,8 @@ class Tracked(NamedTuple):
 def track(run: Run, params: Params, steps: int, key: Array) -> Tracked:
     """MPPI with the model in `params`, for B = `steps` decisions. The key is consumed."""
     u, states = rollout_with_actions(run.agent.episode, run.controllers["full"], params, key, steps)
-    no, x = jnp.zeros(steps), states.obs
-    distance = jnp.linalg.norm(x[:, :3], axis=-1)
-    return Tracked(Batch(x[:-1], u, no, no, no, x[1:]), distance, states.terminated[-1])
+    x, distance = states.obs, jnp.linalg.norm(states.obs[:, :3], axis=-1)
+    return Tracked(transitions(x[:-1], u, x[1:]), distance, states.terminated[-1])
 
 
 def measure(flights: list[Flight], updates: int, steps: int) -> Results:
@@ -157,20 +157,15 @@ def reported(values: dict[str, np.ndarray], dt: float) -> dict[str, Any]:
     if "lost" in values:
         numbers["kept_hover"] = 1 - values["lost"].mean()
     if "error" in values:
-        numbers["error"] = _banded(values["error"])
+        numbers["error"] = banded(values["error"])
     if "distance" in values:
         distance = values["distance"]
-        numbers["tracking"] = _banded(distance.mean(1))
+        numbers["tracking"] = banded(distance.mean(1))
         for mark in MARKS:
             if round(mark / dt) < distance.shape[1]:
-                numbers[f"distance_after_{mark:g}_s"] = _banded(distance[:, round(mark / dt)])
+                numbers[f"distance_after_{mark:g}_s"] = banded(distance[:, round(mark / dt)])
         numbers["turned_over_tracking"] = values["turned_over"].mean()
     return rounded(numbers)
-
-
-def _banded(each: np.ndarray) -> list[Any]:
-    """IQM over trials [S], and its band."""
-    return [iqm(each), *band(each)]
 
 
 def named(label: str) -> str:
@@ -181,9 +176,7 @@ def named(label: str) -> str:
 
 def plot_flights(flights: list[Flight], dt: float) -> Any:
     """Actions and velocities of the first trial of each method."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 0.5 + 1.3 * len(flights)), layout="constrained")
+    figure = blank(9, 0.5 + 1.3 * len(flights))
     panels: Any = figure.subplots(len(flights), 3, squeeze=False, sharex=True, sharey="col")
     for row, flight in zip(panels, flights, strict=True):
         t, x = dt * np.arange(flight.obs.shape[1]), flight.obs[0]
@@ -200,13 +193,11 @@ def plot_flights(flights: list[Flight], dt: float) -> Any:
 
 def draw(numbers: dict[str, Any]) -> Any:
     """Distance to the target of each method's best setting; error and distance over power loss."""
-    from matplotlib.figure import Figure
-
     methods: dict[str, list[dict[str, Any]]] = {}
     for label, one in numbers.items():
         methods.setdefault(EXACT if label == EXACT else label.split()[0], []).append(one)
     styles = line_styles(methods)
-    figure = Figure(figsize=(9, 3.6), layout="constrained")
+    figure = blank(9, 3.6)
     over_time, errors, tracking = figure.subplots(1, 3)
     for name, each in methods.items():
         _over_time(over_time, min(each, key=lambda one: one["tracking"][0]), styles[name], name)

@@ -15,13 +15,14 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.analysis.style import BLACK, BLUE, GREY, VERMILION, legend_below, plain_log
+from hybrid_rl.analysis.style import BLACK, BLUE, GREY, VERMILION, blank, legend_below, plain_log
 from hybrid_rl.config import Run, build, load
 from hybrid_rl.core import riccati
 from hybrid_rl.core.analytic import at_equilibrium, linearise
 from hybrid_rl.envs.analytic.van_der_pol import FORCE
 from hybrid_rl.thesis.studies.optimal_path import cost, optimal
-from hybrid_rl.types import Batch, Params
+from hybrid_rl.thesis.studies.unseen import transitions
+from hybrid_rl.types import Params
 
 REGULATORS = ("Koopman", "known", "regression")
 OWN = (VERMILION, BLACK, BLUE)  # their colours
@@ -112,8 +113,7 @@ def fits(run: Run, samples: int, draws: int, largest: float) -> Any:
 
 def fit(learner: Any, spec: Any, x: Array, u: Array, after: Array, key: Array) -> Any:
     """The model's parameters after one update with all samples [B]. The key is consumed."""
-    no = jnp.zeros(len(x))
-    batch = Batch(x, u, no, no, no, after)
+    batch = transitions(x, u, after)
     first, updating = jax.random.split(key)
     state = learner.init(first, spec)
     state, _ = learner.update(state, Params(decisions=jnp.zeros(())), batch, updating)
@@ -219,8 +219,7 @@ def reported(outcome: Outcome, best: np.ndarray) -> dict[str, Any]:
 
 def _starts(number: int, away: float) -> Array:
     """[N, 2] starts, |x_i| <= `away`."""
-    unit = jax.random.uniform(jax.random.key(1_000), (number, 2), minval=-1.0)
-    return away * unit
+    return away * jax.random.uniform(jax.random.key(1_000), (number, 2), minval=-1.0)
 
 
 def _spread(values: Sequence[float]) -> str:
@@ -230,9 +229,7 @@ def _spread(values: Sequence[float]) -> str:
 
 def _picture(numbers: dict[str, Any], paths: Any, dt: float) -> Any:
     """Error over time, paths, and ratios of cost by horizon and by data."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9.5, 7.6), layout="constrained")
+    figure = blank(9.5, 7.6)
     (over_time, plane), (by_horizon, by_data) = figure.subplots(2, 2)
     t = dt * np.arange(paths.shape[2])
     strokes = ("-", "-", "--")  # the third lies on the second

@@ -17,7 +17,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from hybrid_rl.analysis.curves import band, curves, improvement, iqm
+from hybrid_rl.analysis.curves import band_of, banded, curves, improvement
 from hybrid_rl.analysis.recorded import labels
 from hybrid_rl.analysis.results import RunFolder, find
 from hybrid_rl.config import Run
@@ -189,14 +189,12 @@ def refitted(row: Row, steps: int, at: Sequence[int], score: str) -> np.ndarray:
 
 def _reported(N: np.ndarray, each: np.ndarray) -> dict[str, Any]:
     """Shares [S, G] at N [G]: interquartile means, bands, and the first N that reaches 90%."""
-    middle, (low, high) = iqm(each), band(each)
-    reached = N[middle >= REACHED]
+    shares = band_of(each)
+    reached = N[shares["iqm"] >= REACHED]
     return {
         "N": N,
         "each": each,
-        "iqm": middle,
-        "low": low,
-        "high": high,
+        **shares,
         "reaches": float(reached[0]) if len(reached) else None,
         "over_90": (each >= REACHED).mean(0),
     }
@@ -209,7 +207,7 @@ def _printed(row: Row, teacher: float) -> dict[str, Any]:
     return {
         **_reported(row.N, each),
         "area_each": area,
-        "area": [float(iqm(area)), *map(float, band(area))],
+        "area": list(map(float, banded(area))),
         "seeds": len(each),
     }
 

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from hybrid_rl.analysis.style import legend_outside, line_styles, words
+from hybrid_rl.analysis.style import blank, legend_outside, line_styles, words
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run.files.reading import json_file
+from hybrid_rl.run.logs.records import arrays
 from hybrid_rl.thesis.studies import queries
 
 SAME = ("task", "score", "decisions_of_a_demonstration")
@@ -45,25 +44,16 @@ def merged(files: Sequence[Path]) -> dict[str, Any]:
         if twice := sorted(made["methods"].keys() & one["methods"].keys()):
             raise UsageError(f"runs={file}: {twice[0]} is in another file, too")
         made["methods"] |= one["methods"]
-    made["methods"] = {label: _arrays(one) for label, one in sorted(made["methods"].items())}
+    made["methods"] = {label: arrays(one) for label, one in sorted(made["methods"].items())}
     return {**made, "comparisons": queries.compared(made["methods"])}
-
-
-def _arrays(one: Any) -> Any:
-    """Numbers from JSON with lists as arrays."""
-    if isinstance(one, dict):
-        return {key: _arrays(value) for key, value in one.items()}
-    return np.array(one, float) if isinstance(one, list) else one
 
 
 def picture(made: dict[str, Any]) -> Any:
     """Shares over demonstrations, a panel for each schedule."""
-    from matplotlib.figure import Figure
-
     methods = made["methods"]
     refits = [one for one in methods.values() if "refit" in one]
     schedules = ["printed", *(["refit"] if refits else [])]
-    figure = Figure(figsize=(4.4 * len(schedules), 4.2), layout="constrained")
+    figure = blank(4.4 * len(schedules), 4.2)
     styles = line_styles(methods)
     panels = figure.subplots(1, len(schedules), sharey=True, squeeze=False)[0]
     alpha = min(0.15, 0.6 / len(methods))
@@ -74,9 +64,8 @@ def picture(made: dict[str, Any]) -> Any:
                 continue
             style = styles[label]
             axes.plot(line["N"], line["iqm"], label=words(label), ms=4, **style)
-            axes.fill_between(
-                line["N"], line["low"], line["high"], color=style["color"], alpha=alpha
-            )
+            ends = line["low"], line["high"]
+            axes.fill_between(line["N"], *ends, color=style["color"], alpha=alpha)
         axes.axhline(1, color="#444444", linewidth=0.8)
         axes.set_xlabel(f"demonstrations of {made['decisions_of_a_demonstration']} decisions")
         steps = f"{made['refit_steps']:,} steps on the same labels"

@@ -20,10 +20,10 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.analysis import rows
-from hybrid_rl.analysis.curves import band, iqm, plural
+from hybrid_rl.analysis.curves import banded, plural
 from hybrid_rl.analysis.recorded import Recorded, labels, one_episode, read
 from hybrid_rl.analysis.results import find
-from hybrid_rl.analysis.style import legend_below, line_styles, plain_log, words
+from hybrid_rl.analysis.style import blank, legend_below, line_styles, plain_log, words
 from hybrid_rl.envs.mujoco.kinematics import Chain
 from hybrid_rl.errors import UsageError
 
@@ -162,7 +162,7 @@ def reported(track: Track) -> dict[str, Any]:
 def _spread(values: np.ndarray) -> list[float] | None:
     """IQM and its band over the trials that have a value; None: no trial has one."""
     known = values[np.isfinite(values)]
-    return [iqm(known), *band(known)] if len(known) else None
+    return banded(known) if len(known) else None
 
 
 def lines(numbers: dict[str, Any]) -> list[str]:
@@ -184,11 +184,9 @@ def lines(numbers: dict[str, Any]) -> list[str]:
 
 def draw(numbers: dict[str, Any], tracks: Sequence[Track] = ()) -> Any:
     """RMSE and lag of each method, and below them the paths of the first trial, if there are."""
-    from matplotlib.figure import Figure
-
     methods = numbers["methods"]
     heights = [0.9 + rows.HEIGHT * len(methods), *([4.0] if tracks else [])]
-    figure = Figure(figsize=(9, sum(heights)), layout="constrained")
+    figure = blank(9, sum(heights))
     parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
     errors, lags = parts[0].subplots(1, 2, sharey=True)
     entries = [f"{words(x)} ({plural(int(one['trials']), 'trial')})" for x, one in methods.items()]

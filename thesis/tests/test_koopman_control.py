@@ -18,10 +18,7 @@ from hybrid_rl.learners.least_squares import LeastSquares
 from hybrid_rl.learners.regulator import RegulatorLearner
 from hybrid_rl.models.koopman import Koopman
 from hybrid_rl.policies.linear import Linear
-from hybrid_rl.thesis.studies import (
-    optimal_path,
-    oscillator,
-)
+from hybrid_rl.thesis.studies import optimal_path, oscillator
 from hybrid_rl.types import Spec
 
 A = np.array([[1.0, 0.1], [-0.1, 1.1]])  # an unstable spiral

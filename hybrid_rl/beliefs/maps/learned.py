@@ -49,7 +49,6 @@ class LearnedMap:
     high: float = 0.96  # hi
 
     def __post_init__(self) -> None:
-        """Check the chances and the file."""
         if not 0 < self.low < self.high < 1:
             raise FieldError(self, "low", f"must lie between 0 and high={self.high}")
         arrays, prefix = _load(self.file), f"map.file={self.file}:"

@@ -61,9 +61,6 @@ class PoseParticles:
     """A belief about the pose of objects.
 
     A full memory takes no more measurements (`belief/full` is 1).
-
-    Raises:
-        ValueError: for a domain that is no plane.
     """
 
     map: ContactMap
@@ -79,7 +76,6 @@ class PoseParticles:
     length: Positive = 0.3  # rho [m]
 
     def __post_init__(self) -> None:
-        """Check the domain."""
         if self.domain.size != 2:
             raise ValueError(f"domain.coordinates: poses need a plane, not {self.domain.size}")
 

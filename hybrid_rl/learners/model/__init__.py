@@ -71,11 +71,7 @@ class ModelState:
 
 @part
 class ModelLearner:
-    """Gradient steps on a model and, unless it is None, a reward.
-
-    Raises:
-        ValueError: for elites without held-out decisions, or a discounted reward that sees x'.
-    """
+    """Gradient steps on a model and, unless it is None, a reward."""
 
     model: Annotated[
         Trainable,
@@ -99,7 +95,6 @@ class ModelLearner:
     during_random: ClassVar[bool] = True  # random decisions inform the model
 
     def __post_init__(self) -> None:
-        """Check what depends on the model."""
         if self.reward_discount and getattr(self.reward, "next_state", False):
             raise ValueError(
                 "reward_model.next_state=true: the value of x' would need the state after it; give "
@@ -181,13 +176,10 @@ class ModelLearner:
             reward, metrics["model/reward_loss"] = {**reward, "weights": r}, of_reward
         state = ModelState({**model, "weights": f}, reward, optimiser, state.held_out)
         if held is not None:
-            state = self._judged(state, *held_out.only(whole, held, self._num_held(whole)))
+            count = max(1, round(self.holdout * len(whole.obs)))  # held out, on average
+            state = self._judged(state, *held_out.only(whole, held, count))
             metrics["model/held_out_loss"] = state.held_out.mean.mean()
         return state, metrics
-
-    def _num_held(self, batch: Batch) -> int:
-        """Decisions of a batch that are held out, on average."""
-        return max(1, round(self.holdout * len(batch.obs)))
 
     def _judged(self, state: ModelState, rows: Batch, real: Array) -> ModelState:
         """The state after losses on held-out decisions `rows` [B], of which `real` [B] count."""

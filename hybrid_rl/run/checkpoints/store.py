@@ -99,7 +99,7 @@ class Store:
             CheckpointError: if there is none, or it belongs to another run.
         """
         self.known = set(checkpoint.steps(self.folder))
-        like = self._like().replace(memory=None)
+        like = self.loop.shapes().replace(memory=None)
         self.newest, state, meta, notes = checkpoint.restore(self.folder, like, step)
         memory = self._memory(meta["capacity"]) if self.replay else self.loop.init().memory
         gathered, packed = Gathered(), meta.get("gathered", {})
@@ -115,15 +115,12 @@ class Store:
         key = jax.random.key(self.loop.seeds[number])
         if self.newest is None:
             return jax.jit(self.loop.agent.init)(key)
-        like = self._like() if self.replay else self._like().replace(memory=None)
+        shapes = self.loop.shapes()
+        like = shapes if self.replay else shapes.replace(memory=None)
         one = jax.tree.map(lambda rows: rows[number], self._read(like))
         if self.replay:
             return one
         return one.replace(memory=jax.jit(self.loop.agent.init)(key).memory)
-
-    def _like(self) -> Any:
-        """Shapes of the state [S, ...]."""
-        return self.loop.shapes()
 
     def _read(self, like: Any) -> Any:
         """A part of the newest checkpoint."""
@@ -142,4 +139,4 @@ class Store:
             ends = zip(old.shape, now.shape, strict=True)
             return jnp.pad(old, [(0, size - filled) for filled, size in ends])
 
-        return jax.tree.map(grown, memory, self._like().memory)
+        return jax.tree.map(grown, memory, self.loop.shapes().memory)

@@ -115,3 +115,15 @@ def json_value(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [json_value(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def arrays(value: Any) -> Any:
+    """A value from JSON with lists of numbers as arrays, and null in them as NaN."""
+    if isinstance(value, dict):
+        return {name: arrays(each) for name, each in value.items()}
+    if not isinstance(value, list):
+        return value
+    try:
+        return np.array(value, float)
+    except (TypeError, ValueError):
+        return [arrays(each) for each in value]

@@ -12,9 +12,7 @@ from tensorboardX.proto.event_pb2 import (  # made at import, so pyright cannot 
     Event,  # pyright: ignore[reportAttributeAccessIssue]
     SessionLog,  # pyright: ignore[reportAttributeAccessIssue]
 )
-from tensorboardX.proto.summary_pb2 import (
-    Summary,  # pyright: ignore[reportAttributeAccessIssue]
-)
+from tensorboardX.proto.summary_pb2 import Summary  # pyright: ignore[reportAttributeAccessIssue]
 
 from hybrid_rl.run.logs.loggers import Logger, scalars
 from hybrid_rl.run.logs.records import Row
