@@ -53,7 +53,11 @@ THREE = (  # a disc, a box and a bar, without symmetry
 
 @part
 class SawyerProbe:
-    """Sawyer among fixed objects; `physics` is native, mjx, warp or auto."""
+    """Sawyer among fixed objects; `physics` is native, mjx, warp or auto.
+
+    Raises:
+        ValueError: as `ContactPlane`, or for an unknown physics.
+    """
 
     physics: str = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE

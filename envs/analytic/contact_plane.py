@@ -55,7 +55,11 @@ class Body(NamedTuple):
 
 @part
 class ContactPlane:
-    """A ball among objects, with a binary contact sensor."""
+    """A ball among objects, with a binary contact sensor.
+
+    Raises:
+        ValueError: for objects that are no rounded boxes, lie outside or leave no room to start.
+    """
 
     objects: tuple[tuple[float, ...], ...] = THREE
     acceleration: Positive = 1.0  # [m/s^2] a

@@ -24,7 +24,11 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class ComputedTorque:
-    """Feedback linearisation of `sawyer_torque`."""
+    """Feedback linearisation of `sawyer_torque`.
+
+    Raises:
+        ValueError: for another environment.
+    """
 
     world: SawyerTorque
     frequency: Positive = 20.0  # [rad/s] w of the errors
@@ -55,7 +59,11 @@ class ComputedTorque:
 
 @part
 class JointPD:
-    """Proportional and derivative feedback at each joint of `sawyer_torque`."""
+    """Proportional and derivative feedback at each joint of `sawyer_torque`.
+
+    Raises:
+        ValueError: for another environment, or gains that are not 7 numbers.
+    """
 
     world: SawyerTorque
     stiffness: tuple[NotNegative, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]

@@ -16,7 +16,12 @@ Bound = tuple[float | None, ...] | float | None  # one for all entries, or each 
 
 @part
 class Limit:
-    """A quantity of `world` between `least` and `most`."""
+    """A quantity of `world` between `least` and `most`.
+
+    Raises:
+        ValueError: for an environment without quantities, or one that has no such quantity or
+            another number of entries; without a limit, or with limits that exclude everything.
+    """
 
     world: Measured
     quantity: str = "speed"

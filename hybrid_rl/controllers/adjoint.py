@@ -44,7 +44,11 @@ class AdjointState(NamedTuple):
 
 @part
 class AdjointController:
-    """A gradient-based planner around a policy, or around zero."""
+    """A gradient-based planner around a policy, or around zero.
+
+    Raises:
+        ValueError: without a gain and without a policy, whose variance is the gain.
+    """
 
     model: Model
     objective: Objective

@@ -9,7 +9,11 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class ConstantController:
-    """The same action at every decision."""
+    """The same action at every decision.
+
+    Raises:
+        ValueError: for an action outside [-1, 1].
+    """
 
     action: float = 0.0  # of every actuator
 

@@ -38,7 +38,11 @@ class GoalState(NamedTuple):
 
 @part
 class GoalController:
-    """Drives to the maximum of a target."""
+    """Drives to the maximum of a target.
+
+    Raises:
+        ValueError: for a target that values no ways where `ahead` asks for it.
+    """
 
     target: Target  # with `ahead` a PathTarget
     domain: Box

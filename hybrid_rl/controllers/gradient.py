@@ -81,7 +81,11 @@ class Scored(NamedTuple):
 
 @part
 class GradientController:
-    """A planner over K candidates and T decisions."""
+    """A planner over K candidates and T decisions.
+
+    Raises:
+        ValueError: for the world itself as the model, which has no gradients.
+    """
 
     model: Model
     objective: Objective

@@ -37,7 +37,11 @@ class RefitsState(NamedTuple):
 
 @part
 class RefitsController:
-    """A planner over K candidates, T decisions and several refits."""
+    """A planner over K candidates, T decisions and several refits.
+
+    Raises:
+        ValueError: for more elites than candidates.
+    """
 
     model: Model
     objective: Objective

@@ -39,7 +39,11 @@ class SamplingState(NamedTuple):
 
 @part
 class SamplingController:
-    """A planner over K candidates and T decisions."""
+    """A planner over K candidates and T decisions.
+
+    Raises:
+        ValueError: for `log_density` of candidates without a density.
+    """
 
     model: Model
     objective: Objective

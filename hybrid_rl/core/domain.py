@@ -18,6 +18,9 @@ class Box:
     A lattice, s_i = frac(shift + i a), a_j = g^-j with g^(v+1) = g + 1, covers the box more evenly
     than independent points; each of its points is uniform, since the shift is (Roberts 2018, The
     Unreasonable Effectiveness of Quasirandom Sequences).
+
+    Raises:
+        ValueError: for lists of different lengths, equal coordinates, or a box without volume.
     """
 
     coordinates: tuple[int, ...] = (0,)  # of x

@@ -26,7 +26,11 @@ from hybrid_rl.types import Spec
 
 @part
 class CategoricalQ:
-    """`members` independent distributions over returns."""
+    """`members` independent distributions over returns.
+
+    Raises:
+        ValueError: for several widths.
+    """
 
     hidden: Widths = (256, 256)  # the width, once for each residual block
     members: Count = 2

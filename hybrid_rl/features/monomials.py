@@ -17,7 +17,11 @@ from hybrid_rl.types import Spec
 
 @part
 class Monomials:
-    """Coordinates of the observation, a constant, and products of the coordinates."""
+    """Coordinates of the observation, a constant, and products of the coordinates.
+
+    Raises:
+        ValueError: for indices out of range, or lists of the wrong length.
+    """
 
     coordinates: tuple[int, ...] | None = None  # of the observation; None: all
     scale: tuple[float, ...] = (1.0,)  # one for all coordinates, or one each

@@ -53,6 +53,9 @@ class DAgger:
     """Queries to a teacher, and gradient steps on its answers.
 
     Query i begins at row `first` + i `length` of the labels.
+
+    Raises:
+        ValueError: without a teacher, or for fields that contradict each other.
     """
 
     policy: LearnedPolicy

@@ -36,7 +36,11 @@ class SolutionState:
 
 @part
 class RegulatorLearner:
-    """A linear policy that regulates a model to the equilibrium of `world`."""
+    """A linear policy that regulates a model to the equilibrium of `world`.
+
+    Raises:
+        ValueError: for draws of a model that is not linear.
+    """
 
     model: Model
     policy: GoalPolicy

@@ -21,7 +21,11 @@ from hybrid_rl.types import Spec
 
 @part
 class Ensemble:
-    """`members` copies of `model`, each with its own "weights", with shared statistics."""
+    """`members` copies of `model`, each with its own "weights", with shared statistics.
+
+    Raises:
+        ValueError: for a number of elites that is not between 1 and that of the members.
+    """
 
     model: Trainable
     members: Count = 5

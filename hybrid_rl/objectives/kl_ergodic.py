@@ -49,7 +49,6 @@ class KLErgodic:
     share: Fraction = 0.0  # of the uniform density in p; 1: coverage
 
     def __post_init__(self) -> None:
-        """Check the target and the number of variances."""
         self.domain.check_target(self)
         if len(self.variance) not in (1, self.domain.size):
             raise FieldError(self, "variance", "must be 1 or v numbers")

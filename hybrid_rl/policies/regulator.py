@@ -24,7 +24,11 @@ from hybrid_rl.types import Room, Spec
 
 @part
 class Regulator:
-    """The regulator of `world` around its equilibrium, by the discrete Riccati equation."""
+    """The regulator of `world` around its equilibrium, by the discrete Riccati equation.
+
+    Raises:
+        ValueError: for weights that are neither one nor one for each coordinate or action.
+    """
 
     world: Analytic
     state_weights: tuple[Positive, ...] = (1.0,)  # diagonal of Q: one for all, or [d]

@@ -28,7 +28,11 @@ from hybrid_rl.types import Spec
 
 @part
 class TanhGaussian(Squashed):
-    """A stochastic policy on [-1, 1]^m."""
+    """A stochastic policy on [-1, 1]^m.
+
+    Raises:
+        ValueError: for bounds out of order.
+    """
 
     hidden: Widths = (256, 256)
     activation: Activation = "relu"

@@ -14,7 +14,11 @@ from hybrid_rl.protocols import Measured
 
 @part
 class Aim:
-    """A quantity of `world` at its target."""
+    """A quantity of `world` at its target.
+
+    Raises:
+        ValueError: for an environment without the quantity, or a target of another size.
+    """
 
     world: Measured
     quantity: str = "speed"

@@ -16,7 +16,12 @@ from hybrid_rl.types import Params
 
 @part
 class KnownReward:
-    """The reward of `goal`, or that of `world`."""
+    """The reward of `goal`, or that of `world`.
+
+    Raises:
+        ValueError: without a goal, for an environment whose reward is not a function of
+            observations and action.
+    """
 
     world: Env
     goal: Goal | None = None  # None: the environment's own reward

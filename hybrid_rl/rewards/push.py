@@ -16,7 +16,11 @@ QUANTITIES = ("block", "reach")
 
 @part
 class Push:
-    """The quantities `block` and `reach` of `world`."""
+    """The quantities `block` and `reach` of `world`.
+
+    Raises:
+        ValueError: for an environment that lacks one of them.
+    """
 
     world: Measured
     target: tuple[float, ...] = (0.1, 0.0)  # q* [m]

@@ -32,7 +32,11 @@ class ContactEnv(Env, Protocol):
 
 @part
 class KnownMap:
-    """The map of a world whose objects are known."""
+    """The map of a world whose objects are known.
+
+    Raises:
+        ValueError: for a `low` that is not between 0 and `high`.
+    """
 
     world: Annotated[ContactEnv, has("distance", "needs contacts")]
     width: Positive = 0.008  # w [m]

@@ -71,7 +71,11 @@ class ModelState:
 
 @part
 class ModelLearner:
-    """Gradient steps on a model and, unless it is None, a reward."""
+    """Gradient steps on a model and, unless it is None, a reward.
+
+    Raises:
+        ValueError: for elites without held-out decisions, or a discounted reward that sees x'.
+    """
 
     model: Annotated[
         Trainable,
