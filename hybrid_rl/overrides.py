@@ -186,13 +186,13 @@ def as_typed(line: str, texts: Sequence[str]) -> str:
     head = re.match(r"([\w.]+)=(.*?): ", line)
     if head is None:
         return line
-    values = {str(value_of(head[2])), head[2].strip("'\"")}
+    value, values = value_of(head[2]), {str(value_of(head[2])), head[2].strip("'\"")}
     for each in parse(texts):
         path, text = key(each), each.get_value_element_as_str()
         if each.is_delete() or path.rsplit(".", 1)[-1] != head[1].rsplit(".", 1)[-1]:
             continue
         written = (each.input_line or "").partition("=")[2] or text
-        if {text.strip("'\""), str(each.value())} & values:
+        if each.value() == value or {text.strip("'\""), str(each.value())} & values:
             return f"{path}={written}: {line[head.end() :]}"
     return line
 
