@@ -6,7 +6,7 @@ any other key has no effect and is refused; a YAML file may set it, as it serves
 
 import difflib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import compress
 from typing import Any
 
@@ -175,6 +175,17 @@ def closest_hint(word: str, known: Iterable[str]) -> str:
     """The end of a message: a hint at the closest of the `known`, or "" if none is close."""
     close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.65)
     return f"; did you mean {close[0]}?" if close else ""
+
+
+def of_keys(values: dict[str, Any], read: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """The values whose full keys are in `read`, and the groups that hold one."""
+    kept = {}
+    for key, value in values.items():
+        path = f"{where}{key}"
+        inner = of_keys(value, read, f"{path}.") if isinstance(value, dict) else {}
+        if path in read or inner:
+            kept[key] = value if path in read else inner
+    return kept
 
 
 def as_typed(line: str, texts: Sequence[str]) -> str:

@@ -79,7 +79,7 @@ class Episode:
         right = numbers and min(self._std, default=0) >= 0
         if len(self._std) not in sizes or not right:
             line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
-            raise ValueError(f"episode.sensor_noise={self.sensor_noise}: {line}")
+            raise FieldError(self, "sensor_noise", line).at("episode")
 
     def _ranges(self, given: Any) -> Ranges | None:
         """Of the bodies, as they were given; None if all have the same."""
