@@ -130,11 +130,16 @@ def test_a_run_names_the_shortest_key_of_the_field():
         ("proposal.first.strengths=[]", "proposal.first.strengths=[]: must have one entry"),
         ("planner.rest=-2", "planner.rest=-2: must lie in [-1, 1]"),
         ("algo=kle3 equilibrium.free=[9]", "equilibrium.free=[9]: must be some of 0 to 1, not all"),
+        ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
+        (
+            "algo=sac learner@policy_learner=flash_sac",
+            "policy_learner.policy=TanhGaussian: has no ",
+        ),
         ("algo=localisation", "task=pendulum: has no env.acceleration, which localisation"),
         ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
     ],
 )
 def test_what_no_run_can_use_is_refused_before_it(given, line):
-    words = ["task=pendulum", "algo=hybrid_stochastic", *re.split(r" (?=[\w.]+=)", given)]
+    words = ["task=pendulum", "algo=hybrid_stochastic", *re.split(r" (?=[\w.@]+=)", given)]
     with pytest.raises(config.UsageError, match=re.escape(line)):
         config.build(config.load(words))
