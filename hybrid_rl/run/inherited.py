@@ -106,8 +106,7 @@ def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
         while (above := key.rpartition(".")[0]) and select(values, above) is LACKING:
             key = above  # a group that is newer than the run
         _put(values, key, _node(select(raw, key), select(now, key), values, raw))
-    made: Any = OmegaConf.create(values)
-    OmegaConf.resolve(made)
+    made: Any = OmegaConf.create(configuration.resolved(OmegaConf.create(values)))
     OmegaConf.set_struct(made, True)
     return made
 
