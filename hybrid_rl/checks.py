@@ -1,7 +1,6 @@
 """Checks of a configuration: counts, choices, kinds of values, fields of parts."""
 
 import inspect
-import math
 from collections.abc import Collection, Mapping
 from dataclasses import fields, is_dataclass
 from numbers import Integral
@@ -28,6 +27,7 @@ COUNTS = (
 SECTIONS = ("env", "episode", "replay", "controllers", "learners")
 PAID = ("reward", "constraint")  # what the world pays and asks for; a run may lack the keys
 STEPS = 2**31  # decisions, fewer of which are counted
+FINITE = 3.4e38  # the largest number of 32 bits
 SEEDS = 2**32  # distinct seeds of JAX's generator
 MODES = ("full", "policy", "planner")
 KINDS = {  # type of a part's field -> its name in messages
@@ -147,6 +147,8 @@ def countable(config: DictConfig) -> None:
     """Raise UsageError for more decisions than their counter holds, the last round included."""
     if config.total_steps + config.num_envs > STEPS:
         most = STEPS - config.num_envs
+        if most < 1:
+            raise UsageError(f"num_envs={config.num_envs}: must be at most {STEPS - 1}")
         line = f"total_steps={config.total_steps}: must be at most {most}"
         raise UsageError(f"{line}: decisions are counted in 32 bits")
 
@@ -156,10 +158,11 @@ def check_kinds(node: DictConfig, where: str = "") -> None:
     kinds = _kinds(node, where)
     for key, value in node.items():
         each = value if isinstance(value, ListConfig) else [value]
-        if any(isinstance(item, float) and not math.isfinite(item) for item in each):
+        if any(isinstance(item, float) and not abs(item) <= FINITE for item in each):
             raise UsageError(f"{where}{key}={value}: must be finite")
         if isinstance(value, DictConfig):
             check_kinds(value, f"{where}{key}.")
+        if isinstance(value, DictConfig) and key not in kinds:
             continue
         kind = tuple if isinstance(value, ListConfig) else type(value)
         wanted = kinds.get(str(key), {kind})

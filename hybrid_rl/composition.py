@@ -72,7 +72,9 @@ def check_choices(texts: Sequence[str]) -> None:
     for text in texts:
         key, _, value = text.lstrip("+").partition("=")
         each = [value] if value.startswith(("[", "{")) else value.split(",")
-        if all(isinstance(overrides.value_of(one), (str, list)) for one in each):
+        read = [overrides.value_of(one) for one in each]
+        names = read[0] if isinstance(read[0], list) else read  # a list: options one after another
+        if all(isinstance(one, str) for one in names):
             continue
         if known := options(key.partition("@")[0]):
             raise UsageError(f"{text}: {_choice(value, known)}")

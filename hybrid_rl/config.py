@@ -121,26 +121,26 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     """A copy with every interpolation replaced by its value, composed from the overrides.
 
     What the run does not read is left out; all that the user may override is in it.
+
+    Raises:
+        UsageError: for a reference to a key that neither the task nor the method sets.
     """
-    values: Any = OmegaConf.to_container(config, resolve=True)
+    values = resolved(config)
     values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
     read = overriding.reachable_keys(overriding.raw_values(config), READ)
-    made: Any = OmegaConf.create(_of(values, read), flags={"struct": True})
+    made: Any = OmegaConf.create(overriding.of_keys(values, read), flags={"struct": True})
     return made
 
 
-def _of(values: dict[str, Any], read: Mapping[str, Any], where: str = "") -> dict[str, Any]:
-    """The values whose full keys are in `read`, and the groups that hold one."""
-    kept = {}
-    for key, value in values.items():
-        path = f"{where}{key}"
-        inner = _of(value, read, f"{path}.") if isinstance(value, dict) else {}
-        if path in read or inner:
-            kept[key] = value if path in read else inner
-    return kept
+def resolved(config: DictConfig) -> Any:
+    """The values of a composed configuration as dicts and lists; errors as `resolve`."""
+    try:
+        return OmegaConf.to_container(config, resolve=True)
+    except OmegaConfBaseException as error:
+        raise UsageError(explain(error)) from error
 
 
 def build(config: DictConfig) -> Run:
@@ -150,8 +150,8 @@ def build(config: DictConfig) -> Run:
         UsageError: if a value is out of range.
     """
     check(config)
-    rounds, kept = -(-config.total_steps // config.num_envs), config.get("begun", {})
-    remembered = kept.get("remembered", 0)  # decisions of each environment
+    rounds = -(-config.total_steps // config.num_envs)
+    remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
     checks.whole("replay.capacity", config.replay.capacity)
     with _usage(config):
         parts = _on_this_machine(config)
@@ -208,8 +208,7 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
     env = _instantiate(parts.env, "env")
     notes = check_world(env)
     if not type(env).__module__.startswith("hybrid_rl.") and "steps" not in parts.episode:
-        line = f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode"
-        notes = (*notes, line)
+        notes += (f"episode.steps is not set by the task: {Episode.steps:,} decisions an episode",)
     check_fields(parts.episode, Episode, "episode.")
     given = _instantiate(parts.episode, "episode")
     given |= {name: _instantiate(parts.get(name) or None, name) for name in PAID}

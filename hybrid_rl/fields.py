@@ -7,11 +7,12 @@
         hidden: tuple[Count, ...] = (256, 256)
 
 Noise(std=0.0) raises `Noise: std=0.0: must be above 0`; a run names the key of its configuration
-instead, `proposal.std=0.0: must be above 0`. Lists become tuples, so that parts can be hashed.
+instead, `proposal.std=0.0: must be above 0`. Lists become tuples, so that parts can be hashed, and
+whole numbers in a field of numbers become such, so that all its values make arrays of one type.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from types import NoneType, UnionType
 from typing import (
@@ -29,6 +30,7 @@ from typing import (
 import numpy as np
 
 Class = TypeVar("Class", bound=type)
+LARGEST = 2**30  # whole number of a field: sums of two of them fit 32 bits
 
 
 class FieldError(ValueError):
@@ -71,8 +73,20 @@ def among(*values: float) -> Must:
     return Must(lambda x: x in values, f"be {' or '.join(map(str, values))}", of=values)
 
 
+NO_PART = bool | int | float | str | list | tuple | Mapping
+
+
 def _whole(value: Any) -> bool:
     return hasattr(value, "__index__") and not isinstance(value, bool)
+
+
+def _listed(value: Any) -> bool:
+    """Whether a value can become a tuple; an array without axes is a number."""
+    return (
+        isinstance(value, Iterable)
+        and not isinstance(value, str | Mapping)
+        and bool(getattr(value, "shape", True))
+    )
 
 
 Count = Annotated[int, Must(lambda n: _whole(n) and n >= 1, "be a whole number, 1 or more")]
@@ -84,6 +98,9 @@ Share = Annotated[float, Must(lambda x: 0 < x <= 1, "lie in (0, 1]")]
 Inside = Annotated[float, Must(lambda x: 0 < x < 1, "lie in (0, 1)")]
 Discount = Annotated[float, Must(lambda x: 0 <= x < 1, "lie in [0, 1)")]
 Fraction = Annotated[float, Must(lambda x: 0 <= x <= 1, "lie in [0, 1]")]
+Signed = Annotated[float, Must(lambda x: -1 <= x <= 1, "lie in [-1, 1]")]
+FILLED = Must(lambda values: len(values) > 0, "have one entry or more")  # a rule of lists
+Strengths = Annotated[tuple[NotNegative, ...], FILLED]  # factors on the actions of a policy
 
 
 @dataclass_transform(frozen_default=True)
@@ -127,14 +144,16 @@ def _check(self: Any) -> None:
             continue
         for kind in kinds:
             if get_origin(plain(kind)) is tuple:
-                if isinstance(value, float | int) and len(kinds) > 1:
+                if not _listed(value) and len(kinds) > 1:
                     continue  # has the rule of a number
-                value = _tuples(kind, value)
+                value = _tuples(plain(kind), value)
                 object.__setattr__(self, field.name, value)
             elif isinstance(value, tuple) and len(kinds) > 1:
                 continue  # has the rule of its entries
             null = ", or null" if len(kinds) < len(choices(field.type)) else ""
             check(self, field.name, kind, null)
+            value = _number(kind, value)
+            object.__setattr__(self, field.name, value)
 
 
 def method_of(kind: Any) -> str:
@@ -155,23 +174,38 @@ def _wrong(kind: Any, value: Any) -> str:
     if get_origin(kind) is Annotated:
         must: Must = of[1]
         try:
-            holds = bool(must.hold(value))
+            holds = bool(must.hold(value)) and not (of[0] in (int, float) and value is True)
         except (TypeError, ValueError):  # a word or an array in a list of numbers, say
             holds = False
-        return "" if holds else must.words if must.has else f"must {must.words}"
-    if getattr(kind, "_is_protocol", False) and isinstance(value, bool | int | float | str):
-        return "must be a part"
+        if holds and of[0] is int and value > LARGEST:
+            return f"must be at most {LARGEST}"
+        wrong = must.words if must.has else f"must {must.words}"
+        return _wrong(of[0], value) if holds else wrong
+    if getattr(kind, "_is_protocol", False):
+        return "must be a part" if isinstance(value, NO_PART) else _lacking(kind, value)
     if get_origin(kind) is Literal:
         return "" if value in of else f"choose one of {', '.join(map(str, of))}"
     if get_origin(kind) is not tuple:
         return ""
-    if isinstance(value, float | int):
+    if not isinstance(value, tuple):
         return "must be a list"
     each = of[:1] * len(value) if of[-1] is Ellipsis else of
     if len(each) != len(value):
         return f"must have {len(each)} entries"
     wrong = next(filter(None, map(_wrong_entry, each, value)), "")
     return "must be a list of lists" if wrong == "must be a list" else wrong
+
+
+def _lacking(protocol: Any, value: Any) -> str:
+    """What a part of the library lacks of a protocol, in words; "" if it has all."""
+    if not type(value).__module__.startswith("hybrid_rl."):
+        return ""
+    bases = [base for base in protocol.__mro__ if getattr(base, "_is_protocol", False)]
+    names = {
+        name for base in bases for name in {**vars(base), **vars(base).get("__annotations__", {})}
+    }
+    lacks = sorted(x for x in names if not (x.startswith("_") or hasattr(value, x)))
+    return f"has no {', '.join(lacks)}; choose a part that has" if lacks else ""
 
 
 def _wrong_entry(kind: Any, value: Any) -> str:
@@ -185,9 +219,17 @@ def _wrong_entry(kind: Any, value: Any) -> str:
 
 def _tuples(kind: Any, value: Any) -> Any:
     """A value of this type with tuples for its lists and arrays."""
-    if get_origin(kind) is not tuple or isinstance(value, float | int):
+    if get_origin(kind) is not tuple or not _listed(value):
         return value
     return tuple(_tuples(get_args(kind)[0], each) for each in value)
+
+
+def _number(kind: Any, value: Any) -> Any:
+    """A value of this type, with numbers for whole ones where it has numbers."""
+    of = plain(kind)
+    if get_origin(of) is tuple and isinstance(value, tuple):
+        return tuple(_number(get_args(of)[0], each) for each in value)
+    return float(value) if of is float and type(value) is int else value
 
 
 def _as_yaml(value: Any) -> Any:

@@ -6,7 +6,7 @@ any other key has no effect and is refused; a YAML file may set it, as it serves
 
 import difflib
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import compress
 from typing import Any
 
@@ -177,6 +177,17 @@ def closest_hint(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {close[0]}?" if close else ""
 
 
+def of_keys(values: dict[str, Any], read: Mapping[str, Any], where: str = "") -> dict[str, Any]:
+    """The values whose full keys are in `read`, and the groups that hold one."""
+    kept = {}
+    for key, value in values.items():
+        path = f"{where}{key}"
+        inner = of_keys(value, read, f"{path}.") if isinstance(value, dict) else {}
+        if path in read or inner:
+            kept[key] = value if path in read else inner
+    return kept
+
+
 def as_typed(line: str, texts: Sequence[str]) -> str:
     """A message that begins with FIELD=VALUE of a part, with the key and the value as typed.
 
@@ -186,13 +197,13 @@ def as_typed(line: str, texts: Sequence[str]) -> str:
     head = re.match(r"([\w.]+)=(.*?): ", line)
     if head is None:
         return line
-    values = {str(value_of(head[2])), head[2].strip("'\"")}
+    value, values = value_of(head[2]), {str(value_of(head[2])), head[2].strip("'\"")}
     for each in parse(texts):
         path, text = key(each), each.get_value_element_as_str()
         if each.is_delete() or path.rsplit(".", 1)[-1] != head[1].rsplit(".", 1)[-1]:
             continue
         written = (each.input_line or "").partition("=")[2] or text
-        if {text.strip("'\""), str(each.value())} & values:
+        if each.value() == value or {text.strip("'\""), str(each.value())} & values:
             return f"{path}={written}: {line[head.end() :]}"
     return line
 

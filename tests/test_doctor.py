@@ -61,7 +61,9 @@ def found(given):
 
 
 def test_a_sound_world_gets_no_line():
-    given = evidence(*oscillator())
+    x, action = oscillator()
+    goal = np.broadcast_to(np.arange(len(x))[:, None], x.shape[:2])  # one in each episode
+    given = evidence(np.dstack((x, goal)), action, reward=evidence(x, action).made.reward)
     assert found(given) == set()
     assert [check(given) for check in (task.ends, task._fixed, task.reward)] == [None] * 3
 
@@ -125,12 +127,10 @@ def test_decisions_that_are_too_rare_are_noticed():
 def test_ends_and_lengths():
     x, action = oscillator()
     line = task.ends(evidence(x, action, terminated=True))
-    assert line.startswith(
-        f"{EPISODES - 1} of {EPISODES - 1} terminations came at decision {STEPS}"
-    )
+    number = f"{EPISODES - 1} of {EPISODES - 1}"
+    assert line.startswith(f"{number} terminations came at decision {STEPS}")
     assert "within 2 decisions" in task.ends(evidence(*oscillator(steps=2), terminated=True))
-    line = task._fixed(evidence(*oscillator(steps=5)))
-    assert line.endswith("episode.steps=50")
+    assert task._fixed(evidence(*oscillator(steps=5))).endswith("episode.steps=50")
 
 
 @pytest.mark.parametrize(
@@ -273,9 +273,8 @@ def test_each_learner_is_examined_by_itself(pair):
     assert one.by_policy.obs.shape == two.by_policy.obs.shape
     assert (one.by_policy.action != two.by_policy.action).any()
     assert {row["seed"] for row in two.rows} == {5}
-    values = [
-        {"step": 9, "seed": seed, "sac/q": q} for seed, q in ((4, -5.0), (5, 70.0), (5, 80.0))
-    ]
+    seen = (4, -5.0), (5, 70.0), (5, 80.0)
+    values = [{"step": 9, "seed": seed, "sac/q": q} for seed, q in seen]
     for rows, seeds in (
         (values[:2], "seed 5: the"),
         ([*values[1:], values[2] | {"seed": 4}], "seeds 4, 5: the"),

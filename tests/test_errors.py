@@ -151,7 +151,7 @@ USAGE = [  # overrides of train, words of the line
     ("eval_modes=full", "eval_modes=full: must be a list of full, policy, planner"),
     ("checkpoint_replay=0", "checkpoint_replay=0: must be true or false"),
     ("precision=low", "precision=low: choose one of auto, mixed, bf16, tf32, float32"),
-    ("replay.capacity=1000000000000 total_steps=2147483647", "learners would take"),
+    ("replay.capacity=1000000000 total_steps=2147483647", "learners would take"),
     ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
     ("algo=bc demonstrations=null", "demonstrations.file=None: must be a word"),
     ("algo=bc num_demonstrations=0", "num_demonstrations=0: must be 1 or more"),

@@ -1,13 +1,24 @@
 """Parts check their own fields."""
 
+import re
 from dataclasses import FrozenInstanceError
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 import pytest
 
 from hybrid_rl import config
-from hybrid_rl.fields import Count, Discount, FieldError, NotNegative, Positive, Share, part
+from hybrid_rl.fields import (
+    FILLED,
+    Count,
+    Discount,
+    FieldError,
+    NotNegative,
+    Positive,
+    Several,
+    Share,
+    part,
+)
 from hybrid_rl.protocols import Objective
 
 
@@ -25,6 +36,7 @@ class Probe:
     rows: tuple[tuple[float, ...], ...] = ()
     which: tuple[int, ...] = ()
     factors: tuple[Positive, ...] | Positive = 1.0
+    names: Annotated[tuple[Several, ...], FILLED] = (2,)
     aim: Objective | None = None
 
     def __post_init__(self) -> None:
@@ -40,14 +52,23 @@ class Probe:
         ({"count": 1.5}, "count=1.5: must be a whole number, 1 or more"),
         ({"count": True}, "count=true: must be a whole number, 1 or more"),
         ({"rate": float("nan")}, "rate=nan: must be above 0"),
+        ({"count": 10**12}, "count=1000000000000: must be at most 1073741824"),
+        ({"rate": True}, "rate=true: must be above 0"),
+        ({"names": []}, "names=[]: must have one entry or more"),
+        ({"names": [1]}, "names=[1]: must be a whole number, 2 or more"),
+        ({"factors": None}, "factors=null: must be above 0"),
         ({"tau": 3}, "tau=3: must lie in (0, 1]"),
         ({"discount": 1.0}, "discount=1.0: must lie in [0, 1), or null"),
         ({"kind": "faster"}, "kind=faster: choose one of slow, fast"),
         ({"low": [1.0]}, "low=[1.0]: must have 2 entries"),
         ({"weights": [1.0, -1.0]}, "weights=[1.0, -1.0]: must be 0 or more"),
         ({"weights": [1.0, "a"]}, "weights=[1.0, 'a']: must be 0 or more"),
-        ({"aim": True}, "aim=true: must be a part, or null"),
+        *(
+            ({"aim": value}, f"aim={text}: must be a part, or null")
+            for value, text in ((True, "true"), ([], "[]"), ({"a": 1}, "{'a': 1}"))
+        ),
         ({"weights": 1.0}, "weights=1.0: must be a list"),
+        ({"weights": "ab"}, "weights=ab: must be a list"),
         ({"weights": [np.eye(2)]}, "weights=[[[1.0, 0.0], [0.0, 1.0]]]: must be 0 or more"),
         ({"rows": [1.0, 2.0]}, "rows=[1.0, 2.0]: must be a list of lists"),
         ({"rows": [[float("nan")], [1.0]]}, "rows=[[nan], [1.0]]: must hold finite numbers"),
@@ -69,6 +90,7 @@ def test_lists_and_arrays_become_tuples_and_a_part_is_a_frozen_dataclass():
     same = Probe(weights=(1.0,), rows=((1.0, 2.0), (3.0,)), factors=(2,))
     assert made == same
     assert hash(made) == hash(same)
+    assert [type(each) for each in (*made.factors, Probe(rate=2).rate)] == [float, float]
     with pytest.raises(FrozenInstanceError):
         made.rate = 2.0
 
@@ -83,3 +105,41 @@ def test_a_run_names_the_shortest_key_of_the_field():
         key = typed.partition("=")[0]
         with pytest.raises(config.UsageError, match=rf"^{key}=\d: must"):
             config.build(config.load(["task=pendulum", f"algo={algo}", typed]))
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ("reward=[1]", "reward=[1]: choose one of aim, "),
+        ("num_envs=1000000000000", "num_envs=1000000000000: must be at most 2147483647"),
+        ("random_steps=1000000000000", "random_steps=1000000000000: must be at most 1073741824"),
+        ("random_steps=true", "random_steps=true: must be a whole number, 0 or more"),
+        ("episode.steps=1000000000000", "episode.steps=1000000000000: must be at most 1073741824"),
+        ("episode.sensor_noise=true", "episode.sensor_noise=true: must be 1 or 3 numbers"),
+        ("episode.sensor_noise=[]", "episode.sensor_noise=[]: must be 1 or 3 numbers"),
+        ("episode.action_noise=true", "episode.action_noise=true: must be 0 or more"),
+        ("critic.pessimism={a: 1}", "critic.pessimism={'a': 1}: must be a number or null"),
+        ("critic.pessimism=1e39", "critic.pessimism=1e+39: must be finite"),
+        ("policy_learner.batch_size=1000000000000", "must be at most 1073741824"),
+        ("policy_learner.alpha_learning_rate=-1", "must be 0 or more"),
+        ("replay.demonstrations=[]", "replay.demonstrations=[]: must be a part, or null"),
+        ("model.model.inputs=[]", "model.model.inputs=[]: must have one entry or more"),
+        ("model.model.inputs=[3]", "model.inputs=[3]: the observation of this task has entries 0"),
+        ("model.model.log_std_min=3", "model.model.log_std_min=3.0: must lie below log_std_max"),
+        ("model_learner.max_grad_norm=-1", "model_learner.max_grad_norm=-1: must be above 0"),
+        ("proposal.first.strengths=[]", "proposal.first.strengths=[]: must have one entry"),
+        ("planner.rest=-2", "planner.rest=-2: must lie in [-1, 1]"),
+        ("algo=kle3 equilibrium.free=[9]", "equilibrium.free=[9]: must be some of 0 to 1, not all"),
+        ("task=two_link algo=kle3_bayesopt", "belief.size=1: must be 2, as of the domain"),
+        (
+            "algo=sac learner@policy_learner=flash_sac",
+            "policy_learner.policy=TanhGaussian: has no ",
+        ),
+        ("algo=localisation", "task=pendulum: has no env.acceleration, which localisation"),
+        ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
+    ],
+)
+def test_what_no_run_can_use_is_refused_before_it(given, line):
+    words = ["task=pendulum", "algo=hybrid_stochastic", *re.split(r" (?=[\w.@]+=)", given)]
+    with pytest.raises(config.UsageError, match=re.escape(line)):
+        config.build(config.load(words))

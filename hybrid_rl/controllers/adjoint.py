@@ -60,7 +60,7 @@ class AdjointController:
     gain_decay: Share = 1.0  # of W, per decision of the episode
     run_decay: Share = 1.0  # of W, per decision of the run; where they are not counted, W = 0
     normalise: bool = False  # g by its root mean square over the horizon; W is then [u]
-    costate_bound: float | None = None  # clip of rho; the thesis' author used 1
+    costate_bound: Positive | None = None  # clip of rho; the thesis' author used 1
     apply: Literal["first", "horizon", "search"] = "first"
     lyapunov: StabilizingPolicy | None = None  # whose V is logged; None: no log
     regulator: StabilizingPolicy | None = None  # whose room bounds v; None: no bound

@@ -3,23 +3,15 @@
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import FieldError, part
+from hybrid_rl.fields import Signed, part
 from hybrid_rl.types import Params, Spec
 
 
 @part
 class ConstantController:
-    """The same action at every decision.
+    """The same action at every decision."""
 
-    Raises:
-        ValueError: for an action outside [-1, 1].
-    """
-
-    action: float = 0.0  # of every actuator
-
-    def __post_init__(self) -> None:
-        if not -1 <= self.action <= 1:
-            raise FieldError(self, "action", "must lie in [-1, 1]")
+    action: Signed = 0.0  # of every actuator
 
     def init(self, spec: Spec) -> Array:
         """The action [m]."""

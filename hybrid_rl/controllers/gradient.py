@@ -47,6 +47,7 @@ from hybrid_rl.fields import (
     Natural,
     NotNegative,
     Positive,
+    Strengths,
     part,
 )
 from hybrid_rl.protocols import Constraint, Model, Objective, Policy
@@ -90,7 +91,7 @@ class GradientController:
     model: Model
     objective: Objective
     policy: Policy | None = None  # None: no strengths; a tail is then one of zeros
-    strengths: tuple[NotNegative, ...] = (1.0, 0.8, 0.6, 0.4, 0.2)  # the candidates have in turn
+    strengths: Strengths = (1.0, 0.8, 0.6, 0.4, 0.2)  # the candidates have in turn
     horizon: Count = 10  # T [decisions]
     tail: Natural = 20  # [decisions] of the policy after them
     samples: Count = 32  # K

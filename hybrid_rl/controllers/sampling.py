@@ -21,7 +21,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import agreement, lifting, sampling
-from hybrid_rl.fields import Count, FieldError, Positive, part
+from hybrid_rl.fields import Count, FieldError, Positive, Signed, part
 from hybrid_rl.protocols import Model, Objective, Policy, Proposal
 from hybrid_rl.types import Considered, EnvState, Params, Path, Spec
 
@@ -55,7 +55,7 @@ class SamplingController:
     normalise: bool = False
     log_density: bool = False  # the thesis' p(v) in the weight
     execute: Literal["mean", "sample", "best"] = "mean"
-    rest: float = 0.0  # [u] initial plan, and the last action of a shifted one
+    rest: Signed = 0.0  # [u] initial plan, and the last action of a shifted one
     agreement_every: Count = 1  # decisions between comparisons with `policy`
 
     def __post_init__(self) -> None:

@@ -21,6 +21,7 @@ from scipy.linalg import solve_discrete_are
 from hybrid_rl.core.solving import solve
 from hybrid_rl.types import Room
 
+LEAST = 1e-300  # modulus of an eigenvalue, so that it has a logarithm
 SLOW = 0.1  # growth in a time constant of the regulator below which a system is not unstable
 
 
@@ -48,8 +49,9 @@ def room(A: np.ndarray, B: np.ndarray, K: np.ndarray, spare: np.ndarray) -> Room
     |K e|_i <= most sum_j sum_k |K (A - B K)^k B|_ij. A stable system needs no such bound.
     """
     loop = A - B @ K
-    time = -1 / np.log(np.abs(np.linalg.eigvals(loop)).max())
-    if time * np.log(np.abs(np.linalg.eigvals(A)).max()) < SLOW:
+    own, closed = (max(np.abs(np.linalg.eigvals(M)).max(), LEAST) for M in (A, loop))
+    time = -1 / np.log(closed)
+    if time * np.log(own) < SLOW:
         return None
     e, used = B, np.ones(len(K))
     for _ in range(int(np.ceil(20 * time))):

@@ -53,6 +53,10 @@ class CategoricalQ:
         keys, net = jax.random.split(key, self.members), self._net()
         return jax.vmap(lambda k: normalised.init(net, k, spec.n + spec.act))(keys)
 
+    def observe(self, params: dict[str, Any], x: Array, returns: Array) -> dict[str, Any]:
+        """`params`: the statistics are those of `in_batch`."""
+        return params
+
     def constrained(self, params: dict[str, Any]) -> dict[str, Any]:
         """`params` with weights of unit norm."""
         return {**params, "weights": normalised.constrained(params["weights"])}

@@ -70,9 +70,11 @@ def effects(run: Evidence) -> tuple[np.ndarray, np.ndarray, tuple[float, float]]
 
     every = list(range(lags))
     none, best = squared([]), squared(every)
-    most = np.argmax((none - best).mean(0) / none.mean(0))
+    size = none.mean(0)
+    size = np.where(size > 0, size, np.inf)  # what needs no action has no effect of one
+    most = np.argmax((none - best).mean(0) / size)
     loss = [squared([j for j in every if j != k])[:, most] - best[:, most] for k in every]
-    size, spread = none[:, most].mean(), y.var(0)
+    size, spread = size[most], y.var(0)
     left = best.mean(0) / np.where(spread > 0, spread, np.inf)  # what changes evenly is predicted
     return (
         np.array([each.mean() for each in loss]) / size,

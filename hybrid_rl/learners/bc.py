@@ -23,7 +23,7 @@ from jax import Array
 from hybrid_rl.core.clipping import check_saturation
 from hybrid_rl.core.lifting import lift
 from hybrid_rl.core.optimisers import adamw
-from hybrid_rl.fields import Inside, NotNegative, Positive, Share, part
+from hybrid_rl.fields import Count, Inside, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Demonstrations, LearnedPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -52,7 +52,7 @@ class BehaviourCloning:
     model: Model | None = None  # lifts the demonstrations to planning states; None: as they are
     learning_rate: Positive = 3e-3
     edge: Inside = 0.99  # bound of the imitated actions
-    batch_size: int = 128
+    batch_size: Count = 128
     updates: float = 0.25  # per decision
     weight_decay: NotNegative = 0.0  # of the layers' matrices, per unit of learning rate
     average: Share | None = None  # share of the new weights in the mean that acts; None: no mean

@@ -13,7 +13,11 @@ from hybrid_rl.types import Batch, Params, Spec
 
 @part
 class BeliefLearner:
-    """Adds the reward of the latest decision, measured at the state s after it, to a belief."""
+    """Adds the reward of the latest decision, measured at the state s after it, to a belief.
+
+    Raises:
+        ValueError: for a belief about another number of coordinates than the domain has.
+    """
 
     belief: Belief
     domain: Box  # s: these coordinates of the observation
@@ -21,6 +25,11 @@ class BeliefLearner:
 
     data: ClassVar[str] = "latest"
     owns: ClassVar[tuple[str, ...]] = ("belief",)
+
+    def __post_init__(self) -> None:
+        size = getattr(self.belief, "size", self.domain.size)
+        if size != self.domain.size:
+            raise ValueError(f"belief.size={size}: must be {self.domain.size}, as of the domain")
 
     def check(self, decisions: int) -> None:
         """Raise ValueError if the belief has no room for the measurements of an episode."""

@@ -19,7 +19,7 @@ from jax import Array
 
 from hybrid_rl.core import decay, statistics
 from hybrid_rl.core import soft_actor_critic as steps
-from hybrid_rl.fields import Discount, Positive, Share, part
+from hybrid_rl.fields import Count, Discount, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -46,7 +46,7 @@ class DDPG:
     critic_learning_rate: Positive = 1e-3
     discount: Discount = 0.99
     tau: Share = 0.01
-    batch_size: int = 128
+    batch_size: Count = 128
     updates: float = 1  # per decision
     schedule: Schedule | None = None  # of the learning rates
 

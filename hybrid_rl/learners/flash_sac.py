@@ -75,7 +75,7 @@ class FlashSAC:
     target_sigma: Positive = 0.15  # of the normal distribution with the entropy that is aimed at
     discount: Discount = 0.99
     tau: Share = 0.01
-    batch_size: int = 512
+    batch_size: Count = 512
     batches: Count = 2  # steps of the critic for each step of the policy
     updates: float = 0.5  # steps of the policy per decision
     schedule: Schedule | None = None  # of the learning rate

@@ -17,7 +17,7 @@ from jax import Array
 from jax.flatten_util import ravel_pytree
 
 from hybrid_rl.core import fisher
-from hybrid_rl.fields import Positive, Share, part
+from hybrid_rl.fields import Count, Positive, Share, part
 from hybrid_rl.networks import mean_weights, precision
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import Batch, Params, Spec
@@ -49,7 +49,7 @@ class InformationLearner:
     sigma: Positive | None = 0.1  # of the change, in running deviations; None: the model's
     floor: Positive = 0.01  # entries below it are counted in the metric information/floored
     rate: Share = 0.05  # of the running mean, per batch; exact over the first 1 / rate batches
-    batch_size: int = 64
+    batch_size: Count = 64
     updates: float = 1  # batches per decision
 
     data: ClassVar[str] = "uniform"

@@ -23,7 +23,16 @@ from hybrid_rl.core import branches, decay, soft_return
 from hybrid_rl.core import soft_actor_critic as steps
 from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.soft_actor_critic import SACState
-from hybrid_rl.fields import Discount, FieldError, Natural, Positive, Share, part
+from hybrid_rl.fields import (
+    Count,
+    Discount,
+    FieldError,
+    Natural,
+    NotNegative,
+    Positive,
+    Share,
+    part,
+)
 from hybrid_rl.protocols import Critic, LearnedPolicy, Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Imagined, Params, Spec
 
@@ -56,12 +65,12 @@ class ModelBased:
     branch_memory: int = 25_600  # imagined transitions that are kept; 0: drawn for each update
     policy_learning_rate: Positive = 3e-4
     critic_learning_rate: Positive = 3e-4
-    alpha_learning_rate: float = 3e-4
+    alpha_learning_rate: NotNegative = 3e-4  # 0: alpha stays
     alpha: Positive = 0.1  # initial temperature
     target_entropy: float | None = None  # [nat]; None: -m
     discount: Discount = 0.995
     tau: Share = 0.005
-    batch_size: int = 256
+    batch_size: Count = 256
     updates: float = 2  # per decision
     during_random: bool = True  # whether it also learns while decisions are random
     max_grad_norm: Positive | None = 10.0  # of the policy's gradient; None: no limit

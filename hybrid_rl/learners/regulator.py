@@ -11,7 +11,7 @@ draws of the model (Thompson sampling; Abeille and Lazaric 2017).
 """
 
 from functools import partial
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import jax.numpy as jnp
 from flax import struct
@@ -21,7 +21,7 @@ from hybrid_rl.core import riccati
 from hybrid_rl.core.analytic import linearise
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.solving import solve
-from hybrid_rl.fields import Count, FieldError, NotNegative, Positive, part
+from hybrid_rl.fields import FILLED, Count, FieldError, NotNegative, Positive, part
 from hybrid_rl.protocols import Balanced, GoalPolicy, Model
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -45,7 +45,7 @@ class RegulatorLearner:
     model: Model
     policy: GoalPolicy
     world: Balanced
-    state_weights: tuple[NotNegative, ...] = (1.0,)  # diagonal of Q: one for all, or the first of x
+    state_weights: Annotated[tuple[NotNegative, ...], FILLED] = (1.0,)  # Q: one, or the first
     action_weights: tuple[Positive, ...] = (1.0,)  # diagonal of R: one for all actions, or one each
     horizon: Count = 128  # T [decisions]
     feedforward: bool = True  # false: hold = 0

@@ -17,7 +17,7 @@ from jax import Array
 from hybrid_rl.core import decay
 from hybrid_rl.core import soft_actor_critic as steps
 from hybrid_rl.core.soft_actor_critic import SACState
-from hybrid_rl.fields import Discount, Positive, Share, part
+from hybrid_rl.fields import Count, Discount, NotNegative, Positive, Share, part
 from hybrid_rl.protocols import Critic, LearnedPolicy, Schedule
 from hybrid_rl.types import Batch, Params, Spec
 
@@ -30,12 +30,12 @@ class SAC:
     critic: Critic
     policy_learning_rate: Positive = 3e-4
     critic_learning_rate: Positive = 3e-4
-    alpha_learning_rate: float = 3e-4
+    alpha_learning_rate: NotNegative = 3e-4  # 0: alpha stays
     alpha: Positive = 1.0  # initial temperature
     target_entropy: float | None = None  # [nat]; None: -m
     discount: Discount = 0.99
     tau: Share = 0.005
-    batch_size: int = 256
+    batch_size: Count = 256
     updates: float = 1  # per decision
     during_random: bool = False  # whether it also learns while decisions are random
     max_grad_norm: Positive | None = None  # of the policy's gradient; None: no limit

@@ -13,14 +13,15 @@ which does not enlarge the noise of small changes (Barkley and Fridovich-Keil 20
 Lunch). The loss is the same likelihood in the same units, so the two can be compared by it.
 """
 
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core import statistics
-from hybrid_rl.fields import part
+from hybrid_rl.core.lifting import check_coordinates
+from hybrid_rl.fields import FILLED, FieldError, part
 from hybrid_rl.networks import MLP, Activation, LayerNorm, Widths
 from hybrid_rl.types import Spec
 
@@ -35,17 +36,26 @@ class Gaussian:
     log_std_min: float = -10.0
     log_std_max: float = 2.0
     state_noise: bool = False  # s(x) instead of a constant
-    inputs: tuple[int, ...] | None = None  # of x; None: all
+    inputs: Annotated[tuple[int, ...], FILLED] | None = None  # of x; None: all
     layer_norm: LayerNorm = False  # of every hidden layer; or shift: without a learned scale
     predict: Literal["change", "state"] = "change"  # what the network predicts
 
     members: ClassVar[int] = 1  # an ensemble has more
 
+    def __post_init__(self) -> None:
+        if self.log_std_min >= self.log_std_max:
+            raise FieldError(self, "log_std_min", "must lie below log_std_max")
+
     def _net(self, out: int) -> MLP:
         return MLP(self.hidden, out, self.activation, self.layer_norm)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Initial weights and statistics. The key is consumed."""
+        """Initial weights and statistics. The key is consumed.
+
+        Raises:
+            ValueError: if the observation lacks one of the inputs.
+        """
+        check_coordinates("model.inputs", self.inputs, spec.obs)
         net = self._net(spec.obs)
         size, log_std = len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)
         if self.state_noise:

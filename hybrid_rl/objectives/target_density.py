@@ -4,24 +4,23 @@ A baseline of ergodic exploration, which ends at the nearest peak (thesis sectio
 maximisation of the acquisition function).
 """
 
-from dataclasses import dataclass
-
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 from hybrid_rl.core.domain import Box
+from hybrid_rl.fields import NotNegative, part
 from hybrid_rl.protocols import Target
 from hybrid_rl.types import Params, Path, Return, Spec
 
 
-@dataclass(frozen=True)
+@part
 class TargetDensity:
     """The target's mean log-density along the path."""
 
     target: Target
     domain: Box
-    barrier: float = 0.0  # b, cost of leaving the domain, in its sides
+    barrier: NotNegative = 0.0  # b, cost of leaving the domain, in its sides
 
     def init(self, spec: Spec) -> tuple[()]:
         """No memory."""

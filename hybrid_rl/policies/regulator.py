@@ -17,7 +17,7 @@ import numpy as np
 from jax import Array
 
 from hybrid_rl.core import analytic, riccati
-from hybrid_rl.fields import Positive, part
+from hybrid_rl.fields import FieldError, Positive, part
 from hybrid_rl.protocols import Analytic
 from hybrid_rl.types import Room, Spec
 
@@ -38,6 +38,9 @@ class Regulator:
 
     def __post_init__(self) -> None:
         self._weights()
+        size = analytic.sizes(self.world)[0]
+        if not {*self.free} < {*range(size)}:
+            raise FieldError(self, "free", f"must be some of 0 to {size - 1}, not all")
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """K [m, d] and P [d, d].

@@ -4,12 +4,12 @@ With several `strengths` s the candidates are divided among them: a robot that r
 policy is closer to a weaker policy than to noise. `quiet` candidates have no noise.
 """
 
-from typing import Any
+from typing import Annotated, Any
 
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.fields import Fraction, Positive, part
+from hybrid_rl.fields import FILLED, Fraction, Positive, part
 from hybrid_rl.protocols import Policy
 from hybrid_rl.types import Params, Spec
 
@@ -19,7 +19,7 @@ class PolicyProposal:
     """Candidates from the learned policy."""
 
     policy: Policy
-    strengths: tuple[Positive, ...] = (1.0,)  # factors on the actions, one for each candidate
+    strengths: Annotated[tuple[Positive, ...], FILLED] = (1.0,)  # factors on actions
     quiet: Fraction = 0.0  # share of the candidates, of each strength, that act by the mean
 
     @property

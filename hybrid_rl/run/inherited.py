@@ -91,7 +91,7 @@ def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
     raw, typed = raw_values(config), parse(texts)
     if deleted := [each for each in typed if each.is_delete()]:
         raise UsageError(f"{deleted[0].input_line}: with run=DIR keys cannot be deleted")
-    now: Any = OmegaConf.to_container(config, resolve=True)
+    now = configuration.resolved(config)
     stored: Any = OmegaConf.to_container(folder.read(Path(str(config.run)), "run"))
     for each in texts:
         if each.startswith("+") and select(stored, each.lstrip("+").partition("=")[0]) is LACKING:
@@ -106,8 +106,7 @@ def resolve_config(config: DictConfig, texts: Sequence[str]) -> DictConfig:
         while (above := key.rpartition(".")[0]) and select(values, above) is LACKING:
             key = above  # a group that is newer than the run
         _put(values, key, _node(select(raw, key), select(now, key), values, raw))
-    made: Any = OmegaConf.create(values)
-    OmegaConf.resolve(made)
+    made: Any = OmegaConf.create(configuration.resolved(OmegaConf.create(values)))
     OmegaConf.set_struct(made, True)
     return made
 

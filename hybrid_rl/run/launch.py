@@ -156,7 +156,7 @@ def _run(
         progress = stack.enter_context(_progress(run, label, output.progress))
         each = zip(job.folders, job.axis.names, strict=True)
         notes = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in each]
-        notes += [size, *run.notes]
+        notes += [size, *run.notes, *_idle(run)]
         if precision.current() == "bf16" and jax.default_backend() == "cpu":
             notes.append(SLOWER)
         if config.physics != "auto" and configuration.physics(config) is None:
@@ -191,6 +191,16 @@ def _run(
             finally:
                 loop.close()
             return job.summaries(session)
+
+
+def _idle(run: Run) -> list[str]:
+    """A line for each learner that begins after the last decision."""
+    agent, total = run.agent, run.config.total_steps
+    late = {
+        name: n for name, n in agent.starts().items() if n >= total and name not in agent.frozen
+    }
+    line = "{} learns nothing in total_steps={}: it begins after {:,} decisions"
+    return [line.format(name, total, n) for name, n in late.items() if not agent.pretrain]
 
 
 def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:

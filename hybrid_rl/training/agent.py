@@ -12,6 +12,7 @@ from jax import Array
 from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
+from hybrid_rl.fields import Count, FieldError, Natural, check
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training import contract
 from hybrid_rl.training.episode import Episode
@@ -60,12 +61,11 @@ class Agent:
     frozen: tuple[str, ...] = ()  # learners that make no updates
 
     def __post_init__(self) -> None:
-        if not isinstance(self.num_envs, int) or self.num_envs < 1:
-            raise ValueError(f"num_envs={self.num_envs}: must be a whole number, 1 or more")
-        for name in ("random_steps", "pretrain"):
-            value = getattr(self, name)
-            if not isinstance(value, int) or value < 0:
-                raise ValueError(f"{name}={value}: must be a whole number, 0 or more")
+        for name, kind in (("num_envs", Count), ("random_steps", Natural), ("pretrain", Natural)):
+            try:
+                check(self, name, kind)
+            except FieldError as error:
+                raise ValueError(error.line) from error
         if self.pretrain and not self.replay.num_demonstrated(self.num_envs):
             raise ValueError(
                 f"pretrain={self.pretrain}: the memory has no demonstrations to learn from; "

@@ -113,7 +113,7 @@ def check(agent: Any, controllers: Iterable[Any]) -> None:
     """
     controllers = list({id(each): each for each in controllers}.values())  # full may be policy
     owned = sum((each.owns for each in agent.learners.values()), ())
-    check_owners(controllers, owned, agent.spec)
+    check_owners([*controllers, *agent.learners.values()], owned, agent.spec)
     if not any(users([*controllers, *agent.learners.values()])):
         return
     key = jax.eval_shape(lambda: jax.random.key(0))

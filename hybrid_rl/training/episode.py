@@ -22,7 +22,7 @@ from hybrid_rl.envs import sensor_noise
 from hybrid_rl.envs.mujoco.physics import PhysicsState
 from hybrid_rl.envs.mujoco.randomised import Ranges
 from hybrid_rl.errors import UsageError
-from hybrid_rl.fields import FieldError
+from hybrid_rl.fields import Count, FieldError, Natural, NotNegative, check
 from hybrid_rl.protocols import Constraint, Env, Goal
 from hybrid_rl.training import user_functions
 from hybrid_rl.types import EnvState, Spec
@@ -32,6 +32,7 @@ EXACT = partial(jax.default_matmul_precision, "highest")
 SENSED = "episode_noise"  # in `info`: the key of the next noise
 TRUE = "true_obs"  # in `info`: the observation before it
 DISTURBED = "action_noise"  # in `info`: the key of the next disturbance
+OWN = {"steps": Count, "action_repeat": Count, "delay": Natural, "action_noise": NotNegative}
 VIOLATED = "violation"  # in `metrics`: 1 where the decision violates the constraint, else 0
 
 
@@ -63,25 +64,22 @@ class Episode:
     constraint: Constraint | None = None  # what decisions must not violate
 
     def __post_init__(self) -> None:
-        for name, least in (("steps", 1), ("action_repeat", 1), ("delay", 0)):
-            value = getattr(self, name)
-            if type(value) is not int or value < least:
-                line = f"must be a whole number, {least} or more"
-                raise ValueError(f"episode.{name}={value}: {line}")
+        try:
+            for name, kind in OWN.items():
+                check(self, name, kind)
+        except FieldError as error:
+            raise error.at("episode") from error
         for name in user_functions.METHODS:
             user_functions.check(name, getattr(self, name), self.env.spec)
-        if not (isinstance(self.action_noise, Real) and self.action_noise >= 0):
-            raise ValueError(f"episode.action_noise={self.action_noise}: must be 0 or more")
         object.__setattr__(self, "randomise", self._ranges(self.randomise))
         if isinstance(self.sensor_noise, list):  # so that episodes can be hashed
             object.__setattr__(self, "sensor_noise", self._std)
-        if not any(self._std):
-            return
         sizes = (1, self.env.spec.obs)
-        right = all(isinstance(each, Real) and each >= 0 for each in self._std)
+        numbers = all(isinstance(x, Real) and not isinstance(x, bool) for x in self._std)
+        right = numbers and min(self._std, default=0) >= 0
         if len(self._std) not in sizes or not right:
             line = f"must be 1 or {sizes[1]} numbers, each 0 or more"
-            raise ValueError(f"episode.sensor_noise={self.sensor_noise}: {line}")
+            raise FieldError(self, "sensor_noise", line).at("episode")
 
     def _ranges(self, given: Any) -> Ranges | None:
         """Of the bodies, as they were given; None if all have the same."""

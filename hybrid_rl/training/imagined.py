@@ -10,7 +10,7 @@ from hybrid_rl.core.batching import where
 from hybrid_rl.core.branches import Branches
 from hybrid_rl.core.lifting import lifted_spec
 from hybrid_rl.core.members import predict_members
-from hybrid_rl.fields import Count, Natural, NotNegative, part
+from hybrid_rl.fields import Count, Natural, NotNegative, Strengths, part
 from hybrid_rl.protocols import LearnedPolicy, Reward, Trainable, UniformLearner
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import Batch, Params
@@ -47,7 +47,7 @@ class Imagination:
     critic_first: Natural = 200  # of them, in which the policy stays
     starts: Count = 64  # first states
     walk: Count = 100  # decisions from each
-    strengths: tuple[NotNegative, ...] = (1.0, 0.8, 0.6, 0.4, 0.2)  # factors on the first policy
+    strengths: Strengths = (1.0, 0.8, 0.6, 0.4, 0.2)  # factors on the first policy
     decisions: Count = 200  # of an episode that compares
     episodes: Count = 16  # of these
     doubt: NotNegative = 1.0

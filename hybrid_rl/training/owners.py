@@ -16,7 +16,7 @@ OF_PARAMS = {"model", "reward", "policy", "critic"}  # fields of Params with par
 
 
 def check_owners(parts: Any, owned: Collection[str], spec: Spec, every: bool = False) -> None:
-    """Check that what the library's parts of controllers act by has parameters.
+    """Check that what the library's parts of controllers and learners use has parameters.
 
     parts: any parts, in lists, dictionaries and each other. owned: the fields of Params that
     learners give. every: also what the user's parts act by, which may have parameters elsewhere.
@@ -28,7 +28,8 @@ def check_owners(parts: Any, owned: Collection[str], spec: Spec, every: bool = F
         if name in owned or (of_user(owner) and not every):
             continue
         if _parameters(part, spec):
-            line = f"{type(owner).__name__} acts by it, and no learner of this method trains it"
+            uses = "learns with" if hasattr(owner, "update") else "acts by"
+            line = f"{type(owner).__name__} {uses} it, and no learner of this method trains it"
             remedy = f"leave {name}= out, or choose a method that learns a {name}"
             raise ValueError(f"{name}={type(part).__name__}: {line}; {remedy}")
 

@@ -12,6 +12,7 @@ from scipy.linalg import expm, logm
 
 from hybrid_rl.core import analytic, riccati
 from hybrid_rl.envs.analytic.cart_double_pendulum import FORCE, CartDoublePendulum
+from hybrid_rl.envs.analytic.no_dynamics import NoDynamics
 from hybrid_rl.envs.analytic.point_mass import PointMass
 from hybrid_rl.envs.analytic.state import Euclidean, fully_observed
 from hybrid_rl.envs.cartpole import Cartpole
@@ -54,9 +55,10 @@ def test_the_room_of_an_unstable_system_is_the_largest_safe_correction() -> None
     assert slowest**room.time == pytest.approx(np.exp(-1))
 
 
-def test_a_stable_system_needs_no_room() -> None:
-    """A point mass that the regulator lets go drifts, and no faster."""
-    assert Regulator(PointMass()).room() is None
+@pytest.mark.parametrize("world", [PointMass(), NoDynamics()])
+def test_a_stable_system_needs_no_room(world: Any) -> None:
+    """A point mass that the regulator lets go drifts, and no faster; without dynamics A is 0."""
+    assert Regulator(world).room() is None
 
 
 def test_cart_double_pendulum_has_the_poles_of_its_source() -> None:

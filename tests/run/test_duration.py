@@ -40,3 +40,22 @@ def test_a_long_run_says_what_takes_less_and_ends_with_its_curve(monkeypatch, tm
     (line,) = json.loads((folder / "curve.json").read_text())["curves"]
     evaluated = {row["step"]: row["eval/return"] for row in rows if "eval/return" in row}
     assert dict(zip(line["x"], line["iqm"], strict=True)) == pytest.approx(evaluated)
+
+
+@pytest.mark.parametrize(
+    ("given", "lines"),
+    [
+        ("random_steps=200", ["policy learns nothing in total_steps=100: it begins after 257"]),
+        ("random_steps=0", ["policy learns nothing in total_steps=100: it begins after 257"]),
+        ("random_steps=0 freeze=[policy]", []),
+        ("random_steps=50 policy_learner.batch_size=40", []),
+        ("random_steps=100 policy_learner.batch_size=40", ["it begins after 100 decisions"]),
+    ],
+)
+def test_a_learner_that_begins_after_the_last_decision_is_named(given, lines):
+    run = config.build(
+        config.load(["task=pendulum", "algo=sac", "total_steps=100", *given.split()])
+    )
+    named = launch._idle(run)
+    assert len(named) == len(lines)
+    assert all(words in line for words, line in zip(lines, named, strict=True))

@@ -14,7 +14,7 @@ from tiny import call_train, contents, only_line, rows_of, run, summary_of
 from hybrid_rl import config, trained
 from hybrid_rl.envs.analytic.pendulum import Pendulum
 from hybrid_rl.errors import UsageError
-from hybrid_rl.run import start, together
+from hybrid_rl.run import folder, start, together
 from hybrid_rl.run.checkpoints.store import Store
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.loop import Loop
@@ -257,6 +257,12 @@ def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, giv
     assert call_train(f"run={source}", given.format(source=source)) == 2
     assert words in only_line(capfd)
     assert contents(source) == before
+
+
+def test_a_reference_that_another_part_lacks_is_one_line(tmp_path):
+    folder.write(tmp_path, config.load(["task=pendulum", "algo=hybrid_stochastic"]))
+    with pytest.raises(UsageError, match=r"refers to policy_learner\.model"):
+        together.load([f"run={tmp_path}", "learner@policy_learner=ddpg"])
 
 
 def test_no_run_and_no_checkpoint_are_one_line(source, tmp_path, monkeypatch, capfd):

@@ -24,7 +24,7 @@ from jax import Array
 from hybrid_rl.core import decay
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.core.optimisers import adamw
-from hybrid_rl.fields import Discount, FieldError, NotNegative, Positive, has, part
+from hybrid_rl.fields import Count, Discount, FieldError, NotNegative, Positive, has, part
 from hybrid_rl.learners.model import held_out
 from hybrid_rl.protocols import Reward, Schedule, Trainable
 from hybrid_rl.types import Batch, Params, PyTree, Spec
@@ -87,10 +87,10 @@ class ModelLearner:
     ]
     reward: Annotated[LearnedReward, has("init", KNOWN)] | None = None
     learning_rate: Positive = 3e-3
-    batch_size: int = 128
+    batch_size: Count = 128
     updates: float = 2  # per decision
     reward_discount: Discount = 0.0
-    max_grad_norm: float | None = None
+    max_grad_norm: Positive | None = None
     weight_decay: NotNegative = 0.0  # of the layers' matrices, per unit of learning rate
     holdout: float = 0.0  # share of the decisions
     schedule: Schedule | None = None  # of the learning rates
