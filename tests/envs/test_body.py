@@ -172,7 +172,7 @@ def test_mjx_moves_as_mujoco_c(task):
         "env.motors=0: must be above 0",
         "env.motors=[1, 1, 0, 1, 1, 1]: must be above 0",
         "env.motors=[1, 1, 'a', 1, 1, 1]: must be above 0",
-        "env.motors=[1, 1]: must be 1 or 6 numbers, each above 0",
+        "env.motors=[1.0, 1.0]: must be 1 or 6 numbers, each above 0",
         "env.mass=heavy: must be a number",
     ],
 )
