@@ -140,11 +140,11 @@ def explain(error: Exception) -> str:
     if twice := re.match(r"(\S+) appears more than once", text):
         return f"{twice[1]}: is loaded twice; leave your line out, or write override before it"
     if isinstance(error, InterpolationKeyError):
-        named = re.search(r"'([^']+)'", text)
-        key = named[1] if named else "a key"
+        key = named[1] if (named := re.search(r"'([^']+)'", text)) else "a key"
         if key.startswith("env.") and (line := _of_other_tasks(error, key)):
             return line
-        return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
+        at, lacks = error.full_key, f"refers to {key}, which neither this task nor this method sets"
+        return f"{at}: {lacks}; give {at}=VALUE"
     if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
         return f"{error.full_key}: refers to the part that it is in; give it another one"
     if word := overrides.PLAIN.search(f"{text} {cause}"):
