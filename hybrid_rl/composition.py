@@ -40,8 +40,7 @@ def search_path(config_dir: str | Path) -> str:
     if not folder.is_dir():
         raise UsageError(f"config_dir={config_dir}: no such folder")
     for file in sorted(CONF.glob("*/**/*.yaml")):
-        name = file.relative_to(CONF)
-        mine = folder / name
+        mine = folder / (name := file.relative_to(CONF))
         if mine.is_file() and mine.read_bytes() != file.read_bytes():
             raise UsageError(
                 f"config_dir={config_dir}: hybrid_rl has {name.parent.as_posix()}={name.stem} of "
@@ -138,12 +137,14 @@ def explain(error: Exception) -> str:
         return f"{inner[1]}={inner[2]}: is not for this method, which has no {inner[3]} to change"
     if several := re.match(r"Ambiguous value for argument '([^']+)'", text):
         return f"{several[1]}: several values are a sweep, which needs -m; a list is key=[a,b]"
+    if twice := re.match(r"(\S+) appears more than once", text):
+        return f"{twice[1]}: is loaded twice; leave your line out, or write override before it"
     if isinstance(error, InterpolationKeyError):
-        named = re.search(r"'([^']+)'", text)
-        key = named[1] if named else "a key"
+        key = named[1] if (named := re.search(r"'([^']+)'", text)) else "a key"
         if key.startswith("env.") and (line := _of_other_tasks(error, key)):
             return line
-        return f"{error.full_key}: refers to {key}, which neither this task nor this method sets"
+        at, lacks = error.full_key, f"refers to {key}, which neither this task nor this method sets"
+        return f"{at}: {lacks}; give {at}=VALUE"
     if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
         return f"{error.full_key}: refers to the part that it is in; give it another one"
     if word := overrides.PLAIN.search(f"{text} {cause}"):

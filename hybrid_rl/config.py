@@ -174,8 +174,8 @@ def build(config: DictConfig) -> Run:
 
 def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Controller]]:
     """The episodes, notes about them, and the controllers as they act in training."""
-    each = {k: _instantiate(v, f"controllers.{k}") for k, v in parts.controllers.items()}
-    return *_episode(parts), each
+    each = parts.controllers.items()  # after the episodes, whose reward they may hold, too
+    return *_episode(parts), {k: _instantiate(v, f"controllers.{k}") for k, v in each}
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
@@ -276,10 +276,12 @@ def _usage(config: DictConfig, who: str | None = None) -> Iterator[None]:
             raise
         line = str(error)
         if isinstance(error, FieldError) and error.line.startswith("world=") and error.lacks:
-            names = ", ".join(tasks_with(error.lacks))
             part = str(error).partition(".world=")[0]
             who = part if part in PAID else who or config.get("algo") or "this"
-            line = f"task={config.task}: {who} {error.words}; choose one of {names}"
+            line = f"task={config.task}: {who} {error.words}; choose one of "
+            line += ", ".join(tasks_with(error.lacks))
+            if not (mine := str(config.env.get("_target_"))).startswith("hybrid_rl."):
+                line += f", or give {mine} a method {error.lacks}, as hybrid_rl.protocols says"
         field, equals, rest = line.partition("=")
         if field in config.env and field not in config:  # of a world of the user's
             line = f"env.{line}"

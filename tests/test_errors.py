@@ -51,7 +51,7 @@ USAGE = [  # overrides of train, words of the line
     ),
     ("--config-name other", "--config-name: a run has one configuration; choose by experiment="),
     ("eval_modes=[full,full]", "eval_modes=[full,full]: has one of them twice"),
-    ("seed=${seeds}", "seed: refers to seeds, which neither this task nor this method sets"),
+    ("seed=${seeds}", "to seeds, which neither this task nor this method sets; give seed=VALUE"),
     ("run_dir=läufe", "run_dir=läufe: ä stands outside quotes; write key=value, text as 'key="),
     ("episode.randomise=[0.7,1.3]", "hybrid_rl: episode.randomise: must be a group of keys; "),
     ("task=gymnasium env.id=Pendulum-v1 reward=speed", "task=Pendulum-v1: reward needs an envi"),

@@ -157,17 +157,19 @@ def plural(count: int, noun: str) -> str:
     return f"{count:,} {noun}{'s' * (count != 1)}"
 
 
-def area(curve: Curve) -> np.ndarray:
+def area(curve: Curve, until: float = np.inf) -> np.ndarray:
     """[S] mean of each learner's metric over the run: the area under its curve over its width.
 
-    Up to the last point that all learners have; NaN if there is none. The first value is taken to
-    hold from 0 on.
+    Up to the last point that all learners have, or up to x = `until` before it; NaN if there is
+    none. The first value is taken to hold from 0 on.
     """
     x, each = curve.x[curve.shared], curve.each[:, curve.shared]
     if not len(x):
         return np.full(len(each), np.nan)
-    x, y = np.append(0.0, x), np.concatenate([each[:, :1], each], axis=1)
-    return np.trapezoid(y, x, axis=1) / x[-1]
+    end = min(x[-1], until)
+    before, last = x < end, [[np.interp(end, x, y)] for y in each]
+    y = np.concatenate([each[:, :1], each[:, before], last], axis=1)
+    return np.trapezoid(y, np.array([0.0, *x[before], end]), axis=1) / end
 
 
 def steps_to(curve: Curve, threshold: float) -> np.ndarray:

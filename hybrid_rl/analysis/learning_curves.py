@@ -104,9 +104,11 @@ def summary(numbers: dict[str, Any]) -> list[str]:
         lines.append(line)
     for each in numbers["comparisons"] if "comparisons" in numbers else comparisons(drawn):
         rate, low, high = each["share"], *each["band"]
+        until = each.get("until")  # older files lack it
         lines.append(
             f"{each['task']}, {each['metric']}: {each['label']} ahead of {each['other']} in "
-            f"{rate:.0%} [{low:.0%}, {high:.0%}] of pairs of seeds, by the mean over the run"
+            f"{rate:.0%} [{low:.0%}, {high:.0%}] of pairs of seeds, by the mean "
+            + ("over the run" if until is None else f"up to {until:,.10g}, where the shorter ends")
         )
     if any(1 < len(curve.seeds) <= FEW for curve in drawn):
         lines.append(
@@ -118,15 +120,20 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 def comparisons(drawn: Sequence[Curve]) -> list[dict[str, Any]]:
     """For each two curves of a task and a metric, the share of pairs of seeds that one leads.
 
-    That is Agarwal et al.'s probability of improvement, of the means over the run, and its band.
+    That is Agarwal et al.'s probability of improvement, of the means over the run, and its band;
+    `until` is the x where the shorter one ends, None if both end there.
     """
     found = []
     for one, other in itertools.combinations(drawn, 2):
         both = one.shared.any() and other.shared.any()
         if both and (one.task, one.metric) == (other.task, other.metric):
-            share, *band = improvement(area(one), area(other))
+            ends = [float(curve.x[curve.shared][-1]) for curve in (one, other)]
+            share, *band = improvement(*(area(curve, min(ends)) for curve in (one, other)))
             named = {"task": one.task, "metric": one.metric, "label": one.label}
-            found.append({**named, "other": other.label, "share": share, "band": band})
+            until = None if ends[0] == ends[1] else min(ends)
+            found.append(
+                {**named, "other": other.label, "share": share, "band": band, "until": until}
+            )
     return found
 
 

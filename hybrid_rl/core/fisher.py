@@ -68,7 +68,7 @@ def along(step: ParametricStep, theta: Any, path: Path, kind: str) -> Array:
         return psi, psi
 
     n, P = path.x.shape[1], ravel_pytree(theta)[0].size
-    return jax.lax.scan(forward, jnp.zeros((n, P), path.x.dtype), (path.x[:-1], path.u))[1]
+    return jax.lax.scan(forward, jnp.zeros_like(path.x, shape=(n, P)), (path.x[:-1], path.u))[1]
 
 
 def products(step: ParametricStep, theta: Any, path: Path, kind: str, v: Any) -> Array:
@@ -80,7 +80,7 @@ def products(step: ParametricStep, theta: Any, path: Path, kind: str, v: Any) ->
         d = jnp.clip(d, -LARGEST, LARGEST)
         return d if kind == "path" else jnp.zeros_like(d), d
 
-    none = jnp.zeros(path.x.shape[1], path.x.dtype)
+    none = jnp.zeros_like(path.x[0])
     return jax.lax.scan(forward, none, (path.x[:-1], path.u))[1]
 
 

@@ -20,6 +20,7 @@ from hybrid_rl.training.keys import Keys
 from hybrid_rl.training.metrics import masked_mean, outcome
 from hybrid_rl.training.owners import check_fit
 from hybrid_rl.training.rollout import act
+from hybrid_rl.training.traced import needs_world
 from hybrid_rl.types import Batch, EnvState, Params, Spec, Transition
 
 
@@ -95,6 +96,8 @@ class Agent:
                 check(longest)
         check_fit([self.controller, *controllers, *self.learners.values()], self)
         jax.eval_shape(lambda: self.controller.init(self.spec))
+        if not self.learners and needs_world(self.controller):  # not every planner can
+            jax.eval_shape(lambda: self.step(self.init(jax.random.key(0)), jnp.int32(0)))
 
     def starts(self) -> dict[str, int]:
         """Decisions before the first update of each learner, apart from pretraining."""

@@ -8,7 +8,7 @@ import pytest
 
 from hybrid_rl.analysis import long_table
 from hybrid_rl.analysis.curves import area, band, curves, improvement, iqm, steps_to
-from hybrid_rl.analysis.learning_curves import FEW
+from hybrid_rl.analysis.learning_curves import FEW, comparisons, figure, summary
 from hybrid_rl.analysis.results import find
 from hybrid_rl.errors import UsageError
 
@@ -56,6 +56,20 @@ def test_area_steps_and_improvement(tmp_path):
     assert steps_to(curve, 25).tolist() == [30, np.inf]
     assert improvement(np.array([1.0, 2]), np.array([1.0, 3]))[0] == (0.5 + 0 + 1 + 0) / 4
     assert improvement(np.array([1.0, 2]), np.array([-1.0, 0])) == (1, 1, 1)
+
+
+def test_methods_are_compared_as_far_as_both_ran(tmp_path):
+    """Both learn y = x; the longer one has the higher mean over its whole run."""
+    for algo, steps in (("long", [10, 20, 30]), ("short", [10, 15])):
+        for seed in range(2):
+            points = [(step, float(step + seed)) for step in steps]
+            run(tmp_path / algo / str(seed), points, seed, algo=algo)
+    numbers = figure(str(tmp_path / "*/*"))[1]
+    (one,) = comparisons(curves(tmp_path))
+    assert numbers["comparisons"] == [one]
+    assert (one["label"], one["share"], one["until"]) == ("long", 0.5, 15)
+    line = "long ahead of short in 50% [0%, 100%] of pairs of seeds, by the mean up to 15, where"
+    assert any(line in each for each in summary(numbers))
 
 
 def test_several_values_at_one_step_are_one_point(tmp_path):

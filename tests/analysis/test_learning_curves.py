@@ -226,14 +226,15 @@ def test_a_file_without_curves_is_refused(tmp_path, capsys):
 
 def test_the_summary_compares_and_counts_who_reaches_the_threshold():
     """Up to the last point that all seeds have; then the notes."""
-    one, two = curve(label="a", points=5), replace(curve(label="b", scale=2), notes=("a note",))
+    one, two = curve(label="a", points=5), replace(curve(label="b", scale=2.5), notes=("a note",))
     one.each[2, -1] = np.nan
     lines = summary(numbers_of([one, two]) | {"threshold": 1500.0})
     assert lines[0].startswith("hopper, a: 3 seeds, last train/return 1,500 [")
     assert " at 150,250, mean over the run " in lines[0]
     assert lines[0].endswith(", 1,500 reached by 2 of 3")
     assert ", 1,500 reached by 3 of 3 at " in lines[1]
-    assert lines[2].startswith("hopper, train/return: a ahead of b in 1")
+    assert lines[2].startswith("hopper, train/return: a ahead of b in 11%")  # of seeds 2 and 0
+    assert lines[2].endswith("by the mean up to 150,250, where the shorter ends")
     few = "note: with 4 seeds or fewer an interval is their range, and not a 95% one"
     assert lines[3:] == [few, "note: a note"]
     assert all(len(summary(numbers_of([curve(seeds=n)]))) == 1 for n in (1, 5))

@@ -1,12 +1,14 @@
 """What an episode counts, what a learner is paid, and what a run and its evaluation report."""
 
 import json
+from dataclasses import replace
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 import small
+from omegaconf import OmegaConf
 from tiny import call, call_train, only_line, run
 
 from hybrid_rl import config, evaluate
@@ -16,6 +18,8 @@ from hybrid_rl.constraints.limit import Limit
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.analytic.pendulum import Pendulum
+from hybrid_rl.errors import UsageError
+from hybrid_rl.goals import retargeted
 from hybrid_rl.run.start import _rewritten
 from hybrid_rl.trained import load
 from hybrid_rl.training.episode import Episode
@@ -116,8 +120,6 @@ def test_evaluate_reports_the_violations_of_a_run(trained, capsys) -> None:
 @pytest.mark.parametrize("more", ["", " reward=aim reward.quantity=height", " planner=sampling"])
 def test_a_run_plans_with_a_constraint_with_and_without_a_reward(trained, more) -> None:
     """The gradient planner gets it, and maximises the run's own objective or the new one."""
-    from hybrid_rl.goals import retargeted
-
     words = f"constraint=speed constraint.chance=0.2{more}".split()
     got = retargeted(load(trained), words)
     assert got.episode.constraint.chance == 0.2
@@ -144,3 +146,20 @@ def test_a_run_plans_with_a_constraint_with_and_without_a_reward(trained, more) 
 def test_a_constraint_that_does_not_fit_is_refused_in_one_line(given, line, capfd) -> None:
     assert call_train("settings=light", *{"task=pendulum": 0, **dict.fromkeys(given.split())}) == 2
     assert line in only_line(capfd)
+
+
+def test_a_world_without_quantities_is_named_with_what_asks_for_them(
+    trained, tmp_path, monkeypatch
+) -> None:
+    """Of the user's world the method that it lacks, too, also where a planner has the limit."""
+    (tmp_path / "plain.py").write_text(
+        "from hybrid_rl.envs.analytic.van_der_pol import VanDerPol\n\n\n"
+        "class Plain(VanDerPol):\n    pass\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    run = load(trained)
+    config = OmegaConf.merge(run.config, {"task": "plain"})
+    config.env = {"_target_": "plain.Plain"}
+    line = "^task=plain: constraint needs an .* or give plain.Plain a method quantities, as"
+    with pytest.raises(UsageError, match=line):
+        retargeted(replace(run, config=config), ["constraint=speed"])

@@ -229,6 +229,22 @@ def test_variance_of_estimates_is_the_inverse_of_the_information() -> None:
     assert one[0] > 3 * predicted["path"][0]
 
 
+@pytest.mark.parametrize("kind", fisher.KINDS)
+def test_a_recorded_path_is_numpy_in_float64(kind) -> None:
+    """As it is, in float32 too, where such a type would be a warning."""
+
+    def step(theta: Array, x: Array, u: Array) -> Array:
+        return theta[0] * x + theta[1] * u
+
+    x, u = RNG.uniform(-1, 1, (T + 1, N)), RNG.uniform(-1, 1, (T, N))
+    with jax.enable_x64(False):
+        F = fisher.along(step, np.ones(2), Path(x, u), kind)
+        d = fisher.products(step, jnp.ones(2), Path(x, u), kind, jnp.ones(2))
+    assert F.dtype == d.dtype == jnp.float32
+    np.testing.assert_allclose(F[0], np.stack([x[0], u[0]], 1), rtol=1e-6)
+    np.testing.assert_allclose(F.sum(2), d, rtol=1e-5)
+
+
 def test_names_that_are_none_are_refused() -> None:
     F = jnp.ones((5, 2, 2))
     with pytest.raises(ValueError, match="criterion d: choose one of A_step, A, D, T, full"):

@@ -154,6 +154,24 @@ def test_doubling_is_the_recursion(steps: int) -> None:
     np.testing.assert_allclose(doubled, P, rtol=1e-8)
 
 
+@pytest.mark.parametrize(
+    ("fault", "line"),
+    [
+        ({"R": 0.1}, r"R has shape \(\), must have \(1, 1\); A is \[n, n\], B \[n, m\], "),
+        ({"P": np.eye(3)}, r" has shape \(3, 3\), must have \(2, 2\); A is"),
+        ({"B": np.ones(2)}, r"B has shape \(2,\), must have \(2, 2\); A is"),
+        ({"A": np.eye(2, 3)}, r"A has shape \(2, 3\), must have \(2, 2\); A is"),
+    ],
+)
+def test_matrices_of_other_shapes_are_refused(fault: dict[str, Any], line: str) -> None:
+    given: dict[str, Any] = {"A": np.eye(2), "B": np.eye(2, 1), "P": np.eye(2), "R": np.eye(1)}
+    A, B, P, R = (given | fault).values()
+    with pytest.raises(ValueError, match=line):
+        riccati.finite_horizon(A, B, P, R, 3)
+    with pytest.raises(ValueError, match=line):
+        riccati.gain(A, B, P, R)
+
+
 def test_a_long_horizon_is_the_algebraic_equation() -> None:
     """2^10 steps, against SciPy."""
     with jax.enable_x64(True):

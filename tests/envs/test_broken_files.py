@@ -154,6 +154,15 @@ def test_a_method_that_does_not_name_its_runs_is_refused(folder):
         refused(line, lambda: config.load(["task=pendulum", "algo=own"], "my_conf"))
 
 
+def test_a_method_that_loads_a_part_of_its_family_again_is_refused(folder):
+    (folder / "my_conf" / "algo").mkdir()
+    twice = "[/family@_global_: hybrid, /controller@noisy: noisy, _self_]"
+    text = f"# @package _global_\ndefaults: {twice}\nalgo: own\n"
+    (folder / "my_conf" / "algo" / "own.yaml").write_text(text)
+    line = r"controller@noisy\.controller: is loaded twice; leave your line out, or .*"
+    refused(line, lambda: config.load(["task=pendulum", "algo=own"], "my_conf"))
+
+
 def test_a_field_that_the_file_of_a_task_lacks_is_no_other_parts(folder):
     """Not even if these have the same name, as `adjoint_planner.gain`."""
     write(folder, task=changed(TASK, ", gain: 2.0", ""))

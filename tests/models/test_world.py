@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from jax import Array
 
+from hybrid_rl import config
 from hybrid_rl.controllers.refits import RefitsController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.controllers.stages import StagesController
@@ -160,3 +161,11 @@ def test_what_the_world_does_not_fit_is_refused() -> None:
         PredictedReturn(WorldReward(), 1.1)
     with pytest.raises(ValueError, match="give both or neither"):
         PredictedReturn(WorldReward(), policy=last)
+
+
+def test_a_planner_by_gradients_on_the_simulator_is_refused_before_a_run() -> None:
+    words = "task=cartpole algo=mppi +controller@mine=shooting controllers.full=${mine}"
+    more = ["mine.objective=${objective}", "mine.horizon=2"]
+    composed = config.load([*words.split(), *more])
+    with pytest.raises(UsageError, match=r"^model=world: needs a planner that samples"):
+        config.build(composed)
