@@ -69,7 +69,11 @@ def test_what_is_not_drawn_stays_that_of_the_model_and_the_start_is_the_same():
 @pytest.mark.parametrize(
     ("env", "given", "line"),
     [
-        (Cartpole("native"), {"mass": (2, 1)}, "randomise.mass=[2.0, 1.0]: must be [low, high], or"),
+        (
+            Cartpole("native"),
+            {"mass": (2, 1)},
+            "randomise.mass=[2.0, 1.0]: must be [low, high], or",
+        ),
         (Cartpole("native"), {"mass": 2}, "randomise.mass=2: must be a list, or null"),
         (Cartpole("native"), {"mass": (0, 1)}, "randomise.mass=[0, 1]: must be above 0, or null"),
         (Cartpole("native"), {"weight": (1, 2)}, "must be {NAME: [low, high]}, with names of mass"),
