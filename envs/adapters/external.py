@@ -110,7 +110,8 @@ class External(Made):
 
     def one(self, render_mode: str | None = None) -> gymnasium.Env:
         """A copy of the environment, with flat observations and without a time limit of its own."""
-        given = dict(self.kwargs or {}) | ({"render_mode": render_mode} if render_mode else {})
+        drawn = {"render_mode": render_mode} if render_mode else {}
+        given: dict[str, Any] = {**(self.kwargs or {}), **drawn}
         if not self.make:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             env = gymnasium.make(self.id, **options, **given)
@@ -180,14 +181,13 @@ def _read(env: External) -> Known:
     except UsageError:
         raise
     except FAULTS as error:
-        key = "make" if env.make else "id"
-        line = blame(error)
+        key, line = "make" if env.make else "id", blame(error)
         if isinstance(error, UNKNOWN) and ":" not in env.id and "Did you mean" not in line:
             line += f" One that a module of yours registers is env.id=MODULE:{env.id}"
         raise UsageError(f"env.{key}={env.name}: {line}") from error
     space, obs = one.action_space, one.observation_space
-    bounded = isinstance(space, Box) and bool(np.isfinite([space.low, space.high]).all())
-    if not (bounded and np.prod(space.shape) > 0):
+    bounds = np.array([space.low, space.high]) if isinstance(space, Box) else np.zeros(0)
+    if not (bounds.size and np.isfinite(bounds).all()):
         raise UsageError(f"{env.name}: has actions {space}; {ACTIONS}")
     if not (isinstance(obs, Box) and 0 < np.prod(obs.shape) < HUGE):
         raise UsageError(f"{env.name}: has observations {obs}; {FORMS}fewer than {HUGE:,}")

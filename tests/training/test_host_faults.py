@@ -72,7 +72,7 @@ def test_spaces_of_any_form_are_flattened():
 
 
 def test_an_id_that_is_a_number_is_one_line():
-    with pytest.raises(UsageError, match="env.id=3: must be a word"):
+    with pytest.raises(UsageError, match=r"env\.id=3: must be a word"):
         check(config.load(["task=gymnasium", "algo=sac", "env.id=3"]))
 
 
