@@ -285,8 +285,8 @@ def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, in
         return (int(count), 1) if per_round >= 1 else (1, int(count))
     raise ValueError(
         f"{name}_learner.updates={learner.updates}: with num_envs={num_envs} this gives "
-        f"{per_round:g} gradient steps per round; it must be a whole number, or 1 / a whole number, of "
-        f"at most {LARGEST}"
+        f"{per_round:g} gradient steps per round; it must be a whole number, or 1 / a whole "
+        f"number, of at most {LARGEST}"
     )
 
 
