@@ -20,7 +20,7 @@ from section 6.3.2; the position's weight is our choice. Damping is in the thesi
 its equations; wind is our choice.
 """
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import jax
 import jax.numpy as jnp
@@ -31,7 +31,7 @@ from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import inverse, quat_multiply, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
-from hybrid_rl.fields import NotNegative, part
+from hybrid_rl.fields import Must, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "quadcopter.xml"
@@ -39,6 +39,8 @@ SCENE = "quadcopter_scene.xml"
 DT = 0.005  # [s] of a decision
 MAX_CONTROL = 6.0  # of a motor
 SUCCESS_ERROR = 0.01  # squared error below which the task is solved
+
+Asset = Annotated[str, Must(mjcf.known, "be a file in envs/assets, or an absolute path")]
 
 
 @part
@@ -52,7 +54,7 @@ class Quadcopter(Body):
     target_distance: NotNegative = 2.0  # [m] largest in each direction; track only
     target_speed: NotNegative = 0.0  # [m/s] largest in each direction; track only
     wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
-    asset: str = ASSET  # another file needs the same actuators
+    asset: Asset = ASSET  # another file needs the same actuators
 
     @property
     def spec(self) -> Spec:

@@ -15,7 +15,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, printable, relative
-from hybrid_rl.fields import choices, plain
+from hybrid_rl.fields import as_yaml, choices, plain
 from hybrid_rl.networks.precision import PRECISIONS
 from hybrid_rl.overrides import SHOW, closest_hint
 from hybrid_rl.types import NAME
@@ -69,7 +69,7 @@ def check(config: DictConfig) -> None:
         )
     modes = config.eval_modes
     if not isinstance(modes, ListConfig) or not set(modes) <= set(MODES):
-        raise UsageError(f"eval_modes={modes}: must be a list of {', '.join(MODES)}")
+        raise UsageError(f"eval_modes={as_yaml(modes)}: must be a list of {', '.join(MODES)}")
     if len(set(modes)) < len(modes):
         raise UsageError(f"eval_modes={modes}: has one of them twice")
     freeze = config.get("freeze", ListConfig([]))
@@ -168,7 +168,7 @@ def check_kinds(node: DictConfig, where: str = "") -> None:
         wanted = kinds.get(str(key), {kind})
         if kind not in wanted and not (kind is int and float in wanted):
             called = " or ".join(KINDS[each] for each in KINDS if each in wanted)
-            raise UsageError(f"{where}{key}={value}: must be {called}")
+            raise UsageError(f"{where}{key}={as_yaml(value)}: must be {called}")
 
 
 def check_fields(node: DictConfig, part: Any, where: str) -> None:
@@ -226,7 +226,7 @@ def whole(key: str, value: Any, least: int = 1) -> int:
         UsageError: if it is anything else, or less than `least`.
     """
     if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
-        raise UsageError(f"{key}={value}: must be a whole number, {least} or more")
+        raise UsageError(f"{key}={as_yaml(value)}: must be a whole number, {least} or more")
     return int(value)
 
 

@@ -129,7 +129,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
-        values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", next(filter(None, names), "_"))
+        values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))
     read = overriding.reachable_keys(overriding.raw_values(config), READ)
     made: Any = OmegaConf.create(overriding.of_keys(values, read), flags={"struct": True})
     return made

@@ -39,6 +39,7 @@ from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.core.lifting import is_identity
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.data.trained import save as save_policy
+from hybrid_rl.envs.adapters.unstepped import Unstepped
 from hybrid_rl.errors import UsageError
 from hybrid_rl.protocols import Controller
 from hybrid_rl.run.files.reading import json_file
@@ -122,6 +123,8 @@ def _expert(
     if given["task"]:
         return given["task"], *scripted_expert(given, changes)
     run = load(Path(given["run"]))
+    if isinstance(run.episode.env, Unstepped):
+        raise UsageError(f"run={given['run']}: its world steps outside JAX, where none is recorded")
     return run.task, run.episode, *run.learner(mode=given["mode"], world=True)
 
 

@@ -41,7 +41,7 @@ class FieldError(ValueError):
 
     def __init__(self, part: Any, name: str, words: str, lacks: str = "") -> None:
         self.lacks = lacks
-        self.line, self.words = f"{name}={_as_yaml(getattr(part, name))}: {words}", words
+        self.line, self.words = f"{name}={as_yaml(getattr(part, name))}: {words}", words
         super().__init__(f"{type(part).__name__}: {self.line}")
 
     def at(self, key: str) -> Self:
@@ -174,7 +174,9 @@ def _wrong(kind: Any, value: Any) -> str:
     if get_origin(kind) is Annotated:
         must: Must = of[1]
         try:
-            holds = bool(must.hold(value)) and not (of[0] in (int, float) and value is True)
+            holds = bool(must.hold(value)) and not (
+                of[0] in (int, float) and isinstance(value, bool)
+            )
         except (TypeError, ValueError):  # a word or an array in a list of numbers, say
             holds = False
         if holds and of[0] is int and value > LARGEST:
@@ -232,11 +234,11 @@ def _number(kind: Any, value: Any) -> Any:
     return float(value) if of is float and type(value) is int else value
 
 
-def _as_yaml(value: Any) -> Any:
+def as_yaml(value: Any) -> Any:
     """A value as configurations write it."""
     if is_dataclass(value):
         return type(value).__name__
     value = value.tolist() if isinstance(value, np.ndarray) else value
     if isinstance(value, tuple | list):
-        return [_as_yaml(each) for each in value]
+        return [as_yaml(each) for each in value]
     return {"None": "null", "True": "true", "False": "false"}.get(str(value), value)

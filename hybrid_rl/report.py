@@ -233,9 +233,8 @@ def _configuration(runs: Sequence[RunFolder]) -> str:
         text = table(("setting", *(str(run.path) for run in runs)), rows) if keys else none
     same: dict[str, list[str]] = {}
     for run in runs:
-        file = run.path / "config.yaml"
-        if file.exists():
-            same.setdefault(text_of(file), []).append(str(run.path))
+        if run.settings:  # there is a file, of keys
+            same.setdefault(text_of(run.path / "config.yaml"), []).append(str(run.path))
     return text + "\n".join(
         f"<details><summary>config.yaml of {html.escape(', '.join(paths))}</summary>"
         f"<pre>{html.escape(yaml)}</pre></details>"

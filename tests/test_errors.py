@@ -153,7 +153,7 @@ USAGE = [  # overrides of train, words of the line
     ("precision=low", "precision=low: choose one of auto, mixed, bf16, tf32, float32"),
     ("replay.capacity=1000000000 total_steps=2147483647", "learners would take"),
     ("algo=bc", "demonstrations=demonstrations/pendulum.npz: no such file; `python -m hybrid_rl"),
-    ("algo=bc demonstrations=null", "demonstrations.file=None: must be a word"),
+    ("algo=bc demonstrations=null", "demonstrations.file=null: must be a word"),
     ("algo=bc num_demonstrations=0", "num_demonstrations=0: must be 1 or more"),
     ("pretrain=3", "pretrain=3: the memory has no demonstrations to learn from"),
     ("pretrain=-1", "pretrain=-1: must be a whole number, 0 or more"),

@@ -81,7 +81,8 @@ class Copies:
         """
         low, width, shape, kind = self._bounds
         share = (np.maximum(np.minimum(np.asarray(u, np.float32), 1), -1) + 1) / 2
-        actions = (low + share * width).reshape(-1, *shape).astype(kind)
+        actions = (low + share * width).reshape(-1, *shape)
+        actions = (np.rint(actions) if kind.kind in "iu" else actions).astype(kind)
         obs, paid, ended, cut, infos = self._call("step", lambda: self._stepped(actions))
         obs, reward = self._observed("step", obs), np.asarray(paid, np.float32)
         if not np.isfinite(reward).all():

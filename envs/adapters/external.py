@@ -33,7 +33,7 @@ from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
 from hybrid_rl.fields import Positive, part
 from hybrid_rl.types import EnvState, Spec
 
-ACTIONS = "they must be a Box with finite bounds"
+ACTIONS = "they must be a Box with finite bounds, of one number or more"
 FORMS = "they must be numbers in a form that Gymnasium flattens (Box, Discrete, Dict, Tuple), "
 DT = 'add env.dt=0.05, the seconds of a decision, or metadata = {"render_fps": 20} to its class'
 RESET, STEP = "obs, info", "obs, reward, terminated, truncated, info"  # what the methods return
@@ -110,9 +110,8 @@ class External(Made):
 
     def one(self, render_mode: str | None = None) -> gymnasium.Env:
         """A copy of the environment, with flat observations and without a time limit of its own."""
-        given: dict[str, Any] = dict(self.kwargs or {}) | (
-            {"render_mode": render_mode} if render_mode else {}
-        )
+        drawn = {"render_mode": render_mode} if render_mode else {}
+        given: dict[str, Any] = {**(self.kwargs or {}), **drawn}
         if not self.make:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
             env = gymnasium.make(self.id, **options, **given)
@@ -182,22 +181,17 @@ def _read(env: External) -> Known:
     except UsageError:
         raise
     except FAULTS as error:
-        key = "make" if env.make else "id"
-        line = blame(error)
+        key, line = "make" if env.make else "id", blame(error)
         if isinstance(error, UNKNOWN) and ":" not in env.id and "Did you mean" not in line:
             line += f" One that a module of yours registers is env.id=MODULE:{env.id}"
         raise UsageError(f"env.{key}={env.name}: {line}") from error
     space, obs = one.action_space, one.observation_space
-    bounded = isinstance(space, Box) and bool(np.isfinite([space.low, space.high]).all())
-    if not bounded:
+    bounds = np.array([space.low, space.high]) if isinstance(space, Box) else np.zeros(0)
+    if not (bounds.size and np.isfinite(bounds).all()):
         raise UsageError(f"{env.name}: has actions {space}; {ACTIONS}")
     if not (isinstance(obs, Box) and 0 < np.prod(obs.shape) < HUGE):
         raise UsageError(f"{env.name}: has observations {obs}; {FORMS}fewer than {HUGE:,}")
-    dt = env.dt or getattr(one.unwrapped, "dt", None)
-    rate = one.metadata.get("render_fps") or np.inf
-    dt = dt or (1 / rate if isinstance(rate, int | float) else 0)
-    if not dt > 0:
-        raise UsageError(f"{env.name}: does not say its time step; {DT}")
+    dt = env.dt or _time_step(env.name, one)
     _check_first(env.name, one, found)
     notes = _unseeded(env.name, one, before)
     found = None if env.make or one.spec is None else gymnasium.spec(one.spec.id)
@@ -209,7 +203,16 @@ def _read(env: External) -> Known:
         line = f"an observation has {sizes[0]:,} numbers; those of an image are learned as others"
         notes += (f"{env.name}: {line}, without convolutions",)
     seen = one.env.observation_space if isinstance(one, Flat) else obs
-    return Known(Spec(*sizes, float(dt)), limit, space, seen, notes)
+    return Known(Spec(*sizes, dt), limit, space, seen, notes)
+
+
+def _time_step(name: str, one: gymnasium.Env) -> float:
+    """The seconds between decisions, by `dt` of the environment or its `render_fps`."""
+    with suppress(*FAULTS):  # there is neither, or it is no number
+        dt = float(getattr(one.unwrapped, "dt", None) or 1 / one.metadata["render_fps"])
+        if 0 < dt < np.inf:
+            return dt
+    raise UsageError(f"{name}: does not say its time step; {DT}")
 
 
 def _limit(env: gymnasium.Env) -> int | None:
@@ -290,6 +293,8 @@ def _check_shape(name: str, method: str, word: str, value: Any, wanted: tuple[in
     if shape != wanted:  # of a reward and the ends it is ()
         must = f"its space says {list(wanted)}" if wanted else "it must be one number"
         raise WorldError(f"{name}: {method}: {word} has the shape {list(shape)}; {must}")
-    for entry in np.flatnonzero(~np.isfinite(np.asarray(value, np.float32))):
+    with np.errstate(over="ignore"):  # what float32 cannot hold is infinite
+        numbers = np.asarray(value, np.float32)
+    for entry in np.flatnonzero(~np.isfinite(numbers)):
         where = f"entry {entry} of {word}" if wanted else word
         raise WorldError(f"{name}: {method}: {where} is not finite")

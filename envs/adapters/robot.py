@@ -61,7 +61,7 @@ class Robot(Made):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _ = self.spec
+        _ = self.spec, self.safe
 
     @cached_property
     def kind(self) -> Any:
@@ -79,26 +79,41 @@ class Robot(Made):
     def spec(self) -> Spec:
         """Its sizes, and the time between decisions."""
         low, high = self.bounds
-        if low.shape != high.shape or low.ndim != 1 or not (low < high).all():
+        if low.shape != high.shape or low.ndim != 1 or not (low.size and (low < high).all()):
             raise UsageError(f"env.make={self.name}: low and high must be lists with low < high")
-        dt, obs = float(self.kind.dt), int(self.kind.obs)
-        if not (dt > 0 and obs > 0):
-            raise UsageError(f"env.make={self.name}: dt and obs must be above 0")
-        return Spec(obs + self.past_actions * len(low), len(low), dt)
+        dt, obs = (float(self._numbers(name, ())) for name in ("dt", "obs"))
+        if not (dt > 0 and obs > 0 and obs.is_integer()):
+            line = "dt and obs must be above 0, and obs a whole number"
+            raise UsageError(f"env.make={self.name}: {line}")
+        return Spec(int(obs) + self.past_actions * len(low), len(low), dt)
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """The least and the greatest action [m], in the robot's units."""
-        return np.asarray(self.kind.low, np.float32), np.asarray(self.kind.high, np.float32)
+        low, high = (self._numbers(name).astype(np.float32) for name in ("low", "high"))
+        return low, high
 
     @property
     def safe(self) -> np.ndarray:
         """The safe action [m], from -1 to 1."""
         low, high = self.bounds
-        safe = getattr(self.kind, "safe", None)
         middle = (low + high) / 2
-        given = middle if safe is None else np.broadcast_to(np.asarray(safe, np.float32), low.shape)
+        given = middle if getattr(self.kind, "safe", None) is None else self._numbers("safe")
+        if given.shape not in ((), low.shape):
+            raise UsageError(f"env.make={self.name}: safe must be a list as low")
         return np.clip(2 * (given - low) / (high - low) - 1, -1, 1).astype(np.float32)
+
+    def _numbers(self, name: str, shape: tuple[int, ...] | None = None) -> np.ndarray:
+        """A field of the class as numbers; UsageError for others, or another shape."""
+        value = getattr(self.kind, name)
+        try:
+            numbers = np.asarray(value, float)
+        except (TypeError, ValueError):  # words, a property
+            numbers = np.full(1, np.nan)
+        if not np.isfinite(numbers).all() or shape not in (None, numbers.shape):
+            must = "finite numbers" if shape is None else "one finite number"
+            raise UsageError(f"env.make={self.name}: {name}={value}: must be {must}, of the class")
+        return numbers
 
     def made(self) -> Any:
         """The robot.

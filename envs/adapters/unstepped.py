@@ -43,6 +43,8 @@ class Made(Unstepped):
     kwargs: Mapping[str, Any] | None = None  # of it
 
     def __post_init__(self) -> None:
+        if not (isinstance(self.make, str) or callable(self.make)):
+            raise UsageError(f"env.make={self.make}: must be MODULE:CLASS")
         if not isinstance(self.kwargs or {}, Mapping):
             raise UsageError(f"env.kwargs={self.kwargs}: must be {{KEY: VALUE}}")
         object.__setattr__(self, "kwargs", Items(self.kwargs or {}))

@@ -101,7 +101,7 @@ def _results(axes: "Axes", numbers: dict[str, Any], key: str, kind: str) -> None
             }
             at = _position(row["values"][key], names)
             axes.plot([at], [row["result"]], linestyle="", marker="o", label="best", **ring)
-    if kind == "names":
+    if names:
         axes.set_xticks(range(len(names)), names)
         axes.set_xlim(-0.5, len(names) - 0.5)
     elif kind == "log" and known:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from hydra.core.override_parser.types import Override
 
+from hybrid_rl.cli.combinations import listed
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, Natural, part
 from hybrid_rl.run.logs.records import Row
@@ -53,10 +54,7 @@ def distribution(override: Override) -> "BaseDistribution":
     from optuna import distributions
 
     if not override.is_interval_sweep():
-        listed = list(dict.fromkeys(override.sweep_string_iterator()))
-        if not listed:
-            raise UsageError(f"{override.input_line}: has no values")
-        return distributions.CategoricalDistribution(listed)
+        return distributions.CategoricalDistribution(listed(override))
     sweep: Any = override.value()
     kind: Any = distributions.FloatDistribution
     if isinstance(sweep.start, int) and isinstance(sweep.end, int):

@@ -13,7 +13,6 @@ from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
-from hydra._internal.core_plugins.basic_sweeper import BasicSweeper
 from hydra.core.hydra_config import HydraConfig
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
@@ -25,6 +24,7 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command
+from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.cli.submitted import Result, require_slurm, watch
 from hybrid_rl.composition import concerns, explain
 from hybrid_rl.errors import UsageError
@@ -32,7 +32,8 @@ from hybrid_rl.overrides import of_job, parse, quoted
 from hybrid_rl.run import together
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
-from hybrid_rl.run.folder import NO_CHECKPOINT, new_folder, rowless
+from hybrid_rl.run.folder import NO_CHECKPOINT, members, new_folder, rowless
+from hybrid_rl.run.machine import distributed
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
 
@@ -114,7 +115,11 @@ class Sweeper:
         jobs = _folders(jobs, self._checked(jobs, configs))
         print(*notes, sep="", end="", flush=True)
         folder = Path(str(self.config.hydra.sweep.dir))
-        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            line = f"hydra.sweep.dir={folder}: cannot be written to ({error.strerror})"
+            raise UsageError(line) from error
         OmegaConf.save(self.config, folder / "multirun.yaml")
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
         results, size = self.task.results, self.max_batch_size or len(jobs)
@@ -189,7 +194,7 @@ class Sweeper:
                 config.physics = "native"
             try:
                 with command.as_typed(overrides):
-                    _check(together.expand_sweep(config, overrides))
+                    _check(together.expand_sweep(config, overrides), here(self.config.hydra))
             except (UsageError, OmegaConfBaseException) as error:
                 line = error if isinstance(error, UsageError) else explain(error)
                 raise UsageError(f"{line} ({self._called(number)})") from error
@@ -200,13 +205,18 @@ class Sweeper:
         return f"{self.task.called} {number}: {self.task.labels[number]}".removesuffix(": ")
 
 
-def _check(members: Sequence[together.Member]) -> None:
-    """Raise UsageError if a job cannot run, alone or with those that share its program."""
+def _check(members: Sequence[together.Member], joins: bool) -> None:
+    """Raise UsageError if a job cannot run, alone or with those that share its program.
+
+    joins: it runs in this process, one of those of distributed=true, which are counted first.
+    """
     runs = []
     for each in members:
         if each.config.resume is None:
             check(each.config)
             prepare(each.config)  # first: a check of the user's world initialises JAX
+            if joins and each.config.distributed:
+                distributed.share(each.config)
             runs.append(build_new_run(each.config)[0])
     if len(runs) > 1:
         together.axis_of(members, runs)
@@ -234,29 +244,13 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
         else:
             same = given.count(config.run_dir) > 1
             folder = Path(str(config.run_dir), str(number) if same else "")
-        if checkpoint.steps(folder / "checkpoints"):
+        if any(checkpoint.steps(each / "checkpoints") for each in members(folder) or [folder]):
             complete.append([*mine, f"resume={quoted(str(folder))}"])
             continue
         if (folder / "config.yaml").exists() and not rowless(folder):
             raise UsageError(f"run_dir={folder}: {NO_CHECKPOINT}")
         complete.append([*mine, f"run_dir={quoted(str(folder))}"])
     return complete
-
-
-def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
-    """The overrides of each job: every combination of the values.
-
-    Raises:
-        HydraException: for a range, which only a search can sweep.
-    """
-    return BasicSweeper.split_arguments([*parsed], None)[0]
-
-
-def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:
-    """The overrides of each job that not all jobs share."""
-    common = set.intersection(*map(set, jobs))
-    own = ([text for text in overrides if text not in common] for overrides in jobs)
-    return {number: " ".join(texts) for number, texts in enumerate(own)}
 
 
 def _report(

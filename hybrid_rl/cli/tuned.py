@@ -19,6 +19,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import overrides
 from hybrid_rl.cli import study, sweep
+from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.composition import options
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
@@ -63,7 +64,7 @@ class Tuner(sweep.Sweeper):
         parsed = self._parsed(arguments)
         fixed, space = self._split(parsed)
         corners = _corners(fixed, space)
-        self.task.labels = sweep.labels(corners)
+        self.task.labels = labels(corners)
         composed = [self._composed(*each) for each in enumerate(corners)]
         config = self._checked(corners, composed)[0]
         if not [mode for mode in config.eval_modes if mode in config.controllers]:
@@ -112,6 +113,8 @@ class Tuner(sweep.Sweeper):
                 raise UsageError(f"{each.input_line}: not in a study, which chooses values itself")
             if each.key_or_group in OWN:
                 raise UsageError(f"{each.input_line}: not in a study, which goes on by run_dir=DIR")
+            if each.is_sweep_override() and each.key_or_group == "run_dir":
+                raise UsageError(f"{each.input_line}: a study has one folder")
             if each.is_interval_sweep() and (names := options(each.key_or_group)):
                 line = f"{each.input_line}: has names, such as {each.key_or_group}="
                 raise UsageError(f"{line}choice({','.join(names[:2])})")
@@ -119,7 +122,7 @@ class Tuner(sweep.Sweeper):
                 space[each.get_key_element()] = study.distribution(each)
         if not space:
             raise UsageError(f"hydra/sweeper=tuned: no key has several values; {HINT}")
-        (fixed,) = sweep.jobs_of([each for each in parsed if not each.is_sweep_override()])
+        (fixed,) = jobs_of([each for each in parsed if not each.is_sweep_override()])
         return fixed, space
 
     def _watch(self, job: DictConfig) -> study.Watch:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack
+from itertools import cycle
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -68,7 +69,7 @@ def train(
         members = [Member(config, {})]
         given = {key: value for key, value in given.items() if key != "distributed"}
     if config.resume is not None:
-        return _resume(config, given, handled, output)
+        return _resume(members, given, handled, output)
     for each in members:
         check(each.config)
     prepare(config)  # first: a check of the user's world initialises JAX's devices
@@ -102,15 +103,16 @@ def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, A
 
 
 def _resume(
-    config: DictConfig, given: Mapping[str, str], handled: Handler, output: Output
+    wanted: Sequence[Member], given: Mapping[str, str], handled: Handler, output: Output
 ) -> dict[str, Any]:
-    """Continue the run, or the runs of a sweep, in the folder `config.resume`, as `train`."""
-    parent = Path(str(config.resume))
+    """Continue the run, or the runs of a sweep, in the folder `resume`, as `train`."""
+    parent = Path(str(wanted[0].config.resume))
     values = folder.members(parent) or {parent: {}}
     swept, folders = parent not in values, list(values)
+    typed = dict(zip(folders, cycle(wanted), strict=False))  # one, or one for each
 
     def settings(run_dir: Path) -> DictConfig:
-        own = config.copy()
+        own = typed[run_dir].config.copy()
         own.resume = str(run_dir)
         return _settings(own, given)
 
@@ -217,6 +219,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
     if not checkpoint.steps(run_dir / "checkpoints"):
         raise UsageError(f"resume={run_dir}: holds no checkpoint; start the run again")
     free = {"resume", "total_steps", "compile_cache", "precision"}
+    given = {key.removeprefix("sweep."): value for key, value in given.items()}
     groups = {key: OmegaConf.select(old, key, default=UNKNOWN) is UNKNOWN for key in given}
     for key in sorted(given.keys() - free, key=lambda key: groups[key]):  # a changed value is named
         before, now = (OmegaConf.select(c, key, default=UNKNOWN) for c in (old, config))

@@ -140,7 +140,7 @@ def _learners(
         world = ("env.", "episode.", "reward.")
         own = [line for line in lines if "." in line.split()[0] and not line.startswith(world)]
         what, detail = ", ".join((own or lines)[:2]), str(error).partition("this run: ")[2]
-        other = folder.of_another_commit(source)
+        other = "" if what else folder.of_another_commit(source)
         raise UsageError(
             f"{what}: parameters of run={source} do not fit ({detail}){other}"
         ) from error

@@ -65,12 +65,13 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     texts, raw = [text for text in texts if not overrides.is_swept(text)], raw_values(config)
     lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
     config.sweep = {}
+    given = overrides.typed_values(texts)
     for key, values in lists.items():
         _check_values(config, raw, key, values)
+        if key in given:
+            raise UsageError(f"{key}={given[key]}: sweep.{key} gives its values; leave one out")
     if lists and config.get("distributed"):
         raise UsageError("distributed=true: trains no sweep; use -m, or one process")
-    if lists and config.get("resume") is not None:
-        raise UsageError(f"sweep: the sweep in resume={config.resume} has its values already")
     members = []
     for values in product(*lists.values()):
         chosen = dict(zip(lists, values, strict=True))
@@ -80,6 +81,11 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
             OmegaConf.update(own, source(raw, key), value)
         _refuse_unused(own, typed)
         members.append(Member(inherited.resolve_config(own, [*texts, *typed]), chosen))
+    if len(members) > 1 and config.get("resume") is not None:
+        before = [*folder.members(Path(str(config.resume))).values()]
+        if before != [each.values for each in members]:
+            has = ", ".join(map(folder.words, before)) or "no sweep"
+            raise UsageError(f"sweep: resume={config.resume} has {has}; leave sweep.KEY out")
     return members
 
 

@@ -1,5 +1,6 @@
 """One decision of one learner: params -> controller -> environment -> memory -> learners."""
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +13,7 @@ from jax import Array
 from hybrid_rl.core.batching import repeat, where
 from hybrid_rl.core.lifting import lifted_batch, lifted_spec
 from hybrid_rl.data.replay import Memory, Replay, as_batch
-from hybrid_rl.fields import Count, FieldError, Natural, check
+from hybrid_rl.fields import LARGEST, Count, FieldError, Natural, check
 from hybrid_rl.protocols import Controller, Learner, Model
 from hybrid_rl.training import contract
 from hybrid_rl.training.episode import Episode
@@ -282,13 +283,13 @@ def update_schedule(name: str, learner: Learner, num_envs: int) -> tuple[int, in
             f"{name}_learner.batch_size={learner.batch_size}: must be a whole number, 1 or more"
         )
     per_round = learner.updates * num_envs
-    if per_round >= 1 and float(per_round).is_integer():
-        return int(per_round), 1
-    if 0 < per_round < 1 and float(1 / per_round).is_integer():
-        return 1, int(1 / per_round)
+    count = max(per_round, 1 / per_round) if per_round > 0 else math.nan
+    if count <= LARGEST and float(count).is_integer():
+        return (int(count), 1) if per_round >= 1 else (1, int(count))
     raise ValueError(
         f"{name}_learner.updates={learner.updates}: with num_envs={num_envs} this gives "
-        f"{per_round:g} gradient steps per round; it must be a whole number, or 1 / a whole number"
+        f"{per_round:g} gradient steps per round; it must be a whole number, or 1 / a whole "
+        f"number, of at most {LARGEST}"
     )
 
 

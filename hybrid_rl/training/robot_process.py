@@ -13,6 +13,7 @@ from hybrid_rl.errors import WorldError
 
 TRIES = 5  # starts of the process in a row without a new decision
 LOWER = 10  # priority of the learner
+WAITING = "; waiting for it"  # ends a line about a robot that may go on
 
 
 class RobotProcess:
@@ -47,8 +48,8 @@ class RobotProcess:
         alive, line, error = self.alive(), "", self.folder / "error"
         with suppress(OSError):
             line = error.read_text()
-        if alive:
-            return self._show(line)
+        if alive:  # else the line is that of its end, which may come a moment later
+            return self._show(line) if line.endswith(WAITING) or not line else None
         code = None if self.child is None else self.child.returncode
         if code == 0:
             self.ended = True

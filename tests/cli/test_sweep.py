@@ -77,6 +77,14 @@ def test_a_failed_job_does_not_end_the_others(tmp_path, capfd):
         ),
         ("seed=0,1 total_step=3", "total_step: unknown key; did you mean total_steps?"),
         ("+sed=0,1", "sed: unknown key; did you mean seed?"),
+        ("seed=range(0,2,0)", "seed=range(0,2,0): range() arg 3 must not be zero"),
+        ("seed=range(0,0)", "seed=range(0,0): has no values"),
+        ("seed=glob(*)", "seed=glob(*): has no values"),
+        ("seed=interval(0,1)", "seed=interval(0,1): a range needs hydra/sweeper=tuned; list val"),
+        (
+            "algo=sac policy_learner.tau=0.1 sweep.policy_learner.tau=[0.2,0.3]",
+            "policy_learner.tau=0.1: sweep.policy_learner.tau gives its values; leave one out",
+        ),
     ],
 )
 @pytest.mark.parametrize("launcher", ["basic", "submitit_local"])
@@ -145,6 +153,24 @@ def test_the_same_command_continues_a_sweep_that_was_stopped(tmp_path, capfd, mo
     }
     assert call_train(*line, "policy_learner.tau=0.1") == 2
     assert "policy_learner.tau=0.1: with resume only total_steps" in capfd.readouterr().err
+
+
+def test_the_same_command_continues_runs_that_share_a_program(tmp_path, capfd):
+    line = ["-m", *SHORT, "run_dir=both"]
+    key = "sweep.policy_learner.discount"
+    assert call_train(*line, f"{key}=[0.9,0.5]") == 0
+    before = (tmp_path / "both/1/metrics.jsonl").read_text()
+    assert call_train(*line, f"{key}=[0.9,0.5]") == 0
+    assert capfd.readouterr().out.count("1 of 1 jobs done") == 2
+    assert (tmp_path / "both/1/metrics.jsonl").read_text() == before
+    assert call_train(*line, f"{key}=[0.9,0.7]") == 2
+    assert "resume=both has policy_learner.discount=0.9, policy_" in capfd.readouterr().err
+
+
+def test_a_folder_that_cannot_be_made_is_one_line(tmp_path, capfd):
+    (tmp_path / "file").touch()
+    assert call_train("-m", *SHORT, "seed=0,1", "hydra.sweep.dir=file") == 2
+    assert capfd.readouterr().err.startswith("hybrid_rl: hydra.sweep.dir=file: cannot be written")
 
 
 def test_jobs_in_one_of_many_worlds_have_folders_of_its_name(tmp_path, monkeypatch):

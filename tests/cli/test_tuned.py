@@ -135,6 +135,7 @@ def test_a_metric_that_is_not_evaluated_is_named(tmp_path):
         ("adjoint_planner.horizon=choice(3,4)", "sac does not use it"),
         ("seed=0,1 eval_modes=[]", "eval_modes=[]: a study needs evaluations"),
         ("seed=0,1 resume=x", "resume=x: not in a study"),
+        ("run_dir=x,y", "run_dir=x,y: a study has one folder"),
         ("seed=0,1 hydra/launcher=submitit_local", "leave hydra/launcher out"),
     ],
 )
@@ -179,3 +180,10 @@ def test_three_real_trials_their_table_and_their_picture(tmp_path, monkeypatch, 
     assert len(drawn.axes) == 2
     assert call_train(*line, "hydra.sweeper.trials=3") == 0  # nothing is left to do
     assert "3 of 3 trials" in capfd.readouterr().out
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_study_whose_trials_all_failed_has_a_picture():
+    lost = {"trial": 0, "values": {"a": "1"}, "state": "fail", "result": None, "run": "0"}
+    found = {"metric": "final_eval", "keys": {"a": "names"}, "trials": [lost], "best": None}
+    assert tuning.draw({**found, "importances": {}}).axes

@@ -65,6 +65,13 @@ def test_what_makes_no_distributed_run_is_one_line(tmp_path, monkeypatch, capfd)
     assert "holds 0 shares, and there are 2 processes" in capfd.readouterr().err
 
 
+def test_the_processes_of_a_sweep_are_counted_before_anything_is_built(monkeypatch, capfd):
+    """JAX counts none after its first computation."""
+    monkeypatch.setattr("hybrid_rl.cli.sweep.build_new_run", None)
+    assert call_train("-m", *LINE, "seed=0,1", "distributed=true") == 2
+    assert "run_dir=null: distributed=true needs one folder" in capfd.readouterr().err
+
+
 def test_without_a_cluster_it_is_one_line(tmp_path):
     line = [sys.executable, "-m", "hybrid_rl.train", *LINE, "distributed=true", "num_seeds=2"]
     done = subprocess.run([*line, f"run_dir={tmp_path}"], capture_output=True, text=True)

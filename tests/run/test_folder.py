@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tiny import TINY, call, call_train, contents, only_line, run
 
-from hybrid_rl import evaluate, render
+from hybrid_rl import evaluate, render, report
 from hybrid_rl.cli import command
 from hybrid_rl.config import load
 from hybrid_rl.doctor.__main__ import examine
@@ -121,6 +121,12 @@ def test_a_damaged_configuration_is_blamed_on_its_file(copied, capfd, harm):
     for line in lines:
         assert line.startswith(f"hybrid_rl: {copied}/config.yaml"), line
     assert contents(copied) == before
+
+
+def test_an_empty_configuration_has_no_report(copied, capfd):
+    empty(copied / "config.yaml")
+    assert call(lambda: command.run(report.main), f"run={copied}", "video=none") == 2
+    assert "config.yaml: is empty" in only_line(capfd)
 
 
 @pytest.mark.parametrize("harm", [without_env, without_physics, other_value, other_module])

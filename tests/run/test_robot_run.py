@@ -1,5 +1,6 @@
 """A run on a stand-in robot in processes of their own; what a run on a robot refuses."""
 
+import math
 import os
 import re
 import socket
@@ -118,6 +119,22 @@ def test_what_a_class_lacks_is_named(missing, line):
     del names[missing]
     with pytest.raises(UsageError, match=line):
         Robot(make=type("Lacking", (), names))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "line"),
+    [
+        ("dt", "fast", "dt=fast: must be one finite number, of the class"),
+        ("dt", math.inf, "dt=inf: must be one finite number"),
+        ("obs", 2.5, "obs a whole number"),
+        ("low", [-math.inf], "low=.*: must be finite numbers"),
+        ("safe", [math.nan], "safe=.*: must be finite numbers"),
+        ("safe", [0.0, 0.0, 0.0], "safe must be a list as low"),
+    ],
+)
+def test_numbers_of_a_class_that_no_robot_can_have_are_named(name, value, line):
+    with pytest.raises(UsageError, match=line):
+        Robot(make=type("Odd", (Cartpole,), {name: value}))
 
 
 @pytest.mark.parametrize(

@@ -132,7 +132,8 @@ def test_a_learner_that_diverges_ends_alone(tmp_path, capfd):
         ("policy_learner.tua=[0.1,0.2]", "unknown key; did you mean policy_learner.tau?"),
         ("planner.temperature=[0.1,0.2]", "sweep.planner.temperature: sac does not use it"),
         ("episode.sensor_noise=[0.1,0.2]", "as all learners have the same world; use -m"),
-        ("num_seeds=[1,2]", "it is no number of a learner or a controller; use -m num_seeds=1,2"),
+        ("seed=[1,2]", "it is no number of a learner or a controller; use -m seed=1,2"),
+        ("num_seeds=[1,2]", "num_seeds=2: sweep.num_seeds gives its values; leave one out"),
     ],
 )
 def test_what_no_program_can_hold_is_refused_in_one_line(key, words, tmp_path, capfd):

@@ -87,7 +87,7 @@ def test_another_commit_is_named(source, tmp_path):
     folder = shutil.copytree(source, tmp_path / "run")
     (folder / "summary.json").write_text(json.dumps(summary_of(folder) | {"git_commit": "1a2b3c"}))
     assert begun(folder, "total_steps=50")[-1].endswith("; made at another commit, 1a2b3c")
-    with pytest.raises(UsageError, match=r"do not fit .*; made at another commit: check out 1a2b"):
+    with pytest.raises(UsageError, match=r"policy.hidden was \[16\] and is \[8\]: .* there\)$"):
         begun(folder, "policy.hidden=[8]")
 
 

@@ -221,6 +221,10 @@ def test_a_robot_whose_reset_fails_is_tried_again_and_given_up(agent, tmp_path, 
     monkeypatch.setattr(process, "alive", lambda: True)
     process.watch()
     assert "Stuck: reset: ConnectionError: no bus; waiting for it" in process.shown
+    (tmp_path / "error").write_text("the line with which it is about to end")
+    process.checked = 0.0
+    process.watch()
+    assert "waiting for it" in process.shown  # that line is shown once, by the run's end
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,8 @@ from gymnasium.spaces import Box, Dict, Discrete
 from gymnasium.wrappers import OrderEnforcing, TimeLimit
 from hosted import Count, counting
 
+from hybrid_rl import config
+from hybrid_rl.checks import check
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.fields import FieldError
@@ -69,6 +71,21 @@ def test_spaces_of_any_form_are_flattened():
         External(id="CartPole-v1")
 
 
+def test_an_id_that_is_a_number_is_one_line():
+    with pytest.raises(UsageError, match=r"env\.id=3: must be a word"):
+        check(config.load(["task=gymnasium", "algo=sac", "env.id=3"]))
+
+
+def test_an_action_of_whole_numbers_is_the_nearest():
+    class Whole(Count):
+        action_space = Box(-2, 4, (1,), np.int32)
+
+    copies = External(make=Whole).copies([0], STEPS)
+    copies.reset()
+    rewards = [copies.step(np.array([[u]])).reward[0] for u in (0.9, -0.9, 0.0)]
+    assert rewards == [4, -2, 1]
+
+
 def test_a_time_limit_among_the_wrappers_is_that_of_the_episode():
     limited = External(make=lambda: OrderEnforcing(TimeLimit(Odd(), 50)))
     assert limited.known.steps == 50
@@ -103,6 +120,9 @@ def test_an_observation_that_cannot_be_flattened_is_one_line(method, obs, line):
         ({"make": "nowhere:Env"}, "env.make=nowhere:Env: cannot be imported (No module named"),
         ({"make": "./reach.py:Reach"}, "cannot be imported (a module has no .py: reach:Reach)"),
         ({"make": "json:loads"}, "env.make=json:loads: TypeError"),
+        ({"make": ["a"]}, "env.make=['a']: must be MODULE:CLASS"),
+        ({"make": Odd, "kwargs": {"actions": Box(-1, 1, (0,))}}, "of one number or more"),
+        ({"make": type("Timed", (Odd,), {"dt": "fast"})}, "Timed: does not say its time step; add"),
         ({"id": "Pendulum-v1", "kwargs": 3}, "env.kwargs=3: must be {KEY: VALUE}"),
         ({"id": "Pendulum-v1", "timeout_s": 1.0}, "goes with env.processes=true"),
     ],
@@ -122,6 +142,7 @@ def test_what_is_no_usable_environment_is_one_line(given, line):
         ("step", (np.ones(2), np.zeros(1), False, False, {}), "reward has the shape [1]; it must"),
         ("step", (np.ones(2), np.nan, False, False, {}), "reward is not finite"),
         ("step", (np.array([0, np.nan]), 0.0, False, False, {}), "entry 1 of obs is not finite"),
+        ("reset", (np.array([0, 1e300]), {}), "entry 1 of obs is not finite"),
         ("reset", np.ones(2), "returns ndarray; it must return obs, info"),
     ],
 )
