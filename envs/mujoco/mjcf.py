@@ -19,8 +19,6 @@ import mujoco
 import numpy as np
 from jax import Array
 
-from hybrid_rl.errors import UsageError
-
 FOLDER = Path(__file__).parents[1] / "assets"
 FIELDS = (  # of MjModel that an episode may have for itself; MJX takes others as constants
     *("body_mass", "body_inertia", "body_ipos", "geom_friction", "pair_friction", "dof_damping"),
@@ -94,7 +92,7 @@ def spec(asset: str) -> mujoco.MjSpec:
     """A new description of `asset`, which may be modified; without changes of the whole model.
 
     Raises:
-        UsageError: that names the file, for one that is no model.
+        ValueError: that names the file, for one that is no model.
     """
     if asset.lstrip().startswith("<"):
         return mujoco.MjSpec.from_string(asset)
@@ -103,7 +101,7 @@ def spec(asset: str) -> mujoco.MjSpec:
         result = mujoco.MjSpec.from_file(str(path(file)))
     except ValueError as error:
         line = str(error)
-        raise UsageError(line if file in line else f"{file}: {line}") from error
+        raise ValueError(line if file in line else f"{file}: {line}") from error
     for key, value in values.items():
         if not _whole(key):
             _set(result, key, value)
@@ -129,13 +127,13 @@ def load(asset: str) -> mujoco.MjModel:
     A simulation that diverges is never reset silently, whatever the file says.
 
     Raises:
-        UsageError: that names the file, for one that does not compile.
+        ValueError: that names the file, for one that does not compile.
     """
     given = spec(asset)
     try:
         model = given.compile()
     except ValueError as error:
-        raise UsageError(f"{asset}: {error}") from error
+        raise ValueError(f"{asset}: {error}") from error
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     values = {} if asset.lstrip().startswith("<") else _split(asset)[1]
     if whole := {key: value for key, value in values.items() if _whole(key)}:
