@@ -20,7 +20,7 @@ from section 6.3.2; the position's weight is our choice. Damping is in the thesi
 its equations; wind is our choice.
 """
 
-from typing import Annotated, Literal
+from typing import Literal
 
 import jax
 import jax.numpy as jnp
@@ -31,7 +31,7 @@ from hybrid_rl.envs.mujoco import mjcf
 from hybrid_rl.envs.mujoco.body import Body
 from hybrid_rl.envs.mujoco.kinematics import inverse, quat_multiply, rotate
 from hybrid_rl.envs.mujoco.physics import Physics, PhysicsState
-from hybrid_rl.fields import Must, NotNegative, part
+from hybrid_rl.fields import FieldError, NotNegative, part
 from hybrid_rl.types import EnvState, Spec
 
 ASSET = "quadcopter.xml"
@@ -39,8 +39,6 @@ SCENE = "quadcopter_scene.xml"
 DT = 0.005  # [s] of a decision
 MAX_CONTROL = 6.0  # of a motor
 SUCCESS_ERROR = 0.01  # squared error below which the task is solved
-
-Asset = Annotated[str, Must(mjcf.known, "be a file in envs/assets, or an absolute path")]
 
 
 @part
@@ -54,7 +52,14 @@ class Quadcopter(Body):
     target_distance: NotNegative = 2.0  # [m] largest in each direction; track only
     target_speed: NotNegative = 0.0  # [m/s] largest in each direction; track only
     wind: float = 0.0  # [m/s^2] acceleration along the world's x axis
-    asset: Asset = ASSET  # another file needs the same actuators
+    asset: str = ASSET  # another file needs the same actuators
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        try:
+            mjcf.load(self.asset)
+        except ValueError as error:
+            raise FieldError(self, "asset", str(error)) from error
 
     @property
     def spec(self) -> Spec:

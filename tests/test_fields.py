@@ -139,7 +139,7 @@ def test_a_run_names_the_shortest_key_of_the_field():
             "algo=sac learner@policy_learner=flash_sac",
             "policy_learner.policy=TanhGaussian: has no ",
         ),
-        ("task=quadcopter env.asset=x", "env.asset=x: must be a file in envs/assets, or an absol"),
+        ("task=quadcopter env.asset=x", "env.asset=x: no model "),
         ("algo=localisation", "task=pendulum: has no env.acceleration, which localisation"),
         ("algo=analytic model=sines", "model=Gaussian: AnalyticGradient learns with it, and no le"),
     ],

@@ -32,11 +32,6 @@ DYNAMIC = [
 ]
 
 
-def known(asset: str) -> bool:
-    """Whether `asset`, with changes or without, is a file that exists, or XML itself."""
-    return asset.lstrip().startswith("<") or (FOLDER / asset.split("?")[0]).is_file()
-
-
 def path(asset: str) -> Path:
     """The file of `asset`: a name in `assets`, or an absolute path.
 
