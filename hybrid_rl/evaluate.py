@@ -7,8 +7,8 @@
     python -m hybrid_rl.evaluate run=DIR constraint=speed constraint.most=2 constraint.chance=0.1
 
 With env.KEY=VALUE or episode.KEY=VALUE the world differs from that of the training, and the
-controller does not; the file is then DIR/evaluation_<mode>_<changes>.json, as with another
-precision than the run's.
+controller does not; the file is then DIR/evaluation_<mode>_<changes>.json. A precision= that
+differs from the run's is such a change, too.
 
 With reward=NAME, of conf/reward, the world pays another reward, and a planner maximises it in the
 model that the run has learned; nothing is trained. planner=NAME is another planner, and

@@ -7,8 +7,8 @@
         hidden: tuple[Count, ...] = (256, 256)
 
 Noise(std=0.0) raises `Noise: std=0.0: must be above 0`; a run names the key of its configuration
-instead, `proposal.std=0.0: must be above 0`. Lists become tuples, so that parts can be hashed, and
-whole numbers in a field of numbers become such, so that all its values make arrays of one type.
+instead, `proposal.std=0.0: must be above 0`. Lists become tuples, so that parts can be hashed.
+In a field of floats whole numbers become floats, so that all values give arrays of one type.
 """
 
 import math
@@ -227,7 +227,7 @@ def _tuples(kind: Any, value: Any) -> Any:
 
 
 def _number(kind: Any, value: Any) -> Any:
-    """A value of this type, with numbers for whole ones where it has numbers."""
+    """A value of this type, with floats for whole numbers where the type has floats."""
     of = plain(kind)
     if get_origin(of) is tuple and isinstance(value, tuple):
         return tuple(_number(get_args(of)[0], each) for each in value)

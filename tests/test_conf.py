@@ -144,8 +144,11 @@ def test_how_a_hybrid_method_learns_is_one_override() -> None:
 
 def test_settings_annealed_lengthens_branches_and_lowers_rates_at_the_end() -> None:
     c = config.load(["settings=annealed"])
-    policy = config.build(c).agent.learners["policy"]
+    learners = config.build(c).agent.learners
+    policy = learners["policy"]
     assert (policy.branch_steps, policy.branch_margin, c.total_steps) == (40, 3, 100_000)
+    for learner in learners.values():  # of the models, too
+        assert [float(learner.schedule.factor(k)) for k in (0, 85_000, 100_000)] == [1.0, 0.5, 0.0]
 
 
 PLANNERS = [  # methods that have mode=planner

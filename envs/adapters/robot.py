@@ -100,7 +100,7 @@ class Robot(Made):
         middle = (low + high) / 2
         given = middle if getattr(self.kind, "safe", None) is None else self._numbers("safe")
         if given.shape not in ((), low.shape):
-            raise UsageError(f"env.make={self.name}: safe must be a list as low")
+            raise UsageError(f"env.make={self.name}: safe must be one number, or as many as low")
         return np.clip(2 * (given - low) / (high - low) - 1, -1, 1).astype(np.float32)
 
     def _numbers(self, name: str, shape: tuple[int, ...] | None = None) -> np.ndarray:
@@ -112,7 +112,7 @@ class Robot(Made):
             numbers = np.full(1, np.nan)
         if not np.isfinite(numbers).all() or shape not in (None, numbers.shape):
             must = "finite numbers" if shape is None else "one finite number"
-            raise UsageError(f"env.make={self.name}: {name}={value}: must be {must}, of the class")
+            raise UsageError(f"env.make={self.name}: {name}={value}: must be {must}")
         return numbers
 
     def made(self) -> Any:

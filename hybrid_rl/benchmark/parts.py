@@ -175,8 +175,15 @@ def compiling(settings: Settings, rounds: int) -> Iterator[Table]:
     yield {"part": "compile", "what": settings["algo"], "unit": "starts/s", "rows": rows}
 
 
-PARTS = {part.__name__: part for part in (physics, plan, act, updates, shares, loop)}
-PARTS["compile"] = compiling
+PARTS = {
+    "physics": physics,
+    "plan": plan,
+    "act": act,
+    "updates": updates,
+    "shares": shares,
+    "loop": loop,
+    "compile": compiling,
+}
 
 
 def _agent(settings: Settings, physics: str = "auto", size: str = "default") -> Agent:

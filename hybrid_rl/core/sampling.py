@@ -98,7 +98,7 @@ def kept(w: Array, x: Array) -> Array:
 
 
 def sound(u: Array, rest: float) -> Array:
-    """Actions u, `rest` where they are NaN: such a plan must not be where the next one begins."""
+    """Actions u, with `rest` for those that are not finite: from these the next plan can begin."""
     return jnp.where(jnp.isfinite(u), u, rest)
 
 

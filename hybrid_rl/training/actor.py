@@ -230,7 +230,7 @@ class Actor:
         (self.folder / "error").unlink(missing_ok=True)
 
     def _left_out(self, pending: tuple | None) -> None:
-        """None; if a decision has no outcome, another stretch begins behind it."""
+        """None, in place of a decision without an outcome; a new stretch begins after it."""
         self._stretch += pending is not None
 
     def _limited(self, u: np.ndarray, previous: np.ndarray) -> np.ndarray:

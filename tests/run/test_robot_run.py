@@ -124,12 +124,12 @@ def test_what_a_class_lacks_is_named(missing, line):
 @pytest.mark.parametrize(
     ("name", "value", "line"),
     [
-        ("dt", "fast", "dt=fast: must be one finite number, of the class"),
+        ("dt", "fast", "dt=fast: must be one finite number"),
         ("dt", math.inf, "dt=inf: must be one finite number"),
         ("obs", 2.5, "obs a whole number"),
         ("low", [-math.inf], "low=.*: must be finite numbers"),
         ("safe", [math.nan], "safe=.*: must be finite numbers"),
-        ("safe", [0.0, 0.0, 0.0], "safe must be a list as low"),
+        ("safe", [0.0, 0.0, 0.0], "safe must be one number, or as many as low"),
     ],
 )
 def test_numbers_of_a_class_that_no_robot_can_have_are_named(name, value, line):
