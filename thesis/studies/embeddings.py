@@ -115,7 +115,8 @@ def lines(numbers: dict[str, Any]) -> list[str]:
     """A line for each run."""
     result = []
     for label, one in numbers[CART].items():
-        middle, low, high = (f"{value:g}".replace("inf", "never") for value in one["iterations"])
+        shown = [f"{x:g}" if np.isfinite(x) else "never" for x in one["iterations"]]
+        middle, low, high = shown
         result.append(
             f"{CART} {label}, {plural(one['trials'], 'trial')}: stabilised after {middle} "
             f"[{low}, {high}] iterations, {one['share_by_100']:.0%} by {MARK}, "
