@@ -17,7 +17,8 @@ from hybrid_rl.envs.mujoco.physics import IMPLEMENTATIONS
 from hybrid_rl.errors import UsageError, printable, relative
 from hybrid_rl.fields import as_yaml, choices, plain
 from hybrid_rl.networks.precision import PRECISIONS
-from hybrid_rl.overrides import SHOW, closest_hint
+from hybrid_rl.overrides import SHOW
+from hybrid_rl.settings.complete import nearest
 from hybrid_rl.types import NAME
 
 COUNTS = (
@@ -197,8 +198,10 @@ def check_fields(node: DictConfig, part: Any, where: str) -> None:
         if isinstance(part, type) and not is_dataclass(part) and not takes:
             called = f"{called} is no dataclass (@dataclass(frozen=True)), and"
         names = [name for name in takes if (where, name) != ("episode.", "env")]
+        near = nearest(name, names)
+        hint = f"; did you mean {near}?" if near else ""
         known = f"has {', '.join(names)}" if names else "has no fields"
-        raise UsageError(f"{where}{name}: {called} {known}{closest_hint(name, takes)}")
+        raise UsageError(f"{where}{name}: {called} {known}{hint}")
 
 
 def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
@@ -16,6 +15,8 @@ from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields
 from hybrid_rl.errors import UsageError, install, relative
 from hybrid_rl.parts import asked, part_class
+from hybrid_rl.settings import registry
+from hybrid_rl.settings.complete import keys, nearest
 from hybrid_rl.training.episode import Episode
 
 HERE = Path(__file__).parent
@@ -39,9 +40,12 @@ def search_path(config_dir: str | Path) -> str:
     folder = Path(config_dir).expanduser().resolve()
     if not folder.is_dir():
         raise UsageError(f"config_dir={config_dir}: no such folder")
-    for file in sorted(CONF.glob("*/**/*.yaml")):
-        mine = folder / (name := file.relative_to(CONF))
-        if mine.is_file() and mine.read_bytes() != file.read_bytes():
+    ours = {file.relative_to(CONF): file.read_bytes() for file in CONF.glob("*/**/*.yaml")}
+    for group, names in registry.choices(CONF).items():
+        ours |= {Path(group, f"{name}.yaml"): b"" for name in names}
+    for name, text in sorted(ours.items()):
+        mine = folder / name
+        if mine.is_file() and mine.read_bytes() != text:
             raise UsageError(
                 f"config_dir={config_dir}: hybrid_rl has {name.parent.as_posix()}={name.stem} of "
                 f"its own, which a run would take; rename {name}"
@@ -51,11 +55,41 @@ def search_path(config_dir: str | Path) -> str:
 
 def options(group: str) -> list[str]:
     """Names that a configuration group offers, with their folders."""
-    return sorted(
+    files = {
         path.relative_to(conf / group).with_suffix("").as_posix()
         for conf in (CONF, THESIS)
         for path in (conf / group).rglob("*.yaml")
-    )
+    }
+    return sorted(files | registry.choices(CONF).get(group, {}).keys())
+
+
+def groups(config_dir: str | Path | None = None) -> set[str]:
+    """The names of the groups in conf/, and of those in a folder of the user."""
+    folders = [CONF, THESIS, *([Path(config_dir).expanduser()] if config_dir else [])]
+    files = (path.relative_to(folder) for folder in folders for path in folder.rglob("*.yaml"))
+    found = {above.as_posix() for file in files for above in file.parents} - {"."}
+    return found | registry.ROLES.keys()
+
+
+def keys_of(texts: Sequence[str], hydra: Any) -> dict[str, str]:
+    """Key -> override, of a job: that of a value, and of a choice that of the part it makes.
+
+    A choice that spreads over the configuration, as `algo`, and `sweep.KEY` have none.
+    """
+    found = {}
+    for text, each in zip(texts, overrides.parse(texts), strict=True):
+        file = chosen(hydra, each.key_or_group)
+        spreads = file is not None and GLOBAL in file.read_text(encoding="utf-8")[:100]
+        if not (spreads or each.is_delete() or overrides.is_swept(each.key_or_group)):
+            found[overrides.key(each).replace("/", ".")] = text
+    return found
+
+
+def settings_keys(hydra: Any) -> dict[str, Any]:
+    """The keys that the chosen file of `settings` sets."""
+    file = chosen(hydra, "settings")
+    found: Any = OmegaConf.to_container(OmegaConf.load(file)) if file else {}
+    return keys({key: value for key, value in found.items() if key != "defaults"})
 
 
 def check_choices(texts: Sequence[str]) -> None:
@@ -113,7 +147,8 @@ def explain(error: Exception) -> str:
         deep = 2 if parts[0] == "hydra" else 1
         group, value = "/".join(parts[:deep]), "/".join(parts[deep:])
         known = sorted({*options(group), *(error.options or ())})  # theirs: of --config-dir too
-        close = overrides.closest_hint(value, known) if len(known) < MANY else ""
+        close = nearest(value, known) if len(known) < MANY else ""
+        close = close and f"; did you mean {close}?"
         if group == "task" and (kind := OF_GYMNASIUM.search(value)):
             close = f"; did you mean task=gymnasium env.{kind.lastgroup}={value}?"
         if group == "hydra/launcher" and SLURM not in known:
@@ -122,8 +157,6 @@ def explain(error: Exception) -> str:
             close = f"; your own {group}/{value}.yaml needs config_dir=FOLDER"
         return f"{group}={value}: unknown; {_choice(value, known)}{close}"
     cause, text, absent = error.__cause__, str(error), _absent(error)
-    if absent and isinstance(cause, OmegaConfBaseException):
-        return overrides.unknown(cause.parent_node, absent)
     if absent:
         more = f"; +{absent}=NAME adds it" if "@" in absent else ""
         return f"{absent}: the method has no such part{more}; {METHODS}"
@@ -145,10 +178,10 @@ def explain(error: Exception) -> str:
             return line
         at, lacks = error.full_key, f"refers to {key}, which neither this task nor this method sets"
         return f"{at}: {lacks}; give {at}=VALUE"
-    if isinstance(error, OmegaConfBaseException) and "to parent node" in text:
-        return f"{error.full_key}: refers to the part that it is in; give it another one"
+    if isinstance(error, OmegaConfBaseException) and re.search("to parent node|Recursive", text):
+        return f"{error.full_key}: refers to itself; give it another part"
     if word := overrides.PLAIN.search(f"{text} {cause}"):
-        return f"{word[1]}: must be a group of keys; {overrides.SHOW}"
+        return f"{word[1].lstrip('+')}: must be a group of keys; {overrides.SHOW}"
     return _sentences(f"{text}\n{cause or ''}")
 
 
@@ -181,7 +214,7 @@ def _choice(word: str, known: Sequence[str]) -> str:
     """What to choose in place of a word: one of all names, or of MANY one of the nearest."""
     if len(known) < MANY:
         return f"choose one of {', '.join(known)}"
-    close = difflib.get_close_matches(word.lower(), known, n=overrides.MOST, cutoff=0.4)
+    close = difflib.get_close_matches(word.lower(), known, n=1, cutoff=0.4)
     nearest = f"; nearest: {', '.join(close)}" if close else ""
     return f"choose one of the {len(known)} in `python -m hybrid_rl.list`{nearest}"
 
@@ -212,21 +245,17 @@ def chosen(hydra: Any, group: str) -> Path | None:
     return next((file for file in files if file.is_file()), None)
 
 
-def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | None:
-    """Check the user's task file; a line about its values that `settings` changed.
+def check_task(config: DictConfig, hydra: Any) -> None:
+    """Raise UsageError, in one line that names the file, for an incomplete task of the user's.
 
-    config: what was composed, with interpolations; roots: the keys that a run reads.
-
-    Raises:
-        UsageError: in one line that names the file: keys that it lacks, or sets in vain; for a
-            choice that changes nothing.
+    config: what was composed, with its references; hydra: Hydra's own part of it.
     """
     raw, file = overrides.raw_values(config), chosen(hydra, "task")
-    if config.get("resume") is None:
-        _refuse_nameless(raw, chosen(hydra, "algo"), "algo")
-    _refuse_idle(config, hydra, roots)
-    if file is None or CONF in file.parents or config.get("resume") is not None:
-        return None
+    if raw.get("resume") is not None:
+        return
+    _refuse_nameless(raw, chosen(hydra, "algo"), "algo")
+    if file is None or CONF in file.parents:
+        return
     name = relative(file)
     if isinstance(raw.get("task"), dict):
         raise UsageError(f"{name}: its first line must be {GLOBAL}")
@@ -239,40 +268,22 @@ def check_task(config: DictConfig, hydra: Any, roots: Sequence[str]) -> str | No
         check_fields(config.episode, Episode, "episode.")
     except UsageError as error:
         raise UsageError(f"{name}: {error}") from error
-    own: Any = OmegaConf.to_container(OmegaConf.load(file), resolve=False)
-    own.pop("defaults", None)
-    read = overrides.reachable_keys(raw, roots)
-    if lost := [key for key in own if key not in read and key not in _root_keys(hydra, file)]:
-        close = overrides.closest_hint(lost[0], [*read, *_root_keys(hydra, file)])
-        raise UsageError(f"{name}: {lost[0]}: unknown key, which nothing reads{close}")
-    return _changed(config, own, hydra, name)
 
 
-def _refuse_nameless(raw: Mapping[str, Any], file: Path | None, group: str) -> None:
-    """Raise UsageError for a user's file of a task or a method that does not name its runs.
+def check_keys(hydra: Any, read: Mapping[str, Any]) -> None:
+    """Raise UsageError for a key of the user's task that no method reads, as after a slip.
 
-    They would have the name, and the folder, of what the file begins with.
+    hydra: Hydra's own part of what was composed; read: what the run reads of it.
     """
-    if file is None or {CONF, THESIS} & {*file.parents} or isinstance(raw.get(group), dict):
+    file = chosen(hydra, "task")
+    if file is None or CONF in file.parents:
         return
-    if group not in OmegaConf.load(file):
-        raise UsageError(f"{relative(file)}: lacks {group}: {file.stem}, the name of its runs")
-
-
-def _refuse_idle(config: DictConfig, hydra: Any, roots: Sequence[str]) -> None:
-    """Raise UsageError for a typed choice, as of `learning`, that sets nothing which is read."""
-    read = overrides.reachable_keys(overrides.raw_values(config), roots)
-    for text in overrides.of_job(hydra) if config.resume is None else ():
-        file = chosen(hydra, group := text.partition("=")[0])
-        if file is None or group in config or hydra.mode == RunMode.MULTIRUN:  # of another job
-            continue
-        sets: Any = OmegaConf.to_container(OmegaConf.load(file), resolve=False)
-        listed = [each for each in sets.pop("defaults", ()) if each != "_self_"]
-        if any(isinstance(each, str) for each in listed):  # it begins with another file
-            continue
-        keys = {*sets, *(re.split("[/@ ]", key)[-1] for each in listed for key in each)}
-        if keys.isdisjoint(key.partition(".")[0] for key in read):
-            raise UsageError(f"{text}: {config.algo} uses nothing of what it sets")
+    own, known = OmegaConf.load(file), _root_keys(hydra, file) | read.keys() | {"defaults"}
+    if lost := [str(key) for key in own if key not in known]:
+        near = nearest(lost[0], known)
+        hint = f"; did you mean {near}?" if near else ""
+        line = f"{relative(file)}: {lost[0]}: unknown key, which nothing reads{hint}"
+        raise UsageError(line)
 
 
 def _root_keys(hydra: Any, without: Path) -> set[str]:
@@ -284,17 +295,12 @@ def _root_keys(hydra: Any, without: Path) -> set[str]:
     return set(ROOT_KEY.findall("\n".join([root, *(text for text in texts if GLOBAL in text)])))
 
 
-def _changed(config: DictConfig, own: dict[str, Any], hydra: Any, name: str) -> str | None:
-    """The line about values of a task file that `settings` changed; None if there are none."""
-    settings, raw = hydra.runtime.choices.get("settings"), overrides.raw_values(config)
-    changes = [
-        (key, mine, OmegaConf.select(config, key))
-        for key, mine in overrides.reachable_keys(own, own).items()
-        if not isinstance(mine, dict) and key not in overrides.typed_values(overrides.of_job(hydra))
-        if mine not in (overrides.select(raw, key), overrides.LACKING)
-    ]
-    if settings is None or not changes:
-        return None
-    listed = ", ".join(f"{key} {mine} -> {now}" for key, mine, now in changes)
-    keep = " ".join(f"{key}={mine}" for key, mine, _ in changes)
-    return f"settings={settings} changes what {name} says: {listed}; to keep that, add {keep}"
+def _refuse_nameless(raw: Mapping[str, Any], file: Path | None, group: str) -> None:
+    """Raise UsageError for a user's file of a task or a method that does not name its runs.
+
+    They would have the name, and the folder, of what the file begins with.
+    """
+    if file is None or {CONF, THESIS} & {*file.parents} or isinstance(raw.get(group), dict):
+        return
+    if group not in OmegaConf.load(file):
+        raise UsageError(f"{relative(file)}: lacks {group}: {file.stem}, the name of its runs")

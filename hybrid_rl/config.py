@@ -1,7 +1,6 @@
 """From overrides to parts: compose conf/, check it, build a run."""
 
 import re
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
@@ -19,7 +18,18 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import checks, renamed
 from hybrid_rl import overrides as overriding
 from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
-from hybrid_rl.composition import CONF, check_choices, check_task, explain, search_path, tasks_with
+from hybrid_rl.composition import (
+    CONF,
+    check_choices,
+    check_keys,
+    check_task,
+    explain,
+    groups,
+    keys_of,
+    search_path,
+    settings_keys,
+    tasks_with,
+)
 from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
@@ -27,6 +37,8 @@ from hybrid_rl.errors import PartError, UsageError
 from hybrid_rl.fields import FieldError
 from hybrid_rl.parts import build as build_part
 from hybrid_rl.protocols import Controller
+from hybrid_rl.settings.complete import LACKING, complete, refusal, select
+from hybrid_rl.settings.registry import register
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.training.imagined import Imagination
@@ -59,8 +71,6 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
     config_dir: a folder with configuration groups of the user, as for `--config-dir`.
 
-    Warns of values of the user's own task that `settings` changed.
-
     Raises:
         UsageError: if an override fits nothing in conf/, or names a key that does not exist or that
             the method does not use; if the user's own task file is incomplete; for run, sweep.
@@ -72,7 +82,7 @@ def load(overrides: Sequence[str] = (), config_dir: str | Path | None = None) ->
 
 
 def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) -> DictConfig:
-    """The configuration of these overrides with its interpolations; errors as `load`."""
+    """What a run of these overrides reads, with its references; errors as `load`."""
     if isinstance(overrides, str | Mapping):
         pairs = {} if isinstance(overrides, str) else overrides
         words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
@@ -80,22 +90,16 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
     renamed.check(overrides)
     check_choices(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
-    overrides = overriding.allow_sweep_keys(overrides)
+    words = overriding.forced(overrides, groups(config_dir))
+    register(CONF)
     try:
         with COMPOSING:
             known = GlobalHydra.instance().is_initialized()
             with nullcontext() if known else initialize_config_dir(str(CONF), version_base="1.3"):
-                return _composed(overrides, more)
+                config = compose("train", [*more, *words], return_hydra_config=True)
     except (HydraException, OmegaConfBaseException, yaml.YAMLError) as error:
         raise UsageError(explain(error)) from error
-
-
-def _composed(overrides: Sequence[str], more: list[str]) -> DictConfig:
-    """The configuration with its interpolations; more: overrides of Hydra's own keys."""
-    config = compose("train", [*more, *overrides], return_hydra_config=True)
-    for note in check_overrides([(config, take_hydra(config))]):
-        warnings.warn(note, stacklevel=4)
-    return config
+    return read_only([config])[0]
 
 
 def take_hydra(config: DictConfig) -> DictConfig:
@@ -104,34 +108,56 @@ def take_hydra(config: DictConfig) -> DictConfig:
         return config.pop("hydra")
 
 
-def check_overrides(jobs: Sequence[tuple[DictConfig, Any]]) -> list[str]:
-    """Check what is composed for each job, with Hydra's own part, by what the user typed; notes.
+def read_only(configs: Sequence[DictConfig]) -> list[DictConfig]:
+    """What the run of each job reads: its sections and all that they refer to, parts complete.
+
+    configs: as Hydra composed them, one for each job of a sweep.
 
     Raises:
-        UsageError: for a key that is not there or not used, and as `check_task`.
+        UsageError: for a typed key that no job reads; for a task of the user that is incomplete.
     """
-    overriding.refuse_new_keys(jobs[0][1])
-    notes = [check_task(config, hydra, READ) for config, hydra in jobs]
-    typed = [text for _, hydra in jobs for text in overriding.of_job(hydra)]
-    overriding.refuse_unused([config for config, _ in jobs], typed, READ)
-    return [*dict.fromkeys(note for note in notes if note)]
+    made, lost = zip(*map(read, configs), strict=True)
+    for path in lost[0]:
+        if all(path in each for each in lost):
+            raise UsageError(refusal(path, [overriding.raw_values(each) for each in made]))
+    return [*made]
+
+
+def read(config: DictConfig) -> tuple[DictConfig, dict[str, str]]:
+    """What the run of a job reads, with its references, and what it does not: typed key -> words.
+
+    Raises:
+        UsageError: for a task of the user that is incomplete, or a part that cannot be.
+    """
+    config = config.copy()
+    hydra = take_hydra(config)
+    check_task(config, hydra)
+    raw = overriding.raw_values(config)
+    new = raw["resume"] is None
+    typed = keys_of(overriding.of_job(hydra), hydra) if new else {}
+    sizes = settings_keys(hydra)  # a part that lacks one keeps what it has
+    raw = complete(raw, (*READ, "sweep"), {**typed, **sizes})
+    if new:
+        check_keys(hydra, raw)
+    lost = {path: text for path, text in typed.items() if select(raw, path) is LACKING}
+    return OmegaConf.create(raw, flags={"struct": True}), lost
 
 
 def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
-    """A copy with every interpolation replaced by its value, composed from the overrides.
+    """A copy with every reference replaced by its value, composed from the overrides.
 
-    What the run does not read is left out; all that the user may override is in it.
+    config: as `compose_raw` gives it.
 
     Raises:
         UsageError: for a reference to a key that neither the task nor the method sets.
     """
     values = resolved(config)
+    values.pop("sweep", None)
     values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))
         values["task"] = re.sub(r"[^A-Za-z0-9_.-]", "_", str(next(filter(None, names), "_")))
-    read = overriding.reachable_keys(overriding.raw_values(config), READ)
-    made: Any = OmegaConf.create(overriding.of_keys(values, read), flags={"struct": True})
+    made: Any = OmegaConf.create(values, flags={"struct": True})
     return made
 
 

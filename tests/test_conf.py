@@ -22,27 +22,6 @@ PARTS = [
 ]
 
 
-def keys_of(path: Path) -> set[str]:
-    """The keys of a part's YAML, and of the presets that it inherits."""
-    node = OmegaConf.load(path)
-    node = node.get("env", node)
-    keys = {str(key) for key in node} - {"defaults"}
-    for default in node.get("defaults", []):
-        if isinstance(default, str):
-            keys |= keys_of(path.with_name(f"{default}.yaml")) if default != "_self_" else set()
-        else:
-            keys |= {str(key).split("@")[-1].partition(".")[0] for key in default}
-    return keys
-
-
-@pytest.mark.parametrize("path", PARTS, ids=lambda p: str(p.relative_to(config.CONF)))
-def test_the_yaml_of_a_part_lists_every_field(path: Path) -> None:
-    """A part's YAML and its dataclass have the same names."""
-    node = OmegaConf.load(path)
-    fields = dataclasses.fields(get_class(node.get("env", node)._target_))
-    assert keys_of(path) == {"_target_", *(field.name for field in fields)}
-
-
 @pytest.mark.parametrize("path", PARTS, ids=lambda p: str(p.relative_to(config.CONF)))
 def test_a_part_with_ranges_checks_them(path: Path) -> None:
     """A class whose fields declare a range is made by `fields.part`, not by `dataclass`."""

@@ -116,7 +116,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
     [
         (["target=rings"], "policy_residual, ring, upper_confidence_bound; did you mean ring?"),
         (["target=ring", "target.radius=far"], "target.radius=far: must be a number"),
-        (["target=ring", "target.radios=1"], "radios: unknown key; did you mean target.radius?"),
+        (["target=ring", "target.radios=1"], "has no such key; did you mean target.radius?"),
         (["target=ring", "target._target_=ring.Any"], "target._target_=ring.Any: "),
         (
             ["target=ring", "target._target_=their.Any"],
@@ -124,7 +124,7 @@ def test_a_part_is_one_file_and_one_yaml(ring, tmp_path, capfd):
         ),
         (
             ["algo=nn_mppi", "proposal=noise"],
-            "proposal: nn_mppi does not use it; it uses proposal@model_proposal",
+            "proposal: nn_mppi has no such key; did you mean model_proposal?",
         ),
         (["domain.coordinates=[0,9]"], "coordinates=[0, 9]: must be entries of a state with 4"),
     ],

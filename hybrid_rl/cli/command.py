@@ -10,23 +10,23 @@ import re
 import select as polling
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import ModuleType
 from typing import Any, NoReturn
 
 import yaml
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides, renamed
 from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.composition import CONF, check_choices, explain, file, options, search_path
+from hybrid_rl.composition import CONF, check_choices, explain, groups, search_path
 from hybrid_rl.errors import UsageError, printable, user_line
 from hybrid_rl.fields import FieldError
-from hybrid_rl.overrides import select
 from hybrid_rl.run import inherited
+from hybrid_rl.settings.registry import register
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
@@ -36,9 +36,9 @@ FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-i", "--info"), 1),
 }
 KEYS = (*configuration.READ, "schedule", "settings", "experiment", "sweep")  # in the help
+# GROUP=NAME of a part, of one value
+CHOICE = re.compile(r"^((?!hydra|task|algo|settings|experiment)[\w@./]+=)([\w./-]+)$")
 MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
-# KEY.KEY=VALUE or GROUP=NAME, of one value
-OF_PART = re.compile(r"^((?!hydra|task|algo|settings|experiment)[\w.@]+)=(\[[^][()]*\]|[^][,(]+)$")
 NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
 USAGE = """
 
@@ -65,18 +65,21 @@ def hydra_main(job: Callable[..., Any]) -> None:
     from hydra.core.hydra_config import HydraConfig
     from hydra.types import RunMode
 
+    def run(config: DictConfig, *more: Any) -> Any:
+        with open_dict(config):
+            config.hydra = HydraConfig.get()
+        return job(*configuration.read_only([config]), *more)
+
     def checked(config: DictConfig) -> None:
         typed = overrides.of_job(HydraConfig.get())
         if (launcher := HydraConfig.get().runtime.choices["hydra/launcher"]) != "basic":
             raise UsageError(f"hydra/launcher={launcher}: sends the jobs of a sweep; add -m")
         with as_typed(typed):
-            for note in configuration.check_overrides([(config, HydraConfig.get())]):
-                print(note, flush=True)
-            job(config)
+            run(config)
 
     def alone(config: DictConfig, *more: Any) -> Any:
         if HydraConfig.get().mode == RunMode.MULTIRUN:  # checked, and reported, by sweep.Sweeper
-            return job(config, *more)
+            return run(config, *more)
         return _reported(lambda: checked(config))  # ends here, before Hydra adds lines of its own
 
     if set(arguments.HELP) & set(sys.argv[1:]):
@@ -84,12 +87,33 @@ def hydra_main(job: Callable[..., Any]) -> None:
         return
     os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
     try:
-        sys.argv[1:] = overrides.allow_sweep_keys(inherited.add_choices(_ordered(sys.argv[1:])))
+        line = inherited.add_choices(_ordered(sys.argv[1:]))
+        mine = [text.partition("=")[2] for text in line if text.startswith("--config-dir=")]
+        if (shown := _shown(line, mine)) is not None:
+            print(shown, end="")
+            return
+        names = groups(*mine)
+        line = overrides.forced(line, names)
+        if {"-m", "--multirun"} & {*line}:  # one value, too, is for the jobs, not for the default
+            chosen = [
+                text for text in line if CHOICE.match(text) and overrides.is_group(text, names)
+            ]
+            line = [CHOICE.sub(r"\1choice(\2)", text) if text in chosen else text for text in line]
+        sys.argv[1:] = line
+        register(CONF)
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except Exception as error:
         report(error)
     except KeyboardInterrupt:
         _interrupted()
+
+
+def _shown(line: Sequence[str], config_dir: Sequence[str]) -> str | None:
+    """What --cfg job prints: every key that a run of these overrides reads; None: another line."""
+    if not {"--cfg job", "-c job", "--cfg=job"} & {" ".join(line[:2]), line[0] if line else ""}:
+        return None
+    words = [text for text in line if not text.startswith("-") and text != "job"]
+    return OmegaConf.to_yaml(configuration.compose_raw(words, *config_dir))
 
 
 @contextmanager
@@ -98,24 +122,7 @@ def as_typed(typed: Sequence[str]) -> Iterator[None]:
     try:
         yield
     except UsageError as error:
-        line = overrides.as_typed(str(error), typed)
-        raise UsageError(_of_settings(line, overrides.typed_values(typed))) from error
-
-
-def _of_settings(line: str, given: Mapping[str, str]) -> str:
-    """A message about a field that a part lacks, with what set it, and what leaves it out."""
-    field = re.match(r"([\w.]+): \w+ (?:in \S+ )?has ([\w, ]+)", line)
-    name = given.get("settings", "")
-    if field is None or field[1] in given:
-        return line
-    part, _, lacking = field[1].rpartition(".")
-    text = file("settings", name).read_text() if name in options("settings") else ""
-    of_part: Any = select(yaml.safe_load(text) or {}, part)
-    if not isinstance(of_part, dict) or lacking not in of_part:
-        remedy = f"add a field {lacking}, leave it out by '~{field[1]}', or take another part"
-        return f"{line}; the method or a YAML file sets {field[1]}: {remedy}"
-    lost = " ".join(f"'~{part}.{key}'" for key in of_part if key not in field[2].split(", "))
-    return f"settings={name}: is not for this method: {line}; add {lost} to leave out what it lacks"
+        raise UsageError(overrides.as_typed(str(error), typed)) from error
 
 
 def usage(module: Any) -> str:
@@ -138,6 +145,9 @@ def _ordered(line: Sequence[str]) -> list[str]:
         if text.startswith(("config_dir=", "--config-dir=")):
             search_path(text.partition("=")[2])  # refuses what is no folder
     line = [re.sub("^config_dir=", "--config-dir=", text) for text in line]  # as elsewhere
+    for flag in ({"--config-dir", "-cd"} & {*line}) - {line[-1]}:  # two words
+        at = line.index(flag)
+        line[at : at + 2] = [f"--config-dir={line[at + 1]}"]
     renamed.check(line)
     check_choices(line)
     follow, found, modes = 0, [], []  # words that belong to an option; places of all these; modes
@@ -162,25 +172,8 @@ def _ordered(line: Sequence[str]) -> list[str]:
             raise UsageError(f"{text}: has no value; write {arguments.as_pair(line, at)}")
     if len(modes) > 1:
         raise UsageError(f"{', '.join(modes)}: give one of them")
-    rest = [text for at, text in enumerate(line) if at not in found]
-    if {"-m", "--multirun"} & {*modes} and not any("hydra/sweeper=" in text for text in rest):
-        rest = _of_each(rest)
+    rest = (text for at, text in enumerate(line) if at not in found)
     return [*(line[at] for at in found), *rest]
-
-
-def _of_each(texts: Sequence[str]) -> list[str]:
-    """The overrides of a sweep over methods, those of parts and their keys as choices of one value.
-
-    Hydra applies what is no choice to the default method first, which may not have the part.
-    """
-    if not any(re.match("(algo|experiment)=.*,", text) for text in texts):
-        return [*texts]
-
-    def one(found: re.Match[str]) -> str:
-        of_part = "." in found[1] or options(found[1].partition("@")[0])
-        return f"{found[1]}=choice({found[2]})" if of_part else found[0]
-
-    return [OF_PART.sub(one, text) for text in texts]
 
 
 def report(error: BaseException) -> NoReturn:

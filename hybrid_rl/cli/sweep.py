@@ -22,13 +22,14 @@ from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
+from hybrid_rl import overrides as words
 from hybrid_rl.checks import check
 from hybrid_rl.cli import command
 from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.cli.submitted import Result, require_slurm, watch
 from hybrid_rl.composition import concerns, explain
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import of_job, parse, quoted
+from hybrid_rl.overrides import forced, of_job, parse, quoted, raw_values, typed
 from hybrid_rl.run import together
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.files.integrity import write_text
@@ -36,6 +37,7 @@ from hybrid_rl.run.folder import NO_CHECKPOINT, members, new_folder, rowless
 from hybrid_rl.run.machine import distributed
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.run.start import build_new_run
+from hybrid_rl.settings.complete import refusal
 
 ACCELERATED = ("auto", "mjx", "warp")  # physics that may need a GPU to build a world
 
@@ -51,13 +53,13 @@ class Task:
     def __call__(self, config: DictConfig) -> Result:
         """Run one job."""
         hydra = HydraConfig.get()
-        number, typed = int(hydra.job.num), of_job(hydra)
+        number, texts = int(hydra.job.num), of_job(hydra)
         name = f"{self.called} {number}"
         print(f"{name}: {self.labels[number]}", flush=True)
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result
         try:
-            with command.as_typed(typed):
+            with command.as_typed(texts):
                 result |= _outcome(self.job(config))
         except (SystemExit, KeyboardInterrupt) as end:
             code = end.code if isinstance(end, SystemExit) else 130
@@ -106,6 +108,7 @@ class Sweeper:
         Raises:
             UsageError: if one of them, or the launcher, cannot run; then none runs.
         """
+        arguments = typed(arguments)
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
         jobs = jobs_of(self._parsed(arguments))
         self.task.labels = labels(jobs)
@@ -126,7 +129,8 @@ class Sweeper:
         try:
             with nullcontext() if here(self.config.hydra) else watch(results):
                 for first in range(0, len(jobs), size):
-                    self.launcher.launch(jobs[first : first + size], first)
+                    some = [self._forced(job) for job in jobs[first : first + size]]
+                    self.launcher.launch(some, first)
         finally:
             _report(folder, self.task.labels, jobs, results)
         worst = max(result["code"] for result in results.values())
@@ -148,33 +152,45 @@ class Sweeper:
         Raises:
             UsageError: for an override of what no job has.
         """
-        lost: dict[str, list[UsageError]] = {}
+        lost: dict[str, list[tuple[str, Any]]] = {}  # key and configuration, or key and error
 
         def fitting(number: int, job: Sequence[str]) -> tuple[tuple[str, ...], DictConfig]:
             try:
-                return tuple(job), self._composed(number, job)
-            except UsageError as error:
-                absent = [text for text in job if concerns(error.__cause__, text)]
+                config = self._composed(number, job)
+                raw, unread = configuration.read(config)
+                absent = {text: (path, raw_values(raw)) for path, text in unread.items()}
+            except UsageError as error:  # a choice that the method does not have
+                absent = {text: ("", error) for text in job if concerns(error.__cause__, text)}
                 if not absent:
                     raise
-                for text in absent:
-                    lost.setdefault(text, []).append(error)
-                return fitting(number, [text for text in job if text not in absent])
+            if not absent:
+                return tuple(job), config
+            for text, why in absent.items():
+                lost.setdefault(text, []).append(why)
+            return fitting(number, [text for text in job if text not in absent])
 
         fit = dict(fitting(number, job) for number, job in enumerate(jobs))
         notes = []
-        for text, errors in lost.items():
+        for text, reasons in lost.items():
             those = [str(number) for number, job in enumerate(fit) if text in job]
-            if not those:  # that of the job that has most of it
-                raise max(errors, key=lambda error: str(error).find(":"))
+            if not those and reasons[0][0]:
+                raise UsageError(refusal(reasons[0][0], [raw for path, raw in reasons if path]))
+            if not those:
+                raise reasons[0][1]
             notes.append(f"{text}: for job {', '.join(those)} alone; the others have no such key\n")
         return fit, notes
+
+    def _forced(self, job: Sequence[str]) -> list[str]:
+        """The overrides of a job as Hydra takes them."""
+        loader = self.hydra_context.config_loader
+        names = {words.name(text).partition("@")[0] for text in job}
+        return forced(job, {each for each in names if loader.get_group_options(each)})
 
     def _composed(self, number: int, overrides: Sequence[str]) -> DictConfig:
         """The configuration of a job, with Hydra's own; UsageError if there is none."""
         loader = self.hydra_context.config_loader
         try:
-            return loader.load_sweep_config(self.config, list(overrides))
+            return loader.load_sweep_config(self.config, self._forced(overrides))
         except HydraException as error:
             raise UsageError(f"{explain(error)} ({self._called(number)})") from error
 
@@ -185,9 +201,7 @@ class Sweeper:
 
         Jobs that run elsewhere are built with the physics that needs no GPU here.
         """
-        composed = [(config, configuration.take_hydra(config)) for config in configs]
-        for note in configuration.check_overrides(composed):
-            print(note, flush=True)
+        configs = configuration.read_only(configs)
         for number, (overrides, config) in enumerate(zip(jobs, configs, strict=True)):
             if not here(self.config.hydra) and config.physics in ACCELERATED:
                 config = config.copy()

@@ -60,6 +60,7 @@ class Tuner(sweep.Sweeper):
         Raises:
             UsageError: if one of them cannot run, or the settings are wrong; then none runs.
         """
+        arguments = overrides.typed(arguments)
         settings = self._settings()
         parsed = self._parsed(arguments)
         fixed, space = self._split(parsed)
@@ -145,7 +146,7 @@ class Tuner(sweep.Sweeper):
             trial.set_user_attr("run", number)
         values.append(f"run_dir={overrides.quoted(str(run_dir))}")
         self.task.labels[number] = study.short(trial.params)
-        self.launcher.launch([[*fixed, *values]], number)
+        self.launcher.launch([self._forced([*fixed, *values])], number)
         result, watched = self.task.results[number], self._watched
         if watched is not None and watched.misled:
             sys.exit(2)

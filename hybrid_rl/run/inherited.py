@@ -16,8 +16,9 @@ from hybrid_rl import config as configuration
 from hybrid_rl import overrides
 from hybrid_rl.composition import file, options
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import LACKING, REFERENCE, parse, raw_values, select, source
+from hybrid_rl.overrides import parse, raw_values
 from hybrid_rl.run import folder
+from hybrid_rl.settings.complete import LACKING, REFERENCE, select, source
 
 CHOSEN = ("task", "algo", "learning")  # they make the parameters
 WIDE = ("settings", "experiment")  # they would set what DIR has set

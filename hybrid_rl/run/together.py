@@ -24,11 +24,12 @@ from hybrid_rl import overrides
 from hybrid_rl.config import Run
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import LACKING, raw_values, select, source
+from hybrid_rl.overrides import raw_values
 from hybrid_rl.run import folder, inherited
 from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.folder import SWEEP
 from hybrid_rl.run.logs.records import flatten_keys
+from hybrid_rl.settings.complete import LACKING, refusal, select, source
 from hybrid_rl.training.axis import Axis, DifferError
 from hybrid_rl.training.loop import Loop
 from hybrid_rl.training.loops import loop_of
@@ -79,7 +80,6 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         own = config.copy()
         for key, value in chosen.items():
             OmegaConf.update(own, source(raw, key), value)
-        _refuse_unused(own, typed)
         members.append(Member(inherited.resolve_config(own, [*texts, *typed]), chosen))
     if len(members) > 1 and config.get("resume") is not None:
         before = [*folder.members(Path(str(config.resume))).values()]
@@ -89,19 +89,11 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     return members
 
 
-def _refuse_unused(config: DictConfig, typed: Sequence[str]) -> None:
-    """Raise UsageError for a key below `sweep` that the method does not use."""
-    try:
-        overrides.refuse_unused([config], typed, configuration.READ)
-    except UsageError as error:
-        raise UsageError(f"sweep.{error}") from error
-
-
 def _check_values(config: DictConfig, raw: dict[str, Any], key: str, values: Any) -> None:
     """Raise UsageError for a key that does not exist, or for what is no list of numbers."""
     typed = f"sweep.{key}"
     if select(raw, key) is LACKING:
-        raise UsageError(f"sweep.{overrides.unknown(config, key)}")
+        raise UsageError(f"sweep.{refusal(key, [raw])}")
     each = values if isinstance(values, list) else []
     if not each or any(type(one) not in (int, float) or not isfinite(one) for one in each):
         raise UsageError(f"{typed}={values}: must be a list of numbers, such as [0.99,0.995]")

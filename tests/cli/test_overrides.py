@@ -1,11 +1,13 @@
 """Which keys a run reads, and what is printed of those that it does not read."""
 
 from concurrent.futures import ThreadPoolExecutor
+from copy import deepcopy
 
 import pytest
 from omegaconf import OmegaConf
 
 from hybrid_rl import config, overrides
+from hybrid_rl.settings import complete
 
 RAW = {
     "steps": 3,
@@ -20,8 +22,8 @@ RAW = {
 }
 
 
-def test_what_is_read_is_followed_through_interpolations():
-    read = overrides.reachable_keys(RAW, ["loop"])
+def test_what_is_read_is_followed_through_references():
+    read = complete.keys(deepcopy(RAW), ["loop"])
     assert {"chosen.inner.gain", "chosen.size", "other.size", "name", "listed", "steps"} <= set(
         read
     )
@@ -29,30 +31,29 @@ def test_what_is_read_is_followed_through_interpolations():
 
 
 def test_a_key_is_found_where_its_value_is():
-    assert overrides.source(RAW, "loop.part.inner.gain") == "chosen.inner.gain"
-    assert overrides.source(RAW, "idle.part") == "idle.part"
-    assert overrides.select(RAW, "loop.part.nothing") is overrides.LACKING
+    assert complete.source(RAW, "loop.part.inner.gain") == "chosen.inner.gain"
+    assert complete.source(RAW, "idle.part") == "idle.part"
+    assert complete.select(RAW, "loop.part.nothing") is complete.LACKING
 
 
-@pytest.mark.parametrize(
-    ("typed", "lost"),
-    [
-        ("chosen.size=1", {}),
-        ("loop.part.inner.gain=1", {}),
-        ("other.size=1", {}),
-        ("other.gain=1", {"other.gain": "chosen.inner.gain"}),
-        ("idle.inner=null", {"idle.inner": "chosen.inner"}),
-        ("taken=1", {"taken": ""}),
-        ("taken.wide=1", {}),
-        ("idle.size=1", {"idle.size": "other.size"}),
-        ("+everywhere=1", {}),  # a group that spreads over the whole configuration
-        ("~idle.size", {}),
-        ("hydra.job.num=1", {}),
-    ],
-)
-def test_a_key_that_nothing_reads_is_named_with_one_that_is_read(typed, lost):
-    config = OmegaConf.create(RAW)
-    assert overrides.unused(config, overrides.parse([typed]), ["loop", "reader"]) == lost
+def test_what_is_left_is_what_is_read():
+    kept = complete.complete(deepcopy(RAW), ["loop"])
+    assert {*kept} == {"steps", "loop", "chosen", "other", "name", "listed"}
+    assert kept["other"] == {"size": 2}
+
+
+def test_a_reference_within_another_is_followed():
+    raw = {"a": "${sizes.${kind}.batch}", "kind": "small", "sizes": {"small": {"batch": 3}}}
+    assert complete.complete(raw, ["a"]) == {"a": raw["a"], "kind": "small", "sizes": raw["sizes"]}
+
+
+def test_a_part_has_the_fields_of_its_class_and_the_parts_of_their_names():
+    part = {"_target_": "hybrid_rl.controllers.goal.GoalController", "every": 3}
+    raw = {"goal": part, "target": {}, "domain": {}, "policy": {}}
+    goal = complete.complete(raw, ["goal"])["goal"]
+    assert (goal["target"], goal["every"], goal["samples"]) == ("${target}", 3, 1000)
+    with pytest.raises(config.UsageError, match=r"goal\.evry: GoalController has target, "):
+        complete.complete({"goal": part | {"evry": 3}}, ["goal"])
 
 
 @pytest.mark.parametrize(
@@ -71,7 +72,7 @@ def test_a_message_shows_what_was_typed(line, typed, shown):
 
 
 def test_python_refuses_what_the_command_refuses():
-    with pytest.raises(config.UsageError, match=r"planner\.horizon: sac does not use it"):
+    with pytest.raises(config.UsageError, match=r"planner\.horizon: sac has no such key"):
         config.load(["algo=sac", "planner.horizon=7"])
     assert "planner" not in config.load(["algo=sac", "experiment=thesis/fig_3_2_pendulum"])
 
@@ -82,16 +83,6 @@ def test_threads_compose_at_once():
         assert list(made) == [*range(16)]
 
 
-def test_in_a_sweep_one_method_that_uses_a_key_is_enough():
-    with config.initialize_config_dir(str(config.CONF), version_base="1.3"):
-        two = [config.compose("train", [f"algo={algo}"]) for algo in ("sac", "hybrid_stochastic")]
-        overrides.refuse_unused(
-            two, ["algo=sac,hybrid_stochastic", "planner.horizon=7"], config.READ
-        )
-        with pytest.raises(config.UsageError, match="sac, hybrid_stochastic do not use it"):
-            overrides.refuse_unused(two, ["adjoint_planner.horizon=7,8"], config.READ)
-
-
 def test_an_override_by_another_key_stays_as_typed():
     task = ["belief.part=${chosen}", "task=pendulum"]
     hydra = OmegaConf.create({"chosen": {"a": 1}, "overrides": {"task": task}})
@@ -100,12 +91,12 @@ def test_an_override_by_another_key_stays_as_typed():
 
 def test_a_file_with_a_name_of_the_library_is_refused_unless_it_is_a_copy(tmp_path):
     """Hydra would take the library's, and not say so."""
-    mine, name = tmp_path / "model" / "gaussian.yaml", "model/gaussian.yaml"
+    mine, name = tmp_path / "model" / "ensemble.yaml", "model/ensemble.yaml"
     mine.parent.mkdir()
     mine.write_bytes((config.CONF / name).read_bytes())
-    settings = ["task=pendulum", "algo=nn_mppi", "model=gaussian"]
-    assert config.load(settings, tmp_path).model.hidden == [200]
-    mine.write_text(mine.read_text().replace("[200]", "[7]"))
-    line = f"hybrid_rl has model=gaussian of its own, which a run would take; rename {name}"
+    settings = ["task=pendulum", "algo=nn_mppi", "model=ensemble"]
+    assert config.load(settings, tmp_path).model.members == 5
+    mine.write_text("hidden: [7]\n")
+    line = f"hybrid_rl has model=ensemble of its own, which a run would take; rename {name}"
     with pytest.raises(config.UsageError, match=line):
         config.load(settings, tmp_path)

@@ -132,7 +132,7 @@ def test_a_metric_that_is_not_evaluated_is_named(tmp_path):
         ("policy_learner.tau=interval(0.1,3)", ": must lie in (0, 1]"),
         ("policy_learner.tau=tag(log,interval(0,0.1))", "`low > 0` must hold"),
         ("policy_learner.updates=interval(1.0,4.0)", "it must be a whole number"),
-        ("adjoint_planner.horizon=choice(3,4)", "sac does not use it"),
+        ("adjoint_planner.horizon=choice(3,4)", "sac has no such key"),
         ("seed=0,1 eval_modes=[]", "eval_modes=[]: a study needs evaluations"),
         ("seed=0,1 resume=x", "resume=x: not in a study"),
         ("run_dir=x,y", "run_dir=x,y: a study has one folder"),

@@ -1,10 +1,7 @@
 """Python and YAML files of a task of one's own that make no run: one line names the file."""
 
-import re
-
 import pytest
 from faulty import TASK, WORLD, changed, refused, write
-from tiny import call_train
 
 from hybrid_rl import config
 
@@ -163,11 +160,10 @@ def test_a_method_that_loads_a_part_of_its_family_again_is_refused(folder):
     refused(line, lambda: config.load(["task=pendulum", "algo=own"], "my_conf"))
 
 
-def test_a_field_that_the_file_of_a_task_lacks_is_no_other_parts(folder):
-    """Not even if these have the same name, as `adjoint_planner.gain`."""
+def test_a_field_with_a_default_need_not_be_in_the_file_of_a_task(folder):
     write(folder, task=changed(TASK, ", gain: 2.0", ""))
-    line = r"env\.gain: unknown key; env has no keys; a field of w\.W must be in its YAML file.*"
-    refused(line, lambda: config.load(["task=broken", "env.gain=3"], "my_conf"))
+    assert config.load(["task=broken", "algo=sac"], "my_conf").env.gain == 1.0
+    assert config.load(["task=broken", "algo=sac", "env.gain=3"], "my_conf").env.gain == 3
 
 
 def test_what_is_seldom_meant_is_a_note_of_the_run(folder):
@@ -178,25 +174,6 @@ def test_what_is_seldom_meant_is_a_note_of_the_run(folder):
         "w.py:19: W.step: every episode ended after one decision, of 10 tried",
         "episode.steps is not set by the task: 1,000 decisions an episode",
     )
-
-
-def test_settings_do_not_change_a_task_silently(folder, capfd):
-    """What is typed is not listed; nothing is, if nothing changes."""
-    write(folder)
-    line = (
-        "settings=light changes what my_conf/task/broken.yaml says: random_steps 10 -> 1000, "
-        "eval_every 50 -> 3000, eval_episodes 1 -> 5, checkpoint_every 50 -> 10000; to keep that, "
-        "add random_steps=10 eval_every=50 eval_episodes=1 checkpoint_every=50"
-    )
-    given = ["task=broken", "settings=light", "total_steps=50"]
-    with pytest.warns(UserWarning, match=f"^{re.escape(line)}$"):
-        config.load(given, "my_conf")
-    assert call_train("--config-dir", "my_conf", *given, "seed=-1") == 2
-    assert capfd.readouterr().out == f"{line}\n"
-    assert call_train("-m", "--config-dir", "my_conf", *given, "seed=-1,-2") == 2
-    assert capfd.readouterr().out == f"{line}\n"  # once, for both
-    config.load(["task=broken"], "my_conf")
-    config.load(["task=pendulum", "settings=light"], "my_conf")
 
 
 def test_a_task_file_may_set_keys_of_any_method_and_its_own_where_they_are_read(folder):

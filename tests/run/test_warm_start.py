@@ -118,7 +118,7 @@ def test_another_reward_is_that_of_the_memory_too(source):
 
 def test_a_part_that_the_run_did_not_have_gets_its_networks(source):
     """Another planner, of another part of conf/."""
-    made = together.load([f"run={source}", "controllers.full=${gradient_planner}"])[0].config
+    made = together.load([f"run={source}", "planner=gradient"])[0].config
     assert made.controllers.full._target_.endswith("GradientController")
     assert made.controllers.full.policy == made.policy
     assert made.controllers.full.objective.critic == made.critic
@@ -245,7 +245,7 @@ REFUSED = [  # overrides, words of the line
     ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
     ("freeze=policy", "freeze=policy: must be a list"),
     ("pretrain=3", "pretrain=3: what run="),
-    ("policy.hiden=[8]", "policy.hiden: unknown key; did you mean policy.hidden?"),
+    ("policy.hiden=[8]", "policy.hiden: sac has no such key; did you mean policy.hidden?"),
     ("~policy.hidden", "~policy.hidden: with run=DIR keys cannot be deleted"),
 ]
 

@@ -1,0 +1,1 @@
+"""From words to parts: overrides, the composed configuration, the run that is built from it."""

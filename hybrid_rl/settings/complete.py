@@ -1,0 +1,217 @@
+"""What a run reads of a composed configuration, with every field of its parts.
+
+A YAML file says only in what a part differs from its class. A field that no file sets has the
+default of the class; one without a default is the part of its name, as the `policy` of a planner is
+`${policy}`, and a `world` is `${env}`. Nothing is left that the sections of a run do not read,
+themselves or by reference, so a key that is not there is a key without effect.
+"""
+
+import difflib
+import inspect
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
+
+from hybrid_rl.errors import UsageError
+from hybrid_rl.parts import OURS, TARGET, part_class
+
+REFERENCE = re.compile(r"\$\{([\w.@]+)\}")  # an interpolation, which names a key
+INNER = re.compile(r"(?<=[\w.])\$\{([\w.]+)\}")  # within another one
+LACKING: Any = object()  # the value of a key that does not exist
+NAMES = {"world": "env"}  # field -> the key that it refers to, where its name is another
+CHOICES = ("settings", "experiment", "learning", "planner")  # groups without a key of their name
+THEIRS = {  # names of other libraries
+    **{"gamma": "discount", "lr": "learning_rate", "buffer_size": "capacity"},
+    **{"learning_starts": "random_steps", "total_timesteps": "total_steps"},
+}
+
+
+def source(raw: Mapping[str, Any], path: str) -> str:
+    """The key that holds what `path` names: references on the way are followed."""
+    at, node = "", raw
+    for name in path.split("."):
+        while isinstance(node, str) and (link := REFERENCE.fullmatch(node)):
+            at, node = link[1], select(raw, link[1])
+        at = f"{at}.{name}" if at else name
+        node = _item(node, name)
+    return at
+
+
+def select(raw: Mapping[str, Any], path: str) -> Any:
+    """The value at `path`, LACKING if there is none."""
+    node: Any = raw
+    for name in source(raw, path).split("."):
+        node = _item(node, name)
+    return node
+
+
+def _item(node: Any, name: str) -> Any:
+    """An entry of a group of keys, or of a list by its index."""
+    if isinstance(node, list) and name.isdecimal() and int(name) < len(node):
+        return node[int(name)]
+    return node.get(name, LACKING) if isinstance(node, dict) else LACKING
+
+
+def complete(
+    raw: dict[str, Any], roots: Iterable[str], typed: Collection[str] = ()
+) -> dict[str, Any]:
+    """The keys of `raw` at or below `roots`, and those that they refer to; parts are complete.
+
+    raw: what was composed, with its references. typed: keys of the user, which are left out where
+    a part has no such field: `check_read` names them.
+
+    Raises:
+        UsageError: for a name that is no part's, or a field that a part does not have.
+    """
+    _drop(raw, typed)
+    read: dict[str, Any] = {}
+    for root in roots:
+        if root in raw:
+            _visit(raw, root, raw[root], read)
+    return _kept(raw, read)
+
+
+def _drop(raw: dict[str, Any], typed: Iterable[str]) -> None:
+    """Take out the typed keys of which a part has no field."""
+    for path in typed:
+        above, _, name = source(raw, path).rpartition(".")
+        node = select(raw, above) if above else raw
+        if isinstance(node, dict) and TARGET in node and name in node and name != TARGET:
+            fields = _fields(node, above)
+            if fields is not None and name not in fields:
+                del node[name]
+
+
+def _fields(node: dict[str, Any], path: str) -> Mapping[str, inspect.Parameter] | None:
+    """The fields of the class of a part; None if it takes any.
+
+    Raises:
+        UsageError: for a name that is no part's.
+    """
+    try:
+        takes = inspect.signature(part_class(node[TARGET])).parameters
+    except ValueError as error:
+        raise UsageError(f"{path}.{TARGET}={node[TARGET]}: {error}") from error
+    if any(each.kind is each.VAR_KEYWORD for each in takes.values()):
+        return None
+    return takes
+
+
+def keys(raw: dict[str, Any], roots: Iterable[str] = ()) -> dict[str, Any]:
+    """Every key at or below `roots`, and below those that they refer to, with its value."""
+    read: dict[str, Any] = {}
+    for root in roots or raw:
+        if root in raw:
+            _visit(raw, root, raw[root], read, fill=False)
+    return read
+
+
+def _visit(
+    raw: dict[str, Any], path: str, node: Any, read: dict[str, Any], fill: bool = True
+) -> None:
+    """Put a key, all below it and all that these refer to into `read`."""
+    if path in read:
+        return
+    read[path] = node
+    if fill and isinstance(node, dict) and TARGET in node:
+        _fill(raw, path, node)
+    items = (
+        node.items()
+        if isinstance(node, dict)
+        else enumerate(node)
+        if isinstance(node, list)
+        else ()
+    )
+    for name, value in items:
+        _visit(raw, f"{path}.{name}", value, read, fill)
+    for target in _targets(raw, node) if isinstance(node, str) else ():
+        at = source(raw, target)
+        if fill and select(raw, at) is LACKING:  # perhaps a field that its part does not write
+            above = at.rpartition(".")[0]
+            holder = select(raw, above) if above else None
+            if isinstance(holder, dict) and TARGET in holder:
+                _fill(raw, above, holder)
+        _visit(raw, at, select(raw, at), read, fill)
+
+
+def _targets(raw: dict[str, Any], text: str) -> list[str]:
+    """The keys that a text refers to; ${a.${b}.c} refers to b and to a.B.c."""
+    found = REFERENCE.findall(text)
+    flat = INNER.sub(lambda inner: str(select(raw, inner[1])), text)
+    return found if flat == text else found + _targets(raw, flat)
+
+
+def _fill(raw: dict[str, Any], path: str, node: dict[str, Any]) -> None:
+    """Give a part the fields that it lacks; UsageError for one that its class does not have."""
+    fields = _fields(node, path)
+    if fields is None:
+        return
+    kind, given = str(node[TARGET]).rpartition(".")[2], dict(node)
+    theirs = not str(node[TARGET]).startswith(OURS)  # checked with the name of its file
+    unknown = [name for name in node if name not in fields and name != TARGET]
+    if unknown and not theirs:
+        key, has = f"{path}.{unknown[0]}", f"{kind} has {', '.join(fields) or 'no fields'}"
+        raise UsageError(f"{key}: {has}; leave it out by '~{key}', or take another part")
+    node.clear()
+    node[TARGET] = given.pop(TARGET)
+    for name, field in fields.items():
+        link = NAMES.get(name, name)
+        if name in given:
+            node[name] = given.pop(name)
+        elif field.default is not field.empty:
+            node |= {name: _listed(field.default)} if _plain(field.default) else {}
+        elif link in raw and not f"{path}.".startswith(f"{link}."):
+            node[name] = f"${{{link}}}"
+        elif not theirs:
+            raise UsageError(f"{path}.{name}: is missing; {kind} has no default for it")
+    node |= given
+
+
+def _plain(value: Any) -> bool:
+    """Whether YAML can hold a value."""
+    if isinstance(value, tuple):
+        return all(map(_plain, value))
+    return value is None or type(value) in (bool, int, float, str)
+
+
+def _listed(value: Any) -> Any:
+    """A value with lists for its tuples."""
+    return [*map(_listed, value)] if isinstance(value, tuple) else value
+
+
+def _kept(node: Any, read: Mapping[str, Any], where: str = "") -> Any:
+    """What of a node has its key in `read`."""
+    kept = {}
+    for key, value in node.items():
+        path = f"{where}{key}"
+        inner = _kept(value, read, f"{path}.") if isinstance(value, dict) else {}
+        if path in read or inner:
+            kept[key] = inner if isinstance(value, dict) else value
+    return kept
+
+
+def refusal(path: str, raws: Sequence[Mapping[str, Any]]) -> str:
+    """The line about a typed key that none of these configurations has."""
+    methods, (raw, *_) = list(dict.fromkeys(str(each["algo"]) for each in raws)), raws
+    line = f"{path}: {', '.join(methods)} {'have' if methods[1:] else 'has'} no such key"
+    above, _, last = path.rpartition(".")
+    group = select(raw, above) if above else None
+    names = [key for key in group if key != TARGET] if isinstance(group, dict) else None
+    known = [key for key, value in keys(dict(raw)).items() if not REFERENCE.match(str(value))]
+    if names is not None and (near := nearest(last, names)):
+        return f"{line}; did you mean {above}.{near}?"
+    if names is not None and not any(key.endswith(f".{last}") for key in known):
+        return f"{line}; {above} has {', '.join(names) or 'no keys'}"
+    near = nearest(last, [*known, *CHOICES])
+    return f"{line}; {f'did you mean {near}?' if near else '`--cfg job` shows every key'}"
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The known key that is most like a word: with its last name, or by its letters; or ""."""
+    known, word = [*known], THEIRS.get(word, word)
+    ends = re.compile(rf"(^|[._]){re.escape(word)}$")
+    if same := [key for key in known if ends.search(key)]:
+        return min(same, key=lambda key: (key.split(".")[-1] != word, key.count(".")))
+    names = {key.rpartition(".")[2]: key for key in reversed(known)}
+    close = difflib.get_close_matches(word, names, 1, 0.7)
+    return names[close[0]] if close else ""

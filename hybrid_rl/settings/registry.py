@@ -1,0 +1,55 @@
+"""Parts as choices of a group, without a YAML file: `critic=ensemble_q` is critics/ensemble_q.py.
+
+A module of a role's folder that defines one part is a choice by its name, unless conf/ has a file
+of that name. Modules are read as text, and imported when a part is made.
+"""
+
+import re
+from functools import cache
+from pathlib import Path
+
+from hydra.core.config_store import ConfigStore
+
+from hybrid_rl.parts import PACKAGE, TARGET
+
+ROLES = {  # group of conf/ -> folder of hybrid_rl
+    **{"belief": "beliefs", "controller": "controllers", "critic": "critics"},
+    **{"features": "features", "learner": "learners", "map": "beliefs/maps", "model": "models"},
+    **{"objective": "objectives", "policy": "policies", "proposal": "proposals"},
+    **{"schedule": "schedules", "target": "targets"},
+}
+PART = re.compile(r"^@(?:part|dataclass\(frozen=True\))\nclass (\w+)", re.MULTILINE)
+
+
+@cache
+def choices(conf: Path) -> dict[str, dict[str, str]]:
+    """Group -> name -> the class that it names, where `conf` has no file of that name."""
+    return {
+        group: {
+            name: target
+            for name, target in _of(PACKAGE / folder).items()
+            if not (conf / group / f"{name}.yaml").exists()
+        }
+        for group, folder in ROLES.items()
+    }
+
+
+def _of(folder: Path) -> dict[str, str]:
+    """The modules of a folder, and the folders in it, that define one part."""
+    found = {}
+    for path in [*folder.glob("*.py"), *folder.glob("*/__init__.py")]:
+        home = path.parent if path.name == "__init__.py" else path.with_suffix("")
+        classes = PART.findall(path.read_text(encoding="utf-8"))
+        if home != folder and len(classes) == 1:
+            module = ".".join(("hybrid_rl", *home.relative_to(PACKAGE).parts))
+            found[home.name] = f"{module}.{classes[0]}"
+    return found
+
+
+@cache
+def register(conf: Path) -> None:
+    """Let Hydra know the choices that `conf` has no file of."""
+    store = ConfigStore.instance()
+    for group, names in choices(conf).items():
+        for name, target in names.items():
+            store.store(name, {TARGET: target}, group=group, provider="hybrid_rl")
