@@ -5,11 +5,11 @@
     python -m hybrid_rl.view run=DIR [mode=full] [seed=]
     python -m hybrid_rl.view task=panda_stack
 
-It prints an address; open it in a browser. For a machine elsewhere, `ssh -L 8080:localhost:8080
-MACHINE` makes it the same address here. Ctrl-C ends it.
+It prints a link; open it in a browser. Only its key lets a page in. For a machine elsewhere, `ssh
+-L 8080:localhost:8080 MACHINE` makes it the same link here. Ctrl-C ends it.
 
-Policy, planner or both move the robot. Lines are what they imagine for its torso or hand, the
-chosen plan bright. Sliders change the reward, the body and the disturbances; drag the robot to push
+Policy, planner or both move the robot. Lines are what they imagine for its torso or hand, orange
+the plan that acts. Sliders change the reward, the body and the disturbances; drag the robot to push
 it, with at most its own weight. Another mode, reward or body needs other programs, and the robot
 goes on as before until they are compiled: a planner takes a minute or two the first time.
 
@@ -46,7 +46,7 @@ def port(name: str, given: str) -> int:
 
 ARGUMENTS = (
     *ROBOT,
-    Argument("port", 8080, "of the address, or the next one that is free", port),
+    Argument("port", 8080, "of the link, or the next one that is free", port),
     Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
 )
 
