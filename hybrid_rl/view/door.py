@@ -146,16 +146,19 @@ class Door:
     def admits(self, request: Request) -> bool:
         """Whether a request has the key, and Host and Origin are this window's."""
         hosts, origins = map(request.headers.get_all, ("Host", "Origin"))
-        path = request.path.partition("?")[0].strip("/").encode()
-        if len(hosts) != 1 or not secrets.compare_digest(path, self.key.encode()):
+        try:
+            path = request.path.partition("?")[0].strip("/").encode()
+            (host,) = (each.lower() for each in hosts)
+            known = secrets.compare_digest(path, self.key.encode()) and self._ours(host)
+            return known and all(urlsplit(each).netloc == host for each in origins)
+        except ValueError:  # of what is no host or no text
             return False
-        host = hosts[0].lower()
-        return self._ours(host) and all(urlsplit(each).netloc == host for each in origins)
 
     def _ours(self, host: str) -> bool:
-        """Whether a Host, with its port, is this machine: no name that another server gave it."""
-        try:
-            name = urlsplit(f"//{host}").hostname or ""
-            return name in self._names or bool(ip_address(name))
-        except ValueError:
-            return False
+        """Whether a Host, with its port, is this machine's: no other name for it.
+
+        Raises:
+            ValueError: for such a name.
+        """
+        name = urlsplit(f"//{host}").hostname or ""
+        return name in self._names or bool(ip_address(name))

@@ -59,6 +59,8 @@ def update(uuid, **updates):
         ("/KEY", {"Host": "evil.example:8080"}, False),
         ("/KEY", {"Host": "evil.example", "Origin": "http://evil.example"}, False),
         ("/KEY", {"Host": "[127.0.0.1"}, False),
+        ("/KEY", {"Host": "127.0.0.1", "Origin": "http://[127.0.0.1"}, False),
+        ("/KEY\udcff", {"Host": "127.0.0.1"}, False),
         ("/KEY", {}, False),
         ("/", {"Host": "127.0.0.1:8080"}, False),
         ("/key", {"Host": "127.0.0.1:8080"}, False),

@@ -238,11 +238,12 @@ def window():
     server.stop()
 
 
-def pixel(client, point, width=1280, height=800):
+def pixel(client, point):
     """Where [2] the browser draws a point [3]."""
     import viser.transforms as tf
 
     camera = client.camera
+    width, height = camera.image_width, camera.image_height  # beside the panel
     x, y, z = tf.SO3(camera.wxyz).inverse() @ (point - camera.position)
     scale = height / 2 / np.tan(camera.fov / 2)
     return width / 2 + scale * x / z, height / 2 + scale * y / z
