@@ -32,7 +32,7 @@ Vector = tuple[Number, Number, Number]
 
 
 class Camera(Struct, tag_field="type", tag="ViewerCameraMessage"):
-    """Where a browser looks from."""
+    """The camera of a browser."""
 
     wxyz: tuple[Number, Number, Number, Number]
     position: Vector

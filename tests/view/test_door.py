@@ -145,16 +145,16 @@ def test_a_server_has_the_door(monkeypatch, capfd):
     try:
         speed = server.gui.add_slider("speed", 0.1, 1.0, 0.1, 1.0)
         (uuid,) = server.gui._gui_input_handle_from_uuid
-        place = link.rpartition("/")[0]
+        root = link.rpartition("/")[0]
         assert "text/html" in urllib.request.urlopen(link).headers["Content-Type"]
         with pytest.raises(urllib.error.HTTPError, match="403"):
-            urllib.request.urlopen(place)
-        ours, other = (each.replace("http", "ws") for each in (link, place))
-        for address, origin in ((ours, "http://evil.example"), (other, place)):
+            urllib.request.urlopen(root)
+        ours, other = (each.replace("http", "ws") for each in (link, root))
+        for address, origin in ((ours, "http://evil.example"), (other, root)):
             with pytest.raises(InvalidStatus, match="403"):
                 connect(address, origin=origin, proxy=None)
         version = [f"viser-v{viser.__version__}"]
-        with connect(ours, origin=place, subprotocols=version, proxy=None) as page:
+        with connect(ours, origin=root, subprotocols=version, proxy=None) as page:
             for each in (CAMERA, {"type": "ShareUrlRequest"}, update(uuid, value=0)):
                 page.send(msgpack.encode(each))
             page.send(b"\xc1")
