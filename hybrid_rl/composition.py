@@ -13,7 +13,7 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields
-from hybrid_rl.errors import UsageError, install, relative
+from hybrid_rl.errors import UsageError, install, printable, relative
 from hybrid_rl.parts import asked, part_class
 from hybrid_rl.settings import registry
 from hybrid_rl.settings.complete import keys, nearest
@@ -161,9 +161,9 @@ def explain(error: Exception) -> str:
         more = f"; +{absent}=NAME adds it" if "@" in absent else ""
         return f"{absent}: the method has no such part{more}; {METHODS}"
     if isinstance(error, OverrideParseException):
-        first, problem = text.splitlines()[0], text.splitlines()[-2]
+        problem = text.splitlines()[-2]
         if set(problem) == {" ", "^"}:  # it points at a character
-            problem = f"{first[len(problem) - 1]} stands outside quotes"
+            problem = f"{printable(text[len(problem) - 1])} stands outside quotes"
         problem = problem.partition(" expecting {")[0]  # of kinds of signs
         return f"{error.override}: {problem}; write {overrides.TYPED}"
     if inner := re.match(r"In '(\w+)/(.+)': Could not override '([^'@]+)", text):

@@ -193,15 +193,12 @@ def _fitting(config: dict[Any, Any], goal: DictConfig) -> DictConfig:
     """The parts of `goal` that a run with this configuration can use."""
     goal = goal.copy()
     own = goal.reward is None and "objective" in config
-    if goal.reward is None and not own and {"model", "reward_model"} <= set(config):
-        words = "was shipped without the reward and the critic of its training"
-        raise UsageError(f"policy={config['task']}: {words}; give reward=NAME")
+    if goal.reward is None and "reward_model" in config:  # learned in training
+        goal.goal_reward = "${reward_model}"
     if own:  # the planner maximises that of the training
         goal.planner.objective = "${objective}"
         alone = "model_objective" if "model_objective" in config else "objective"
         goal.planner_alone.objective = f"${{{alone}}}"
-        if goal.get("imagine") is not None:
-            goal.imagine.learner.reward = "${reward_model}"
     for name in configuration.PAID:
         goal[name] = goal[name] or config.get(name)
     if own and _priced(config, goal.constraint):

@@ -110,9 +110,10 @@ class Chromium:
         return answer["result"].get("value")
 
     def open(self, url: str) -> None:
-        """Load a page."""
+        """Load a page, which may add to its address."""
         self("Page.navigate", url=url)
-        self.wait(f"location.href === {json.dumps(url)} && document.readyState === 'complete'")
+        there = f"location.href.startsWith({json.dumps(url)})"
+        self.wait(f"{there} && document.readyState === 'complete'")
 
     def wait(self, condition: str, seconds: float = 60) -> None:
         """Until a condition in JavaScript holds."""

@@ -15,6 +15,7 @@ from hybrid_rl.controllers.gradient import GradientController
 from hybrid_rl.controllers.sampling import SamplingController
 from hybrid_rl.errors import UsageError
 from hybrid_rl.goals import aimed, retargeted
+from hybrid_rl.rewards.network import RewardNetwork
 from hybrid_rl.trained import Trained, load, read
 from scripts import new_goals
 
@@ -256,11 +257,19 @@ def test_a_mistake_is_one_line(trained: Path, known: Trained, words, line, capfd
     assert line in only_line(capfd)
 
 
-@pytest.mark.parametrize("word", ["planner=gradient", "constraint=speed"])
-def test_a_shipped_planner_needs_a_reward(word: str, capfd) -> None:
-    given = ("policy=halfcheetah", word)
+def test_a_name_of_two_lines_is_one_line(capfd) -> None:
+    given = ("policy=pendulum", "reward=speed\nx: 1")
     assert call(lambda: command.run(evaluate.main), *given) == 2
-    assert "policy=halfcheetah: was shipped without the reward and the critic" in only_line(capfd)
+    assert r"reward=speed x: 1: \n stands outside quotes" in only_line(capfd)
+
+
+@pytest.mark.parametrize("word", ["planner=gradient", "constraint=speed"])
+def test_a_shipped_planner_maximises_the_learned_reward(word: str) -> None:
+    """Without a goal, by the network in the file: there is no critic."""
+    now, _ = aimed(read("halfcheetah"), [word])
+    objective = now.controllers["full"].objective
+    assert isinstance(objective.reward, RewardNetwork)
+    assert (objective.critic, now.episode.reward) == (None, None)
 
 
 @pytest.mark.parametrize("word", ["planner.horizon=3", "imagine=policy"])

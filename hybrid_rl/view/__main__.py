@@ -5,11 +5,11 @@
     python -m hybrid_rl.view run=DIR [mode=full] [seed=]
     python -m hybrid_rl.view task=panda_stack
 
-It prints an address; open it in a browser. For a machine elsewhere, `ssh -L 8080:localhost:8080
-MACHINE` makes it the same address here. Ctrl-C ends it.
+It prints a link; open it in a browser. Only its key lets a page in. For a machine elsewhere, `ssh
+-L 8080:localhost:8080 MACHINE` makes it the same link here. Ctrl-C ends it.
 
-Policy, planner or both move the robot. Lines are what they imagine for its torso or hand, the
-chosen plan bright. Sliders change the reward, the body and the disturbances; drag the robot to push
+Policy, planner or both move the robot. Lines are what they imagine for its torso or hand, orange
+the plan that acts. Sliders change the reward, the body and the disturbances; drag the robot to push
 it, with at most its own weight. Another mode, reward or body needs other programs, and the robot
 goes on as before until they are compiled: a planner takes a minute or two the first time.
 
@@ -46,7 +46,7 @@ def port(name: str, given: str) -> int:
 
 ARGUMENTS = (
     *ROBOT,
-    Argument("port", 8080, "of the address, or the next one that is free", port),
+    Argument("port", 8080, "of the link, or the next one that is free", port),
     Argument("host", "127.0.0.1", "who may see it: this machine; 0.0.0.0: everybody"),
 )
 
@@ -72,7 +72,7 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     source = Source(given, changes, trained)
     if trained is not None and isinstance(trained.episode.env, External):
         raise UsageError("a Gymnasium environment draws itself; use render")
-    choice = Choice("expert" if given["task"] else given["mode"], given["reward"])
+    choice = Choice(given["mode"], given["reward"])
     seed = given["seed"] or 0 if trained is None else given["seed"] or trained.seeds[0]
     player = Player(source, learner(trained, given["seed"]), choice, seed)
     folder = Path(given["run"]) if given["run"] else None
@@ -80,7 +80,7 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     rewards = options("reward") if source.plans else []
     name = given["task"] or (trained.task if trained else "")
     step = trained.step if trained else None
-    return Session(server(), name, player, Wishes(choice, seed), rewards, step, follower)
+    return Session(server(), name, player, Wishes(player.wanted, seed), rewards, step, follower)
 
 
 def check_address(host: str, port: int) -> None:
@@ -97,15 +97,20 @@ def check_address(host: str, port: int) -> None:
             raise UsageError(f"host={host} port={port}: cannot be used ({error})") from error
 
 
-def serve(given: Mapping[str, Any]) -> Any:
-    """A server at the address, where only this machine may ask unless host=... says otherwise.
+def serve(given: Mapping[str, Any]) -> tuple[Any, str]:
+    """A server at the address, and the link that lets a page in.
 
     Raises:
         UsageError: without viser.
     """
     viser: Any = import_viser()
-    with contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
-        return viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
+    from hybrid_rl.view.door import Door
+
+    door = Door(given["host"])
+    with door.hung(), contextlib.redirect_stdout(io.StringIO()):  # its own lines about the address
+        server = viser.ViserServer(host=given["host"], port=given["port"], verbose=False)
+    door.controls = server.gui._gui_input_handle_from_uuid
+    return server, f"http://{given['host']}:{server.get_port()}/{door.key}"
 
 
 def import_viser() -> Any:
@@ -126,22 +131,22 @@ def show(
 ) -> None:
     """Serve the window until Ctrl-C; opened: called with its address."""
     print("compiling the first programs", flush=True)
-    servers: list[Any] = []
+    served: list[tuple[Any, str]] = []
 
     def server() -> Any:
-        servers.append(serve(given))
-        return servers[0]
+        served.append(serve(given))
+        return served[0][0]
 
     session = open_session(given, changes, server)
-    address = f"http://{given['host']}:{servers[0].get_port()}"
-    print(f"open {address} in a browser; Ctrl-C ends it", flush=True)
+    link = served[0][1]
+    print(f"open {link} in a browser; Ctrl-C ends it", flush=True)
     if opened:
-        opened(address)
+        opened(link)
     try:
         session.run(threading.Event())
     finally:
         with contextlib.redirect_stdout(io.StringIO()):
-            servers[0].stop()
+            session.server.stop()
 
 
 def main() -> None:

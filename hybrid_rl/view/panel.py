@@ -7,12 +7,20 @@ from typing import Any
 import numpy as np
 from viser import ViserServer
 
+from hybrid_rl.checks import SEEDS
 from hybrid_rl.view.history import PLOTS, History
 from hybrid_rl.view.player import Choice
 from hybrid_rl.view.push import Pull
+from hybrid_rl.view.scene import BRIGHT, PALE
 from hybrid_rl.view.subject import Slider
 
 STEP, AGAIN = "Step", "New episode"
+LEGEND = '<div style="font-size: 12px; padding: 0 1em 0.5em">{}</div>'.format(
+    " &nbsp; ".join(
+        f'<b style="color: rgb{colour}">&#9473;</b> {name}'
+        for name, colour in (("the plan that acts", BRIGHT), ("other candidates", PALE))
+    )
+)
 
 
 @dataclass
@@ -41,6 +49,7 @@ class Panel:
         self._gui.configure_theme(
             show_share_button=False, show_logo=False, dark_mode=False, control_width="medium"
         )
+        self._gui.main_panel.dock_right()  # beside the robot
         self._gui.set_panel_label("hybrid_rl")
         self._status = self._gui.add_markdown("")
         self._run()
@@ -48,9 +57,9 @@ class Panel:
             "mode", tuple(modes), initial_value=wishes.choice.mode, visible=len(modes) > 1
         )
         self._modes.on_update(lambda _: self._choose(mode=self._modes.value))
-        hint = "a quarter of its candidates and steps"
-        quick = wishes.choice.quick
-        self._quick = self._gui.add_checkbox("quick planner", quick, hint=hint, visible=False)
+        hint = "a quarter of its candidates and of its gradient steps"
+        quick, label = wishes.choice.quick, "plan less, faster"
+        self._quick = self._gui.add_checkbox(label, quick, hint=hint, visible=False)
         self._quick.on_update(lambda _: self._choose(quick=self._quick.value))
         if rewards:
             names = ("of the training", *rewards)
@@ -82,12 +91,13 @@ class Panel:
             else:
                 wishes.again = True
 
-        seed = gui.add_number("seed", wishes.seed, min=0, step=1)
+        seed = gui.add_number("seed", wishes.seed, min=0, max=SEEDS - 1, step=1)
         seed.on_update(lambda _: self._seeded(int(seed.value)))
         speed = gui.add_slider("speed", 0.1, 1.0, 0.1, wishes.speed, hint="times real time")
         speed.on_update(lambda _: setattr(wishes, "speed", speed.value))
         paths = gui.add_checkbox("imagined paths", wishes.candidates)
         paths.on_update(lambda _: setattr(wishes, "candidates", paths.value))
+        gui.add_html(LEGEND)
 
     def _seeded(self, seed: int) -> None:
         self._wishes.seed, self._wishes.again = seed, True

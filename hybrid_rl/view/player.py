@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from hybrid_rl.envs.mujoco.scenery import check_drawable
@@ -57,11 +58,12 @@ class Player:
         self._made: dict[Any, Any] = {}  # programs that were compiled
         self._subjects: dict[Any, Subject] = {}
         self._pool = ThreadPoolExecutor(1, "compile")
-        self.wanted = self._asked = choice
+        self._asked = choice
         self._coming: Future[Cast] | None = None
         self.problem = ""  # why the last choice is not shown
         subject = self._subject(choice)
         check_drawable(subject.episode.env)
+        choice = replace(choice, mode=subject.named(choice.mode))
         quick = "policy" if "policy" in subject.controllers else choice.mode
         self.cast = self._make(replace(choice, mode=quick))
         self.begin(seed)
@@ -84,6 +86,11 @@ class Player:
         self.state: EnvState = self.cast.world.reset(start)
         self._control = self.cast.actor.begin()
         self.decided: Decision | None = None
+
+    def forget_return(self) -> None:
+        """Count the return from here on."""
+        before = self.state.info["return"]
+        self.state = self.state.replace(info={**self.state.info, "return": jnp.zeros_like(before)})
 
     def choose(self, choice: Choice) -> None:
         """Show this as soon as its programs are ready."""
@@ -146,14 +153,12 @@ class Player:
         key = choice.reward, tuple(sorted(choice.changes.items())), choice.quick
         if key not in self._subjects:
             self._subjects[key] = self.source.subject(choice.reward, choice.changes, choice.quick)
-        subject = self._subjects[key]
-        if choice.mode not in subject.controllers:
-            raise UsageError(f"mode={choice.mode}: choose one of {', '.join(subject.controllers)}")
-        return subject
+        return self._subjects[key]
 
     def _make(self, choice: Choice) -> Cast:
         """The programs of a choice; in a thread."""
         subject = self._subject(choice)
+        choice = replace(choice, mode=subject.named(choice.mode))
         numbers = self._numbers(subject)
         where = choice.reward, tuple(sorted(choice.changes.items()))  # not the episode: one of
         if where not in self._made:  # the user's may hold a list, which has no hash

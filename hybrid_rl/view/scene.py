@@ -11,14 +11,16 @@ from typing import Any
 import mujoco
 import numpy as np
 from mjviser import ViserMujocoScene
-from viser import SceneNodeDragEvent, ViserServer
+from viser import ClientHandle, SceneNodeDragEvent, ViserServer
 
 from hybrid_rl.envs.mujoco import scenery
-from hybrid_rl.view.imagined import lines
+from hybrid_rl.view.imagined import PLANAR, lines, point_of
 from hybrid_rl.view.push import Pull
 
 PALE, BRIGHT = (110, 135, 175), (255, 122, 0)  # of lines, on a light and a dark ground
-BACK = 1.6  # times as far as in a video, as the panel covers a part
+UPRIGHT = 0.5  # cosine of a torso's tilt, below which the robot has tipped over
+BACK = 1.6  # times as far as in a video, as paths lead ahead
+ABOVE = 0.3  # of a phone's height, by which the robot is above the middle: below is the panel
 
 
 class Scene:
@@ -31,14 +33,23 @@ class Scene:
         self._data = mujoco.MjData(self.model)
         self._drawn = ViserMujocoScene(server, self.model, num_envs=1)
         self._lines: dict[str, Any] = {}
+        self._torso = point_of(self.model)[0]
+        self._turns = self.model.body_dofnum[self._torso] >= PLANAR
         for group in self._drawn._mesh_groups:
             group.handle.on_drag("left")(self._dragged(group.body_ids))
         self._aim()
+        server.on_client_connect(self._raised)
 
     @property
     def offset(self) -> np.ndarray:
         """What is added [3] [m] to positions in the world."""
         return self._drawn._scene_offset
+
+    @property
+    def tipped(self) -> bool:
+        """Whether a torso that can turn is far from upright, as it is drawn."""
+        upright = (self._data.xmat[self._torso].reshape(3, 3) @ self._rest.T)[2, 2]
+        return bool(self._turns and upright < UPRIGHT)
 
     def draw(self, qpos: np.ndarray) -> None:
         """The robot at positions [nq]."""
@@ -63,7 +74,7 @@ class Scene:
                 handle.visible = False
             return
         ends = np.stack([paths[..., :-1, :], paths[..., 1:, :]], -2).reshape(-1, 2, 3)
-        points = (ends + self.offset).astype(np.float32)
+        points = (ends + self.offset + self._before).astype(np.float32)
         if handle is None:
             handle = self._lines[name] = self._server.scene.add_line_segments(
                 f"/{name}", points, colour, thickness=width, thickness_units="screen"
@@ -77,7 +88,8 @@ class Scene:
             if event.phase == "end":
                 self._pull(None)
                 return
-            name = self.model.body(int(bodies[event.instance_index or 0])).name
+            first = min(event.instance_index or 0, len(bodies) - 1)
+            name = self.model.body(int(bodies[first])).name
             at, to = (np.array(p) - self.offset for p in (event.start_position, event.end_position))
             self._pull(Pull(name, at, to, time.monotonic()))
 
@@ -86,6 +98,7 @@ class Scene:
     def _aim(self) -> None:
         """Put the camera where a video has it."""
         mujoco.mj_forward(self.model, self._data)
+        self._rest = self._data.xmat[self._torso].reshape(3, 3).copy()
         found, view = scenery.camera(self.model), self._server.initial_camera
         if found.type == mujoco.mjtCamera.mjCAMERA_FIXED:
             at = self._data.cam_xpos[found.fixedcamid]
@@ -104,3 +117,14 @@ class Scene:
         view.fov = np.radians(self.model.vis.global_.fovy)
         view.look_at = centre + self.offset
         view.position = view.look_at - BACK * distance * ahead
+        torso = self.model.geom_bodyid == self._torso
+        thick = self.model.geom_size[torso, 0].max(initial=0.0) if self._turns else 0.0
+        self._before = -1.5 * thick * ahead  # [m] of lines: a torso does not hide their beginning
+
+    def _raised(self, client: ClientHandle) -> None:
+        """The camera of a phone sees the robot above its panel."""
+        camera, view = client.camera, self._server.initial_camera
+        if camera.image_width < camera.image_height:
+            distance = np.linalg.norm(view.position - view.look_at)
+            lower = 2 * ABOVE * distance * np.tan(view.fov / 2)
+            camera.look_at = view.look_at - [0, 0, lower]

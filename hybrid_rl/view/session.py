@@ -12,7 +12,7 @@ from viser import ViserServer
 from hybrid_rl.view import push
 from hybrid_rl.view.following import Follower
 from hybrid_rl.view.history import History
-from hybrid_rl.view.panel import Panel, Wishes
+from hybrid_rl.view.panel import AGAIN, Panel, Wishes
 from hybrid_rl.view.player import Player
 from hybrid_rl.view.scene import Scene
 
@@ -35,6 +35,7 @@ class Session:
         follower: Follower | None = None,
     ) -> None:
         """step: decisions of the training; rewards: names that may be chosen."""
+        self.server = server
         self._name, self.player, self.wishes = name, player, wishes
         self._step, self._follower, self._history = step, follower, History()
         self.decisions, self.episodes, self.pushes = 0, 0, 0
@@ -76,10 +77,21 @@ class Session:
         player.numbers = dict(wishes.numbers)
         if wishes.choice != player.wanted:
             player.choose(wishes.choice)
+        before = player.cast.choice.reward
         player.exchange()
+        if player.cast.choice.reward != before:
+            self._aim()
         if wishes.again:
             wishes.again, self.episodes = False, 0
             self._begin()
+
+    def _aim(self) -> None:
+        """Another reward: a new return, and a new episode where the robot has tipped over."""
+        self._ended = ""
+        if self._scene.tipped:
+            self._begin()
+        self.player.forget_return()
+        self._history.clear()
 
     def _begin(self) -> None:
         """The next episode."""
@@ -143,6 +155,8 @@ class Session:
         if player.compiling:
             goal = f", reward {asked.reward}" if asked.reward else ""
             lines.append(f"*compiling mode {asked.mode}{goal}: a planner takes a minute or two*")
+        if self._scene.tipped:
+            lines.append(f"*tipped over: {AGAIN} sets it up*")
         if player.problem:
             lines.append(f"*{player.problem}*")
         return "  \n".join(lines)

@@ -12,6 +12,7 @@ from typing import Any, get_args
 
 from hybrid_rl.config import PAID
 from hybrid_rl.demonstrate import scripted_expert
+from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Must, choices, plain
 from hybrid_rl.goals import apply_changes
 from hybrid_rl.protocols import Controller
@@ -44,6 +45,16 @@ class Subject:
     episode: Episode
     controllers: dict[str, Controller]  # mode -> who acts
     scripted: bool = False
+
+    def named(self, mode: str) -> str:
+        """The name of `mode` among the controllers; full is the only one where one acts.
+
+        Raises:
+            UsageError: for a mode that there is not.
+        """
+        if mode not in (*self.controllers, "full"):
+            raise UsageError(f"mode={mode}: choose one of {', '.join(self.controllers)}")
+        return mode if mode in self.controllers else next(iter(self.controllers))
 
     def plans(self, mode: str) -> bool:
         """Whether who acts in `mode` is quicker with fewer candidates."""
@@ -172,8 +183,12 @@ class Source:
         if reward != self.given["reward"]:
             words = {key: value for key, value in words.items() if not key.startswith("reward.")}
         given = {**self.given, "reward": reward}
+        if self.plans and self.trained.agent is None:  # a file: its policy and models, no planner
+            given["planner"] = given["planner"] or "gradient"
         trained = apply_changes(self.trained, given, {**words, **changes})[0]
-        acting = trained.controllers
+        acting = dict(trained.controllers)
+        if acting["full"] == acting.get("policy"):
+            del acting["full"]
         if quick:
             acting = {mode: quicker(controller) for mode, controller in acting.items()}
         return Subject(trained.episode, acting)

@@ -226,23 +226,24 @@ def window():
     """A session that plays, and its server."""
     if not (PROGRAM and find_spec("viser") and find_spec("mjviser")):
         pytest.skip("needs chromium and the extra `view`")
-    server = view.serve({**BLANK, "port": 8471})
+    server, link = view.serve({**BLANK, "port": 8471})
     given = {**BLANK, "policy": "halfcheetah", "mode": "policy"}
     session = view.open_session(given, {}, lambda: server)
     over = threading.Event()
     thread = threading.Thread(target=session.run, args=(over,))
     thread.start()
-    yield session, server
+    yield session, server, link
     over.set()
     thread.join()
     server.stop()
 
 
-def pixel(client, point, width=1280, height=800):
+def pixel(client, point):
     """Where [2] the browser draws a point [3]."""
     import viser.transforms as tf
 
     camera = client.camera
+    width, height = camera.image_width, camera.image_height  # beside the panel
     x, y, z = tf.SO3(camera.wxyz).inverse() @ (point - camera.position)
     scale = height / 2 / np.tan(camera.fov / 2)
     return width / 2 + scale * x / z, height / 2 + scale * y / z
@@ -250,11 +251,11 @@ def pixel(client, point, width=1280, height=800):
 
 def test_the_page_shows_the_robot_steps_and_is_pushed(window, tmp_path):
     """Without an error, and without a request to another host."""
-    session, server = window
+    session, server, link = window
     address = f"127.0.0.1:{server.get_port()}"
     with opened(tmp_path) as page:
         page.size(1280, 800)
-        page.open(f"http://{address}/")
+        page.open(link)
         page.wait("document.body.innerText.includes('mode policy')")
         until(lambda: session.wishes.paused or page.click("Step"))  # the panel moves at first
         until(lambda: not session.wishes.steps)
