@@ -42,9 +42,11 @@ from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import value_of
+from hybrid_rl.overrides import forced, name, raw_values, value_of
 from hybrid_rl.parts import part_class
 from hybrid_rl.protocols import Controller
+from hybrid_rl.settings.complete import LACKING, complete, refusal, select
+from hybrid_rl.settings.registry import register
 from hybrid_rl.trained import Trained, load_named
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.contract import check_controllers
@@ -56,6 +58,7 @@ from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
+GROUPS = (*configuration.PAID, "imagine", "proposal")  # of conf/retarget.yaml
 KEYS = (*configuration.PAID, *PLANNERS, "imagine")  # of conf/retarget.yaml, which a user may change
 
 
@@ -130,6 +133,12 @@ def aimed(
             raise UsageError(f"{lost}: there is no learned model to {does}")
     kept = {key: value for key, value in config.items() if key not in KEYS}
     changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
+    typed = [name(text) for text in overrides if "." in name(text)]
+    raw = complete(raw_values(changed), [*changed], typed)
+    for key in typed:
+        if select(raw, key) is LACKING:
+            raise UsageError(refusal(key, [raw]))
+    changed = OmegaConf.create(raw)
     OmegaConf.resolve(changed)
     episode, controllers, before = configuration.acting(changed)
     notes = trained.notes
@@ -236,10 +245,11 @@ def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictCo
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
     if config_dir:
         words.append(search_path(config_dir))
+    register(CONF)
     try:
         check_choices(words)
         with configuration.COMPOSING, initialize_config_dir(str(CONF), version_base="1.3"):
-            found: Any = compose("retarget", words)
+            found: Any = compose("retarget", forced(words, {*GROUPS, "controller"}))
     except (HydraException, OmegaConfBaseException) as error:
         raise UsageError(_as_given(explain(error))) from error
     except UsageError as error:

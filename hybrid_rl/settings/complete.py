@@ -192,7 +192,7 @@ def _kept(node: Any, read: Mapping[str, Any], where: str = "") -> Any:
 
 def refusal(path: str, raws: Sequence[Mapping[str, Any]]) -> str:
     """The line about a typed key that none of these configurations has."""
-    methods, (raw, *_) = list(dict.fromkeys(str(each["algo"]) for each in raws)), raws
+    methods, raw = list(dict.fromkeys(str(each.get("algo")) for each in raws)), raws[0]
     line = f"{path}: {', '.join(methods)} {'have' if methods[1:] else 'has'} no such key"
     above, _, last = path.rpartition(".")
     group = select(raw, above) if above else None
