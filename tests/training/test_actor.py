@@ -18,6 +18,7 @@ from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.training import actor as actors
 from hybrid_rl.training.actor import Actor
 from hybrid_rl.training.loops import loop_of
+from hybrid_rl.training.robot_loop import RobotProgram
 from hybrid_rl.training.robot_process import RobotProcess
 
 LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
@@ -150,10 +151,20 @@ def test_an_episode_begins_with_a_controller_that_remembers_nothing(agent, tmp_p
     assert max(first.values()) < 0.4  # a missed deadline leaves decisions out
 
 
+def test_it_ends_with_the_decisions_of_the_run(agent, tmp_path):
+    params = agent.params(agent.init(jax.random.key(0)))
+    for most in (15, 18):  # the second process finds those of the first
+        actor = Actor(of(agent, Counting), tmp_path, params=params, most=most)
+        actor.run(seconds=20)
+        assert RowLog(tmp_path / "rows", agent.spec).count() == most
+        assert actor.robot.stopped == 1
+
+
 def test_it_ends_without_a_learner(agent, tmp_path):
     actor = Actor(of(agent, Counting, alone_s=0.2), tmp_path)
     began = time.monotonic()
-    actor.run()
+    with pytest.raises(TimeoutError, match=r"Counting: no sign of its learner for 0.2 s"):
+        actor.run()
     assert 0.1 < time.monotonic() - began < 5
     assert actor.robot.stopped == 1
     assert not actor.robot.applied
@@ -288,9 +299,36 @@ def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
     assert (memory[:, 6] == 1).tolist() == ended
     assert metrics["episode/length"][:, 0, 0].tolist() == [*range(1, 11), *range(1, 11)]
     assert len(more["episode/done"]) == len(more["robot/late_s"]) == 10
+    assert more["robot/behind"].tolist() == [[len(rows) - 30]] * 10
     threading.Timer(0.5, loop.cut_short).start()
-    state, more = program(state, jnp.int32(len(rows)), jnp.int32(20))  # it learns: no row comes
-    assert (len(more["episode/done"]), program.learned > 0) == (0, True)
+    state, more = program(state, jnp.int32(30), jnp.int32(1000))  # no row comes any more
+    assert len(more["episode/done"]) == len(rows) - 30
+
+
+def test_reading_and_learning_share_the_time_of_a_slow_learner(agent, tmp_path, monkeypatch):
+    """Each decision has its updates, also after an interruption, though rows always wait."""
+    loop = loop_of(of(agent, Counting), (0,), 20, tmp_path)
+    _, rows = moved(agent, tmp_path / "robot", Counting)
+    monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
+    observe, learn = loop.halves(loop.init())
+    learned, state = [], loop.init()
+
+    def slowly(*given):
+        time.sleep(5e-3)
+        learned.append(int(given[-1]))
+        return learn(*given)
+
+    for start in (0, 12):
+        program = RobotProgram(loop, observe, learn)
+        monkeypatch.setattr(program, "learn", slowly)
+        state, metrics = program(state, jnp.int32(start), jnp.int32(12))
+        assert learned == list(range(start + 12))
+        rewards = [row["reward"] for row in rows[start : start + 12]]
+        assert metrics["world/reward"].ravel().tolist() == rewards
+    count = int(state.memory.count[0])
+    assert count > 30  # it reads on while it learns
+    memory = np.asarray(state.memory.rows)[0, :count, 0]
+    assert np.array_equal(memory[:, :4], [row["obs"] for row in rows[:count]])
 
 
 @pytest.mark.parametrize("word", ["num_seeds=2", "num_envs=2"])
