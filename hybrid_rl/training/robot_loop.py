@@ -107,8 +107,9 @@ class RobotLoop(Loop):
         memory = jax.lax.cond(
             gap, lambda old: replay.interrupted(old, spec), lambda old: old, memory
         )
-        led = got.reward, got.terminated, got.truncated, got.obs
-        return replay.add(memory, Transition(got.following, action, *led))
+        led: Any = got.reward, got.terminated, got.truncated, got.obs
+        before: Any = got.following
+        return replay.add(memory, Transition(before, action, *led))
 
     def _learned(
         self, state: AgentState, action: Array, got: Outcome, first: Array, step: Array
@@ -177,16 +178,16 @@ class RobotProgram:
         """
         first, count, done, began = int(start), int(rounds), 0, time.monotonic()
         rows: Any = self.loop.empty()
-        self.read = self._read(state, first) if self.read is None else self.read
+        read = self._known(state, first) if self.read is None else self.read
         host, updates, until = [], 0, 0.0
         while done < count and not self.loop.cut:
             at, row = first + done, None
-            owed, now = self.read > at, time.monotonic()
-            if not owed or (self.read < max(first + count, self.room) and now < until):
-                row = self.log.read(self.read)
+            owed, now = read > at, time.monotonic()
+            if not owed or (read < max(first + count, self.room) and now < until):
+                row = self.log.read(read)
             if row is not None:
                 state = state.replace(memory=self._into(state.memory, row))
-                self.process.tries, self.read = 0, self.read + 1
+                self.process.tries, read = 0, read + 1
             elif owed:
                 state, rows, own = self._after(state, rows, at, done)
                 host.append(own)
@@ -198,22 +199,22 @@ class RobotProgram:
             if time.monotonic() - self.published > self.env.handover_s:
                 self._publish(state, first + done)
                 self._watch(first + done)
-        rate = updates / max(time.monotonic() - began, 1e-9)
+        self.read, rate = read, updates / max(time.monotonic() - began, 1e-9)
         behind = self.log.count() - first - done
         self._say(behind)
         return state, self._metrics(jax.device_get(rows), host, rate, behind)
 
-    def _read(self, state: AgentState, first: int) -> int:
+    def _known(self, state: AgentState, first: int) -> int:
         """Rows in the memory at the first call; a checkpoint's may go beyond `first`, its step."""
         agent, held = self.loop.agent, int(state.memory.count[0])
-        known = agent.replay.num_demonstrated(1) + max(-agent.first_update, 0)
-        read = max(first, held - known)
+        given = agent.replay.num_demonstrated(1) + max(-agent.first_update, 0)
+        read = max(first, held - given)
         self.room = read + state.memory.rows.shape[1] - held
         return read
 
     def _into(self, memory: Memory, row: Any) -> Memory:
         """The memory with a row."""
-        last = self._before(row)
+        last: Any = self._before(row)
         gap = last is not None and last["stretch"] < row["stretch"]
         gap = gap and not (last["terminated"] or last["truncated"])
         return jax.block_until_ready(self.observe(memory, *_decision(row), np.bool_(gap)))
