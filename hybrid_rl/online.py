@@ -204,8 +204,8 @@ class OnlineLearner:
                 self._seen += 1
             elif self._learned < self._seen:
                 *row, first = self._waiting.popleft()
-                at = np.bool_(first), np.int32(0), np.int32(self._learned)
-                self._state, self._rows = self._learn(self._state, self._rows, *packed(*row), *at)
+                made = *packed(*row), np.bool_(first), np.int32(self._learned)
+                self._state, self._rows = self._learn(self._state, self._rows, np.int32(0), *made)
                 jax.block_until_ready(self._state.key)
                 self._learned += 1
             else:

@@ -62,11 +62,11 @@ class RobotLoop(Loop):
         self.rows = self.rows_of(jax.eval_shape(learned, state, action, got, no, zero)[1])
         parts = (SEEDS, SEEDS, SEEDS, REPLICATED), SEEDS
         observe = self.shard(jax.vmap(self._observed, (0, 0, 0, None)), *parts, donate_argnums=0)
-        parts = (SEEDS, METRICS, SEEDS, SEEDS, *[REPLICATED] * 3), (SEEDS, METRICS)
+        parts = (SEEDS, METRICS, REPLICATED, SEEDS, SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         learn = self.shard(self._learn, *parts, donate_argnums=(0, 1))
         traced = [
             observe.trace(state.memory, action, got, no),
-            learn.trace(state, self.rows, action, got, no, zero, zero),
+            learn.trace(state, self.rows, zero, action, got, no, zero),
         ]
         self.compile_s += time.perf_counter() - began
         return traced
@@ -79,7 +79,7 @@ class RobotLoop(Loop):
     def halves(self, state: AgentState) -> list[Any]:
         """The compiled programs that observe and that learn.
 
-        (memory, action, outcome, gap) -> memory, and (state, rows, action, outcome, first, i, step)
+        (memory, action, outcome, gap) -> memory, and (state, rows, i, action, outcome, first, step)
         -> (state, rows): of decision `step`, with its metrics in row i. gap: whether decisions are
         missing before it; first: whether it begins an episode. What comes back is donated.
         """
@@ -123,19 +123,9 @@ class RobotLoop(Loop):
         state, metrics = self.agent.learn(state.replace(env=after), step)
         return state, {**metrics, **outcome(action, now)}
 
-    def _learn(
-        self,
-        state: Any,
-        rows: Any,
-        action: Array,
-        got: Outcome,
-        first: Array,
-        i: Array,
-        step: Array,
-    ) -> tuple[Any, Any]:
+    def _learn(self, state: Any, rows: Any, i: Array, *decision: Any) -> tuple[Any, Any]:
         """All learners after the updates of a decision, with its metrics in row i."""
-        learned = jax.vmap(self._learned, (0, 0, 0, None, None))
-        state, metrics = learned(state, action, got, first, step)
+        state, metrics = jax.vmap(self._learned, (0, 0, 0, None, None))(state, *decision)
         return state, put(rows, metrics, i)
 
 
@@ -222,10 +212,10 @@ class RobotProgram:
     def _after(self, state: Any, rows: Any, at: int, i: int) -> tuple[Any, Any, list[float]]:
         """State and rows after the updates of decision `at`, in row i; the robot's own numbers."""
         row: Any = self.log.read(at)
-        last = self._before(row)
-        first = last is not None and last["episode"] != row["episode"]
-        numbers = np.bool_(first), np.int32(i), np.int32(at)
-        state, rows = self.learn(state, rows, *_decision(row), *numbers)
+        before = self._before(row)
+        first = before is not None and before["episode"] != row["episode"]
+        last = np.bool_(first), np.int32(at)
+        state, rows = self.learn(state, rows, np.int32(i), *_decision(row), *last)
         jax.block_until_ready(state.key)
         return state, rows, [row[name] for name in OWN.values()]
 
