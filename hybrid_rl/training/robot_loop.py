@@ -204,9 +204,9 @@ class RobotProgram:
 
     def _into(self, memory: Memory, row: Any) -> Memory:
         """The memory with a row."""
-        last: Any = self._before(row)
-        gap = last is not None and last["stretch"] < row["stretch"]
-        gap = gap and not (last["terminated"] or last["truncated"])
+        gap = False
+        if (last := self._before(row)) is not None and last["stretch"] < row["stretch"]:
+            gap = not (last["terminated"] or last["truncated"])
         return jax.block_until_ready(self.observe(memory, *_decision(row), np.bool_(gap)))
 
     def _after(self, state: Any, rows: Any, at: int, i: int) -> tuple[Any, Any, list[float]]:
