@@ -38,7 +38,7 @@ from hybrid_rl.run.logs.rows import Gathered
 from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.training.given import numbers
-from hybrid_rl.training.robot_loop import RobotLoop, flags, packed
+from hybrid_rl.training.robot_loop import RobotLoop, packed
 from hybrid_rl.types import Params
 
 MODES = ("background", "between_episodes", "inline")
@@ -196,16 +196,16 @@ class OnlineLearner:
     def _advance(self) -> bool:
         """Take one decision into the memory, or else learn once; False if nothing is left."""
         with self._lock, jax.debug_nans(False):  # in rows NaN is what does not apply
-            if self._waiting:
-                *row, first = self._waiting.popleft()
-                gap = first and self._seen > 0
-                self._state, self._rows = self._observe(
-                    self._state, self._rows, *packed(*row), *flags(gap, first, 0)
-                )
+            if self._seen < self.decisions:
+                *row, first = self._waiting[self._seen - self._learned]
+                gap = np.bool_(first and self._seen > 0)
+                memory = self._observe(self._state.memory, *packed(*row), gap)
+                self._state = self._state.replace(memory=memory)
                 self._seen += 1
             elif self._learned < self._seen:
-                step = np.int32(self._learned)
-                self._state, self._rows = self._learn(self._state, self._rows, np.int32(0), step)
+                *row, first = self._waiting.popleft()
+                made = *packed(*row), np.bool_(first), np.int32(self._learned)
+                self._state, self._rows = self._learn(self._state, self._rows, np.int32(0), *made)
                 jax.block_until_ready(self._state.key)
                 self._learned += 1
             else:
@@ -226,7 +226,7 @@ class OnlineLearner:
             CheckpointError: if the checkpoint could not be written.
         """
         path = _writable(folder)
-        while self._waiting:
+        while self._seen < self.decisions:
             self._advance()
         with lock(path, "folder"), self._lock:
             values: Any = OmegaConf.to_container(self.config)

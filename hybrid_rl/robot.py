@@ -60,7 +60,7 @@ def _learning(folder: Path) -> Actor:
     run = build_run(config)
     if not isinstance(run.agent.episode.env, Robot):
         raise UsageError(f"run={folder}: is of task={config.task}, which is no robot")
-    return Actor(run.agent, folder / "robot", run.seeds[0])
+    return Actor(run.agent, folder / "robot", run.seeds[0], most=config.total_steps)
 
 
 def _real_time() -> None:
