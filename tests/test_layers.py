@@ -46,7 +46,7 @@ CONFIG = {
 ALLOWED = {
     "types": set(),
     "errors": set(),
-    "drafts": set(),
+    "drafts": {"errors"},
     "fields": set(),
     "modules": {"errors"},
     "parts": {"errors", "fields", "modules"},  # judges names, and builds what they name
@@ -54,7 +54,7 @@ ALLOWED = {
     "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "fields", "protocols", "core", "networks"},
     "envs": {"types", "fields", "protocols", "errors", "parts", "envs"},
-    "training": {"errors", *SHARED, "envs", "data", "training"},
+    "training": {"errors", *SHARED, "drafts", "envs", "data", "training"},
     "archive": {"types", "drafts", "protocols"},
     "data": {*SHARED, "drafts", "parts", "archive"},
     "beliefs": {*SHARED, "drafts", "archive"},

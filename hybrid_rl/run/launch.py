@@ -14,6 +14,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, one_of, whole
 from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
+from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, together
@@ -107,8 +108,8 @@ def _resume(
 ) -> dict[str, Any]:
     """Continue the run, or the runs of a sweep, in the folder `resume`, as `train`."""
     parent = Path(str(wanted[0].config.resume))
-    values = folder.members(parent) or {parent: {}}
-    swept, folders = parent not in values, list(values)
+    each = folder.members(parent)
+    values, swept, folders = each or {parent: {}}, bool(each), [*map(refuse_link, each)] or [parent]
     typed = dict(zip(folders, cycle(wanted), strict=False))  # one, or one for each
 
     def settings(run_dir: Path) -> DictConfig:

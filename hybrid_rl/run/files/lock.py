@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from hybrid_rl.drafts import own_file
 from hybrid_rl.errors import UsageError
 
 LOCK = "lock"
@@ -47,10 +48,9 @@ def _open(path: Path, key: str) -> int:
     while True:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
+            handle = own_file(path, os.O_RDWR | os.O_CREAT)
         except OSError as error:
-            why = f"{LOCK} is a link" if path.is_symlink() else error.strerror
-            line = f"{key}={path.parent}: cannot be written to ({why})"
+            line = f"{key}={path.parent}: cannot be written to ({error.strerror})"
             raise UsageError(line) from error
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
