@@ -49,9 +49,11 @@ def _open(path: Path, key: str) -> int:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             handle = own_file(path, os.O_RDWR | os.O_CREAT)
-        except OSError as error:
-            line = f"{key}={path.parent}: cannot be written to ({error.strerror})"
-            raise UsageError(line) from error
+        except (OSError, ValueError) as error:  # ValueError: of a name that no file has
+            if isinstance(error, UsageError):
+                raise
+            why = getattr(error, "strerror", error)
+            raise UsageError(f"{key}={path.parent}: cannot be written to ({why})") from error
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if os.path.samestat(os.fstat(handle), path.stat()):
