@@ -84,7 +84,7 @@ IDS = [
     *("theirs.run.zz_evil:A-v0", "theirs.zz_evil:lab/A-v0", "scripts.bootstrap:A-v0"),
     *("hybrid_rl.robot:A-v0", "numpy:A-v0", "zz_mine.sub:A-v0", "__main__:A-v0"),
 ]
-PLACES = [  # where a name stands
+TREES = [  # where a name stands
     {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"wrapper": "os:system"}}},
     {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"a": [1, {"b": ["os:system"]}]}}},
     {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"env_id": "os:A-v0"}}},
@@ -142,7 +142,7 @@ def test_an_id_of_others_imports_nothing(folder, name):
     assert line.startswith(f"{folder}/config.yaml: env.id={name}: ")
 
 
-@pytest.mark.parametrize("keys", PLACES, ids=range(len(PLACES)))
+@pytest.mark.parametrize("keys", TREES, ids=range(len(TREES)))
 def test_a_name_is_judged_wherever_it_stands(folder, keys):
     assert ": is no part of hybrid_rl" in judged(folder, **keys)
 
@@ -282,7 +282,7 @@ def leaves(node: Any, path: tuple = ()) -> list[tuple]:
 
 
 def test_every_key_of_a_configuration_asks_the_rule(tmp_path):
-    """Also keys that nobody has thought of yet: all that training writes, one after another."""
+    """Also keys that are new: all that training writes, one after another."""
     tree = yaml.safe_load(written()) | {"env": EXTERNAL | {"make": "", "kwargs": {"a": [1]}}}
     paths = {path[-1]: path for path in leaves(tree)}.values()
     assert len(paths) > 70
