@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -146,7 +147,7 @@ def test_a_name_is_judged_wherever_it_stands(folder, keys):
 def test_a_policy_names_no_code_of_others(tmp_path, monkeypatch, keys, name):
     """Whether it acts, or teaches in the configuration of another run."""
     monkeypatch.chdir(tmp_path)
-    arrays = dict(np.load(archive.find("policies/lander.npz")))
+    arrays: Any = dict(np.load(archive.find("policies/lander.npz")))
     about = json.loads(str(arrays["about"]))
     about["env"] = EXTERNAL | {"id": "", "make": "", "kwargs": {"cmd": "touch ran"}}
     about["env"] |= {keys: {"cmd": name}} if keys == "kwargs" else {keys: name}
@@ -160,7 +161,7 @@ def test_a_policy_names_no_code_of_others(tmp_path, monkeypatch, keys, name):
 
 @pytest.mark.parametrize("key", ["env", "objective", "new"])
 def test_a_policy_has_no_interpolations(tmp_path, key):
-    arrays = dict(np.load(archive.find("policies/lander.npz")))
+    arrays: Any = dict(np.load(archive.find("policies/lander.npz")))
     about = json.loads(str(arrays["about"]))
     about[key] = about.get(key, {}) | {"task": "${oc.env:HOME}"}
     np.savez(tmp_path / "a.npz", **arrays | {"about": np.array(json.dumps(about))})
