@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hybrid_rl.drafts import own_file
 from hybrid_rl.types import Spec
 
 
@@ -44,7 +45,7 @@ class RowLog:
     def __init__(self, file: Path, spec: Spec) -> None:
         """Open or create the file."""
         self.kind = row_type(spec)
-        self._file = os.open(file, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
+        self._file = own_file(file, os.O_RDWR | os.O_CREAT | os.O_APPEND)
 
     def count(self) -> int:
         """Rows in the file."""

@@ -30,7 +30,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame, one_line
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
-from hybrid_rl.training.robot_process import WAITING
+from hybrid_rl.training.robot_process import WAITING, report
 from hybrid_rl.types import Params
 
 RESET_S = 120.0  # [s] that a robot's `reset` may take
@@ -221,7 +221,7 @@ class Actor:
         """
         self.robot.stop()
         line = f"{self.env.name}: {why}"
-        (self.folder / "error").write_text(line + WAITING)
+        report(self.folder, line + WAITING)
         self._since = min(self._since, time.monotonic())
         while not self._over():
             if time.monotonic() - self._since > self.env.alone_s:
@@ -266,7 +266,7 @@ class Actor:
             time.sleep(0.05)
             if time.monotonic() - self._beat > self._allowed:
                 line = f"{self.env.name}: {self._in}: did not return in {self._allowed:g} s"
-                (self.folder / "error").write_text(line)
+                report(self.folder, line)
                 try:
                     self.robot.stop()
                 finally:
