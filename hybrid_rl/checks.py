@@ -41,6 +41,14 @@ KINDS = {  # type of a part's field -> its name in messages
 }
 
 
+def check_words(config: DictConfig) -> None:
+    """Raise UsageError for a word that becomes a folder, or an override, and is no plain one."""
+    for key in ("task", "algo", "policy_learning"):
+        if not NAME.fullmatch(str(config.get(key))):
+            line = "must be letters, digits, _, . and -"
+            raise UsageError(f"{key}={printable(config[key])}: {line}")
+
+
 def check(config: DictConfig) -> None:
     """Raise UsageError for a value that no run accepts; parts check their own ranges."""
     for key in SECTIONS:
@@ -51,10 +59,7 @@ def check(config: DictConfig) -> None:
         raise UsageError("env: lacks _target_; write _target_: MODULE.CLASS, as in my_world.World")
     _check_parts(config)
     parts.check(OmegaConf.to_container(config))
-    for key in ("task", "algo"):
-        if not NAME.fullmatch(str(config[key])):
-            line = "must be letters, digits, _, . and -"
-            raise UsageError(f"{key}={printable(config[key])}: {line}")
+    check_words(config)
     check_kinds(OmegaConf.create({"env": config.env}))  # first, as other parts hold copies of it
     _check_planned(config)
     for key in COUNTS:

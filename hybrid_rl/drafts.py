@@ -1,10 +1,55 @@
-"""Files that are written whole: a draft beside a file replaces it once it is complete."""
+"""Files of runs: written whole, by a draft that replaces them, or opened; no link is followed.
 
+A run folder may come from anybody. A link in it would lead a writer to a file of somebody else.
+"""
+
+import errno
 import os
 import secrets
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
+
+from hybrid_rl.errors import UsageError
+
+NO_WAIT, NO_LINK = getattr(os, "O_NONBLOCK", 0), getattr(os, "O_NOFOLLOW", 0)
+
+
+def own_file(file: Path, flags: int) -> int:
+    """A handle of a file of a run; flags: as of `os.open`.
+
+    Raises:
+        UsageError: for a link, a pipe or a device, behind which something else may be lost.
+    """
+    try:
+        handle = os.open(file, flags | NO_LINK | NO_WAIT, 0o666)
+        if stat.S_ISREG(os.fstat(handle).st_mode):
+            return handle
+        os.close(handle)
+    except OSError as error:
+        if error.errno not in (errno.ELOOP, errno.ENXIO):
+            raise
+    raise UsageError(f"{file}: is a link, or no plain file; a run has its own files")
+
+
+def open_own(file: Path, mode: str = "ab", **how: Any) -> Any:
+    """A file of a run, as `open`, but that no link is followed; errors as `own_file`."""
+    return open(file, mode, opener=lambda path, flags: own_file(Path(path), flags), **how)
+
+
+def refuse_link(folder: Path) -> Path:
+    """A folder in that of a run, which may not be there; UsageError for a link."""
+    if folder.is_symlink():
+        raise UsageError(f"{folder}: is a link; a run has its own folders")
+    return folder
+
+
+def own_folder(folder: Path) -> Path:
+    """A folder in that of a run, made if there is none, but not its parents; as `refuse_link`."""
+    refuse_link(folder).mkdir(exist_ok=True)
+    return folder
 
 
 @contextmanager

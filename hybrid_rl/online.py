@@ -17,13 +17,14 @@ in every `observe`, as in training.
 import threading
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Self
 
 import jax
 import numpy as np
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check
@@ -33,12 +34,13 @@ from hybrid_rl.run import folder as run_folder
 from hybrid_rl.run.checkpoints import checkpoint
 from hybrid_rl.run.checkpoints.store import Record, Store
 from hybrid_rl.run.files.lock import lock
-from hybrid_rl.run.logs.records import flatten_keys
+from hybrid_rl.run.job import written
+from hybrid_rl.run.launch import fits, refuse_edits
 from hybrid_rl.run.logs.rows import Gathered
-from hybrid_rl.run.machine.jax_settings import prepare, refuse_x64
+from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.training.decider import Decider
 from hybrid_rl.training.given import numbers
-from hybrid_rl.training.robot_loop import RobotLoop, flags, packed
+from hybrid_rl.training.robot_loop import RobotLoop, packed
 from hybrid_rl.types import Params
 
 MODES = ("background", "between_episodes", "inline")
@@ -83,8 +85,8 @@ class OnlineLearner:
         self.config = _config(method, {"obs": obs, "act": act, "dt": dt}, seed, config_dir)
         check(self.config)
         prepare(self.config)
-        refuse_x64()
         run = configuration.build(self.config)
+        fits([run])
         self._loop = RobotLoop(run.agent, run.seeds, 1)
         self._mode, self._lock, self._spec = learn, threading.Lock(), run.agent.spec
         self._state = self._loop.init()
@@ -98,8 +100,7 @@ class OnlineLearner:
     def _start(self, decisions: int) -> None:
         """Begin to learn after so many decisions, in a new episode."""
         self.decisions = self._seen = self._learned = self._began = decisions
-        self._first, self._handed, self._error = True, 0.0, None
-        self._closed = False
+        self._first, self._handed, self._error, self._closed = True, 0.0, None, False
         self._params = self._newest()
         if self._mode == "background":
             self._thread = threading.Thread(target=self._follow, daemon=True)
@@ -196,16 +197,16 @@ class OnlineLearner:
     def _advance(self) -> bool:
         """Take one decision into the memory, or else learn once; False if nothing is left."""
         with self._lock, jax.debug_nans(False):  # in rows NaN is what does not apply
-            if self._waiting:
-                *row, first = self._waiting.popleft()
-                gap = first and self._seen > 0
-                self._state, self._rows = self._observe(
-                    self._state, self._rows, *packed(*row), *flags(gap, first, 0)
-                )
+            if self._seen < self.decisions:
+                *row, first = self._waiting[self._seen - self._learned]
+                gap = np.bool_(first and self._seen > 0)
+                memory = self._observe(self._state.memory, *packed(*row), gap)
+                self._state = self._state.replace(memory=memory)
                 self._seen += 1
             elif self._learned < self._seen:
-                step = np.int32(self._learned)
-                self._state, self._rows = self._learn(self._state, self._rows, np.int32(0), step)
+                *row, first = self._waiting.popleft()
+                made = *packed(*row), np.bool_(first), np.int32(self._learned)
+                self._state, self._rows = self._learn(self._state, self._rows, np.int32(0), *made)
                 jax.block_until_ready(self._state.key)
                 self._learned += 1
             else:
@@ -225,15 +226,12 @@ class OnlineLearner:
             UsageError: if it cannot be written to, or holds another kind of run.
             CheckpointError: if the checkpoint could not be written.
         """
-        path = _writable(folder)
-        while self._waiting:
+        while self._seen < self.decisions:
             self._advance()
-        with lock(path, "folder"), self._lock:
-            values: Any = OmegaConf.to_container(self.config)
-            store = Store(path / "checkpoints", self._loop, True, flatten_keys(values))
+        with _writable(folder) as path, self._lock:
+            store = Store(path / "checkpoints", self._loop, True, written(self.config))
             store.known = set(checkpoint.steps(store.folder))
-            record = Record([[]], [None], step=self._seen)
-            store.save(self._state, Gathered(), record)
+            store.save(self._state, Gathered(), Record([[]], [None], step=self._seen))
             run_folder.write(path, self.config)
 
     @classmethod
@@ -249,6 +247,7 @@ class OnlineLearner:
             raise UsageError(f"folder={folder}: was not written by OnlineLearner.save")
         learner = cls(config, learn=learn)
         learner.close()
+        refuse_edits(config, Path(folder))
         store = Store(Path(folder) / "checkpoints", learner._loop, True, {})
         learner._state, _, record, _ = store.restore()
         learner._start(record.step)
@@ -275,16 +274,17 @@ class OnlineLearner:
             raise UsageError("this learner is closed")
 
 
-def _writable(folder: Path | str) -> Path:
-    """The folder, unless it holds a run that `OnlineLearner.save` has not written."""
-    path = Path(folder)
+@contextmanager
+def _writable(folder: Path | str) -> Iterator[Path]:
+    """The folder, locked, unless it holds a run that `OnlineLearner.save` has not written."""
     if not str(folder):
         raise UsageError("folder=: give the folder that save writes")
-    if (path / "config.yaml").exists():
-        env = run_folder.parse_config(path, "folder").get("env")
-        if (env or {}).get("_target_") != OUTSIDE:
-            raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
-    return path
+    with lock(Path(folder), "folder") as path:
+        if (path / "config.yaml").exists():
+            env = run_folder.parse_config(path, "folder").get("env")
+            if (env or {}).get("_target_") != OUTSIDE:
+                raise UsageError(f"folder={path}: holds a run that train wrote; choose another")
+        yield path
 
 
 def _config(method: Any, sizes: dict[str, Any], seed: int, config_dir: Any) -> DictConfig:

@@ -1,55 +1,62 @@
-"""What a file may build: parts of this package, and those in the user's own folders.
+"""Code that a file may name: parts of this package, and what the user's own modules define.
 
-A configuration or a description names a part by `_target_: MODULE.CLASS`, next to its fields. It
-may come from anybody, so every name is judged before anything is imported. A part is
+A configuration or a description names a part by `_target_: MODULE.CLASS`, next to its fields, and
+what makes an environment by MODULE:NAME, under any key. It may come from anybody, so the whole tree
+is judged before anything is imported. A name leads to
 
-    a dataclass of hybrid_rl.ROOM, or
-    a class that a module of the user defines, which Python finds in a folder on PYTHONPATH or in
-    the current one, not among installed packages; and not in the run that names it.
+    a dataclass of hybrid_rl.ROOM; by MODULE:NAME a class of hybrid_rl.envs or gymnasium.envs, or
+    what a module of the user defines, a class or by MODULE:NAME a function, which Python finds in a
+    folder on PYTHONPATH or in the current one, not among installed packages; and not in the run
+    that names it. MODULE:ID may also be of an installed package that depends on Gymnasium.
+
+MODULE:NAME that the user types, or gives from Python, may be any. `imported` alone follows one.
 """
 
 import ast
-import os
-import sys
-import sysconfig
-from collections.abc import Iterator
+import re
+from collections.abc import Collection, Iterator
 from dataclasses import fields, is_dataclass
-from functools import cache
 from importlib import import_module
-from importlib.machinery import PathFinder
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.errors import FAULTS, GYMNASIUM, UsageError, printable, relative, user_line
+from hybrid_rl import modules
+from hybrid_rl.errors import FAULTS, UsageError, printable, relative, user_line
 from hybrid_rl.fields import FieldError, choices, method_of
+from hybrid_rl.modules import NONE, OTHER, PACKAGE
 
 TARGET, OURS = "_target_", "hybrid_rl."
-PACKAGE = Path(__file__).parent
+NAMED = re.compile(r"([^\W\d][\w.]*):([^\W\d][\w./-]*)")  # MODULE:NAME, MODULE:ID
+ANYWHERE = re.compile(rf"(?<![\w.])(?={NAMED.pattern})")  # in a text
 PART_FOLDERS = (  # folders of hybrid_rl that hold parts
     *("beliefs", "constraints", "controllers", "core", "critics", "data", "envs", "features"),
     *("learners", "models", "objectives", "policies", "proposals", "rewards", "schedules"),
     "targets",
     "training",
 )
-NONE = "is no part of hybrid_rl"
-OTHER = f"{NONE}; put its folder on PYTHONPATH if it is yours"
 DEEPEST, SHOWN = 40, 60  # names in a key; characters of a name in a message
 
 
-def targets(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
-    """Every `_target_` in a tree of dicts and lists, with its full key; outer ones first.
+def leaves(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
+    """Every `_target_` and text in a tree of dicts and lists, with its full key; outer ones first.
 
     Raises:
         UsageError: for a tree that is nested too deeply.
     """
     if where.count(".") > DEEPEST:
         raise UsageError(f"{printable(where)[:SHOWN]}...: is nested too deeply")
-    if isinstance(node, dict) and TARGET in node:
-        yield f"{where}{TARGET}", node[TARGET]
-    for name, value in node.items() if isinstance(node, dict) else enumerate(node):
+    pairs = [*(node.items() if isinstance(node, dict) else enumerate(node))]
+    for name, value in pairs:
+        if name == TARGET or isinstance(value, str):
+            yield f"{where}{name}", value
+    for name, value in pairs:
         if isinstance(value, (dict, list)):
-            yield from targets(value, f"{where}{name}.")
+            yield from leaves(value, f"{where}{name}.")
+
+
+def targets(node: Any) -> Iterator[tuple[str, Any]]:
+    """Every `_target_` in a tree; errors as `leaves`."""
+    return ((key, name) for key, name in leaves(node) if f".{key}".endswith(f".{TARGET}"))
 
 
 def asked(node: Any, of: str = "${env}") -> set[str]:
@@ -67,16 +74,33 @@ def asked(node: Any, of: str = "${env}") -> set[str]:
 def check(node: Any, near: Path | None = None) -> None:
     """Judge every name in a tree of dicts and lists; only modules of this package are imported.
 
-    near: the run folder or the file that the tree comes from; None: from the user.
+    near: the run folder or the file that the tree comes from; None: from the user, who may write
+    any MODULE:NAME.
 
     Raises:
         UsageError: for a name that is no part's; the line begins with KEY=NAME; or too deep a tree.
     """
-    for key, target in targets(node):
+    for key, name in leaves(node) if near else targets(node):
         try:
-            part_class(target) if str(target).startswith(OURS) else _source(target, near)
+            if not f".{key}".endswith(f".{TARGET}"):
+                _judge(name, near)
+            elif str(name).startswith(OURS):
+                part_class(name)
+            else:
+                _source(name, near)
         except ValueError as error:
-            raise UsageError(f"{printable(key)}={printable(target)[:SHOWN]}: {error}") from error
+            raise UsageError(f"{printable(key)}={printable(name)[:SHOWN]}: {error}") from error
+
+
+def imported(text: str) -> tuple[Any, str]:
+    """The module of MODULE:NAME or MODULE:ID, and what follows the colon.
+
+    Raises:
+        ValueError: for another form, which `check` would not have judged.
+    """
+    if not (found := NAMED.fullmatch(text)):
+        raise ValueError("give MODULE:NAME")
+    return import_module(found[1]), found[2]
 
 
 def part_class(target: Any, near: Path | None = None) -> Any:
@@ -142,24 +166,38 @@ def _source(target: Any, near: Path | None) -> Path:
         raise ValueError(OTHER)
     if names[0] == "hybrid_rl":
         return _ours(names[1:])
-    source = _theirs(names, near)
-    try:
-        tree = ast.parse(source.read_bytes(), str(source))
-    except SyntaxError as error:
-        raise ValueError(user_line(error)) from error
-    nodes = list(ast.walk(tree))
-    known = {node.name for node in nodes if isinstance(node, ast.ClassDef)}
-    for node in nodes:
-        if isinstance(node, ast.ImportFrom):
-            known |= {alias.asname or alias.name for alias in node.names}
-    if name not in known:
+    source = modules.theirs(names, near)
+    if not modules.defines(names, source, name, ast.ClassDef):
         raise ValueError(f"{relative(source)} has no class {name}")
     return source
 
 
-def _ours(names: list[str]) -> Path:
-    """The file of the module hybrid_rl.NAMES, which must lie in one of PART_FOLDERS."""
-    if len(names) < 2 or names[0] not in PART_FOLDERS:
+def _judge(text: str, near: Path | None) -> None:
+    """ValueError for a text of a file with an interpolation, or MODULE:NAME that it may not name.
+
+    A module that Python does not find leads nowhere.
+    """
+    if "${" in text:
+        raise ValueError("is an interpolation; it must be a plain value")
+    for module, name in ANYWHERE.findall(text):
+        names, kinds = module.split("."), (ast.ClassDef,)
+        if names[0] == "hybrid_rl":
+            source = _ours(names[1:], ("envs",))
+        elif names[:2] == ["gymnasium", "envs"]:
+            source = modules.below(names)
+        elif modules.absent(names[0]) or (not name.isidentifier() and modules.registers(names)):
+            continue
+        else:
+            source = modules.theirs(names, near)
+            kinds = (ast.ClassDef, ast.FunctionDef)
+        if name.isidentifier() and not modules.defines(names, source, name, *kinds):
+            kind = "class" if len(kinds) == 1 else "class or function"
+            raise ValueError(f"{relative(source)} has no {kind} {name}")
+
+
+def _ours(names: list[str], rooms: Collection[str] = PART_FOLDERS) -> Path:
+    """The file of the module hybrid_rl.NAMES, which must lie in one of `rooms`."""
+    if len(names) < 2 or names[0] not in rooms:
         raise ValueError(NONE)
     for parent in (PACKAGE, PACKAGE.parent) if names[0] == "envs" else (PACKAGE,):
         path = parent.joinpath(*names)
@@ -167,51 +205,3 @@ def _ours(names: list[str]) -> Path:
             if source.is_file():
                 return source.resolve()
     raise ValueError(NONE)
-
-
-def _theirs(names: list[str], near: Path | None) -> Path:
-    """The file of a module of the user; ValueError if there is none."""
-    if names[0] == "gymnasium":
-        raise ValueError(f"makes {GYMNASIUM}")
-    try:
-        spec = find_spec(names[0])  # of the first name alone, so that nothing is imported
-    except (ImportError, ValueError, AttributeError):
-        spec = None
-    if spec is None:
-        raise ValueError(OTHER)
-    tops = [Path(top).absolute() for top in spec.submodule_search_locations or [spec.origin or ""]]
-    if not all(_of_user(top.parent) for top in tops):
-        raise ValueError(OTHER)
-    if near is not None and any(_together(top, near.resolve()) for top in tops):
-        raise ValueError(f"is code beside what names it; move {near} out of {tops[0]}")
-    for number in range(2, len(names) + 1):
-        below = spec.submodule_search_locations
-        spec = below and PathFinder.find_spec(".".join(names[:number]), list(below))
-        if spec is None:
-            raise ValueError(OTHER)
-    source = Path(spec.origin or "")
-    if source.suffix != ".py" or not source.is_file():
-        raise ValueError(OTHER)
-    return source.resolve()
-
-
-def _together(top: Path, near: Path) -> bool:
-    """Whether one of the two paths lies in the other."""
-    top = top.parent.resolve() / top.name
-    return top == near or top in near.parents or near in top.parents
-
-
-def _of_user(folder: Path) -> bool:
-    """Whether a folder is on Python's path, and not of Python or of installed packages."""
-    folder = folder.resolve()
-    if not any(folder == Path(entry or os.curdir).resolve() for entry in sys.path):
-        return False
-    installed = {"site-packages", "dist-packages"} & {*folder.parts}
-    return not installed and not any(own in (folder, *folder.parents) for own in _of_python())
-
-
-@cache
-def _of_python() -> tuple[Path, ...]:
-    """The folders of Python itself."""
-    names = ("stdlib", "platstdlib", "scripts")
-    return tuple(Path(sysconfig.get_path(name)).resolve() for name in names)

@@ -25,6 +25,7 @@ import jax
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import MODE, Argument, flag, number, read
+from hybrid_rl.drafts import refuse_link
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import UsageError
 from hybrid_rl.run import folder as run_folder
@@ -32,6 +33,7 @@ from hybrid_rl.run.files.lock import lock
 from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.trained import build_run, load
 from hybrid_rl.training.actor import LOST, Actor
+from hybrid_rl.training.robot_process import report
 
 HIGHER = 10  # priority of the robot's process, where the system allows it
 ARGUMENTS = (
@@ -60,7 +62,7 @@ def _learning(folder: Path) -> Actor:
     run = build_run(config)
     if not isinstance(run.agent.episode.env, Robot):
         raise UsageError(f"run={folder}: is of task={config.task}, which is no robot")
-    return Actor(run.agent, folder / "robot", run.seeds[0])
+    return Actor(run.agent, folder / "robot", run.seeds[0], most=config.total_steps)
 
 
 def _real_time() -> None:
@@ -81,7 +83,7 @@ def main() -> None:
             raised()
             break
     folder = Path(given["run"])
-    files = folder / "robot"
+    files = refuse_link(folder / "robot")
     if not files.is_dir():
         raise UsageError(f"run={folder}: holds no run of task=robot")
     with lock(files, "run"):
@@ -89,11 +91,10 @@ def main() -> None:
         _move(
             _learning(folder) if given["learning"] else _trained(folder, given["mode"]),
             given,
-            files,
         )
 
 
-def _move(actor: Actor, given: dict[str, Any], files: Path) -> None:
+def _move(actor: Actor, given: dict[str, Any]) -> None:
     """Run the actor, and say what became of it."""
 
     def ask(number: int, frame: Any) -> None:
@@ -104,10 +105,10 @@ def _move(actor: Actor, given: dict[str, Any], files: Path) -> None:
     try:
         actor.run(given["seconds"])
     except UsageError as error:
-        (files / "error").write_text(str(error))
+        report(actor.folder, str(error))
         raise
     except TimeoutError as error:
-        (files / "error").write_text(str(error))
+        report(actor.folder, str(error))
         print(f"hybrid_rl: {error}", file=sys.stderr)
         sys.exit(LOST)
     counts = actor.counts

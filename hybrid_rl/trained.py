@@ -20,6 +20,7 @@ import numpy as np
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
+from hybrid_rl import parts
 from hybrid_rl.checks import check
 from hybrid_rl.config import Run
 from hybrid_rl.controllers.policy import PolicyController
@@ -200,7 +201,7 @@ def read(name: str) -> Trained:
         arrays = archive.read(prefix, file, hint=known)
         if archive.ABOUT not in arrays:
             raise UsageError(f"{prefix} has no description; write it again with `demonstrate`")
-        about = _described(prefix, str(arrays[archive.ABOUT]))
+        about = _described(prefix, str(arrays[archive.ABOUT]), archive.find(file))
         prepare(configuration.load([]))
         return _trained(prefix, str(file), str(arrays["task"]), about)
     except UsageError:
@@ -258,8 +259,8 @@ def _models(prefix: str, file: str, task: str, env: Any, about: dict[str, Any]) 
     return {"reward": found.pop("reward_model"), **found}
 
 
-def _described(prefix: str, text: str) -> dict[str, Any]:
-    """`about` of a file."""
+def _described(prefix: str, text: str, file: Path) -> dict[str, Any]:
+    """`about` of a file, whose names are judged."""
     try:
         about = from_json(text)
     except ValueError as error:
@@ -270,6 +271,10 @@ def _described(prefix: str, text: str) -> dict[str, Any]:
         raise UsageError(f"{prefix} its description lacks {', '.join(missing)}")
     if wrong := [key for key, kind in kinds.items() if type(about[key]) is not kind]:
         raise UsageError(f"{prefix} {wrong[0]} of its description is of a wrong kind")
+    try:
+        parts.check({**about, "command": ""}, file)  # which is only shown
+    except UsageError as error:
+        raise UsageError(f"{prefix} {error}") from error
     return about
 
 

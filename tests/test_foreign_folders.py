@@ -9,6 +9,7 @@ from foreign import METRIC, ROW, made, no_plain_file, refused
 from tiny import call, only_line
 
 from hybrid_rl import figures, report
+from hybrid_rl.analysis import long_table
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.errors import UsageError
@@ -146,3 +147,39 @@ def test_a_run_without_a_finite_evaluation_has_no_curve(folder, capfd):
     line = [f"runs={folder}", METRIC, "out=a.png"]
     assert call(lambda: command.run(figures.main), *line) == 2
     assert "metric=eval/return: has no finite value in these runs" in only_line(capfd)
+
+
+HEAD = "exp_name,env_name,seed,metric,env_step,value\n"
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("a,pendulum,0,m,1,1e308\n", "no row's metric is m"),
+        ("a,pendulum,0,m,1e400,1\n", "no row's metric is m"),
+        ("a,pendulum,0,m,nan,1\n", "no row's metric is m"),
+        ("a,pendulum,0,m,1,nan\na,pendulum,0,m,1,2\n", ""),
+        ("a,pendulum,0,m,1," + "x" * 2_000_000, "must have the columns"),
+        ("a,pendulum," + "9" * 5000 + ",m,1,1\n", "must have the columns"),
+        ("a,pendulum,0\n", "must have the columns"),
+        ("\0", "must have the columns"),
+        ("\ud800", "is not text"),
+        ("device", "no plain file"),
+        ("pipe", "no plain file"),
+        ("large", "is larger than 32 MB"),
+    ],
+    ids=range(12),
+)
+def test_a_table_of_others_is_read_within_limits(tmp_path, rows, words):
+    file = tmp_path / "theirs.csv"
+    if rows in ("device", "pipe"):
+        no_plain_file(file, rows)
+    else:
+        file.write_bytes((HEAD + rows).encode("utf-8", "surrogatepass"))
+    if rows == "large":
+        os.truncate(file, 10**9)
+    if not words:
+        assert [one.each.tolist() for one in long_table.read(file, "m", ["pendulum"])] == [[[2]]]
+        return
+    with pytest.raises(UsageError, match=f"^others={file}: .*{words}"):
+        long_table.read(file, "m", ["pendulum"])

@@ -1,6 +1,6 @@
 """Which layers import which, the size of files, and the bugs that scripts/mutants.py plants.
 
-types, errors, drafts, fields, parts
+types, errors, drafts, fields, modules, parts
       ^
 core, networks
       ^
@@ -9,7 +9,8 @@ models controllers ... data <- training <- config <- run <- trained <- analysis 
 parts never import each other: YAML files combine them; some read files by data/archive
 a part may be a folder, whose files import each other
 
-envs -> types, fields, protocols, errors; of parts, doctor and benchmark import controllers alone
+envs -> types, fields, protocols, errors, parts.py; of parts, doctor and benchmark import
+controllers alone
 """
 
 import ast
@@ -35,7 +36,7 @@ LAYER_FILES = {
     "config",
     "overrides",
 }
-LAYER_FILES |= {"overrides", "parts", "renamed", "trained"}
+LAYER_FILES |= {"modules", "overrides", "parts", "renamed", "trained"}
 SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
     *("types", "drafts", "fields", "protocols", "errors", "parts", "networks", "envs"),
@@ -45,14 +46,15 @@ CONFIG = {
 ALLOWED = {
     "types": set(),
     "errors": set(),
-    "drafts": set(),
+    "drafts": {"errors"},
     "fields": set(),
-    "parts": {"errors", "fields"},  # judges names, and builds what they name
+    "modules": {"errors"},
+    "parts": {"errors", "fields", "modules"},  # judges names, and builds what they name
     "protocols": {"types", "fields", "protocols"},
     "core": {"types", "fields", "protocols", "core"},
     "networks": {"types", "fields", "protocols", "core", "networks"},
-    "envs": {"types", "fields", "protocols", "errors", "envs"},
-    "training": {"errors", *SHARED, "envs", "data", "training"},
+    "envs": {"types", "fields", "protocols", "errors", "parts", "envs"},
+    "training": {"errors", *SHARED, "drafts", "envs", "data", "training"},
     "archive": {"types", "drafts", "protocols"},
     "data": {*SHARED, "drafts", "parts", "archive"},
     "beliefs": {*SHARED, "drafts", "archive"},

@@ -218,3 +218,28 @@ def _shared():
     if not SHARED:
         SHARED.append(made())
     return SHARED[0]
+
+
+def test_a_checkpoint_of_another_run_is_one_line(tmp_path):
+    """Its config.yaml says what it was trained with, and so does the checkpoint."""
+    learner = made()
+    drive(learner, 3)
+    learner.save(tmp_path / "a")
+    text = (tmp_path / "a" / "config.yaml").read_text()
+    for key, now in (("total_steps: 100", "10"), ("capacity: 1000000", "5"), ("obs: 2", "3")):
+        assert key in text
+        edited = text.replace(key, f"{key.partition(' ')[0]} {now}")
+        (tmp_path / "a" / "config.yaml").write_text(edited)
+        with pytest.raises(UsageError, match=f"was {key.partition(' ')[2]} and is {now}; put it"):
+            OnlineLearner.load(tmp_path / "a", "inline")
+
+
+def test_a_world_too_large_for_the_memory_is_one_line():
+    with pytest.raises(UsageError, match=r"would take [\d,.]+ GB and there are"):
+        OnlineLearner(METHOD, obs=10**9, act=1)
+
+
+@pytest.mark.parametrize("name", ["a\0b", "x" * 300])
+def test_a_name_that_no_folder_has_is_one_line(tmp_path, name):
+    with pytest.raises(UsageError, match=r"folder=.*: cannot be written to \("):
+        made().save(tmp_path / name)

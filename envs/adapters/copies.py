@@ -137,7 +137,7 @@ class Copies:
         except UsageError:
             raise
         except multiprocessing.TimeoutError as error:
-            self.close(terminate=True)
+            self._kill()
             line = f"{self.env.name}: {method}: took longer than env.timeout_s"
             raise WorldError(f"{line}={self.env.timeout_s}") from error
         except FAULTS as error:
@@ -148,17 +148,24 @@ class Copies:
 
     def _lost(self) -> str:
         """End all processes after one of them; how that one ended."""
-        if (vector := vars(self).pop("_vector", None)) is None:
+        if "_vector" not in vars(self):
             return "a process did not begin"
-        ended = wait([process.sentinel for process in vector.processes], timeout=1)
-        for each in (each for each in vector.processes if each.sentinel in ended):
+        processes = self._vector.processes
+        ended = wait([process.sentinel for process in processes], timeout=1)
+        for each in (each for each in processes if each.sentinel in ended):
             each.join(timeout=1)  # the sentinel is closed a moment before there is an exit code
-        codes = [each.exitcode for each in vector.processes if each.exitcode is not None]
-        for process in vector.processes:
-            process.terminate()
-        vector.closed = True  # its own `close` would ask the one that is gone
+        codes = [each.exitcode for each in processes if each.exitcode is not None]
+        self._kill()
         line = f"its process ended with exit code {codes[0] if codes else 'unknown'}"
         return f"{line}, as after out of memory" if set(codes) == {-signal.SIGKILL} else line
+
+    def _kill(self) -> None:
+        """End all processes, also those that are stopped or do not answer."""
+        vector = vars(self).pop("_vector")
+        for process in vector.processes:
+            process.kill()
+            process.join()
+        vector.closed = True  # its own `close` would ask them
 
     def _observed(self, method: str, obs: Any) -> np.ndarray:
         """A copy of the observations, which an environment may overwrite, as float32 [N, o]."""
@@ -171,11 +178,11 @@ class Copies:
             raise WorldError(f"{self.env.name}: {method}: entry {entry} of obs is not finite")
         return copy
 
-    def close(self, **options: Any) -> None:
+    def close(self) -> None:
         """End the environments, and their processes."""
         if "_vector" in vars(self):
             with self._quiet():
-                vars(self).pop("_vector").close(**options)
+                vars(self).pop("_vector").close()
 
     @contextmanager
     def _quiet(self) -> Iterator[None]:

@@ -26,7 +26,7 @@ from gymnasium.wrappers import FlattenObservation, TimeLimit
 from jax import Array
 
 from hybrid_rl.envs.adapters.copies import PICTURE, Copies
-from hybrid_rl.envs.adapters.unstepped import Made, import_named
+from hybrid_rl.envs.adapters.unstepped import Made, import_named, registered
 from hybrid_rl.envs.contract import check
 from hybrid_rl.envs.mujoco import offscreen
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame
@@ -114,7 +114,7 @@ class External(Made):
         given: dict[str, Any] = {**(self.kwargs or {}), **drawn}
         if not self.make:
             options: dict[str, Any] = {"disable_env_checker": True, "max_episode_steps": -1}
-            env = gymnasium.make(self.id, **options, **given)
+            env = gymnasium.make(registered(self.id), **options, **given)
         else:
             try:
                 env = import_named(self.make)(**given)

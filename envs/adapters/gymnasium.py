@@ -17,7 +17,6 @@ Source: Gymnasium's documentation, "Env", "VectorEnv".
 
 from collections.abc import Callable, Sequence
 from functools import cache, partial
-from importlib import import_module
 from typing import Any, ClassVar
 
 import gymnasium
@@ -34,6 +33,7 @@ from hybrid_rl.envs.adapters.packed import Packed, pack, unpack
 from hybrid_rl.envs.gym import time_limit
 from hybrid_rl.envs.mujoco.offscreen import Canvas
 from hybrid_rl.envs.mujoco.scenery import pose_of, scene_of
+from hybrid_rl.parts import part_class
 from hybrid_rl.protocols import Env
 from hybrid_rl.types import EnvState
 
@@ -42,23 +42,18 @@ FLAG = "success"  # the metric that is yes or no
 
 
 def make(world: str, render_mode: str | None = None, **fields: Any) -> "GymnasiumEnv":
-    """The environment of the class `world`, MODULE.CLASS; `gymnasium.make` adds the time limit.
+    """The environment of the part `world`, MODULE.CLASS; `gymnasium.make` adds the time limit.
 
     fields: of the environment.
     """
-    return GymnasiumEnv(_world(world, fields), 0, render_mode)
+    return GymnasiumEnv(part_class(world)(**fields), 0, render_mode)
 
 
 def make_vec(
     world: str, num_envs: int = 1, max_episode_steps: int = 0, **fields: Any
 ) -> "GymnasiumVectorEnv":
-    """`num_envs` environments of the class `world`, MODULE.CLASS. fields: of each environment."""
-    return GymnasiumVectorEnv(_world(world, fields), num_envs, max_episode_steps)
-
-
-def _world(name: str, fields: dict[str, Any]) -> Env:
-    module, _, kind = name.rpartition(".")
-    return getattr(import_module(module), kind)(**fields)
+    """`num_envs` environments of the part `world`, MODULE.CLASS. fields: of each environment."""
+    return GymnasiumVectorEnv(part_class(world)(**fields), num_envs, max_episode_steps)
 
 
 def _spaces(env: Env) -> tuple[Box, Box]:

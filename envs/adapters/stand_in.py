@@ -15,6 +15,7 @@ import socket
 import struct
 import time
 from collections import deque
+from contextlib import suppress
 from typing import Any, ClassVar
 
 import gymnasium
@@ -23,6 +24,7 @@ import numpy as np
 OBSERVED, MOVED = struct.Struct("<qqdf"), struct.Struct("<cq")
 ACTION, RESET, UNPLUG = b"a", b"r", b"u"
 DEAF_S = 0.25  # [s] without an action, after which the stand-in lets go
+DEAF_MOST_S = 60.0  # [s] of one `unplug`
 BEHIND = 20  # steps behind the clock, after which it begins again
 
 
@@ -42,7 +44,6 @@ class StandIn:
         self._socket.setblocking(False)
         self._socket.connect(("127.0.0.1", port))
         self._newest: tuple[int, int, float, np.ndarray] | None = None
-        self._sent = time.monotonic_ns()
 
     def reset(self) -> None:
         """Begin an episode.
@@ -50,8 +51,7 @@ class StandIn:
         Raises:
             ConnectionError: if the stand-in does not answer within two seconds.
         """
-        self._sent += 1
-        wanted, until = self._sent, time.monotonic() + 2
+        wanted, until = time.monotonic_ns(), time.monotonic() + 2
         while time.monotonic() < until:
             self._send(MOVED.pack(RESET, wanted))
             time.sleep(0.02)
@@ -73,8 +73,7 @@ class StandIn:
 
     def apply(self, action: np.ndarray) -> None:
         """Send an action [m]."""
-        self._sent += 1
-        self._send(MOVED.pack(ACTION, self._sent) + np.asarray(action, "<f4").tobytes())
+        self._send(MOVED.pack(ACTION, time.monotonic_ns()) + np.asarray(action, "<f4").tobytes())
 
     def stop(self) -> None:
         """Send the safe action, more than once, as datagrams may be lost."""
@@ -86,7 +85,8 @@ class StandIn:
         self._send(MOVED.pack(UNPLUG, int(1e3 * seconds)))
 
     def _send(self, data: bytes) -> None:
-        self._socket.send(data)
+        with suppress(ConnectionRefusedError):  # no stand-in runs; `stop` must not raise
+            self._socket.send(data)
 
     def _receive(self) -> None:
         while True:
@@ -235,8 +235,10 @@ class Physics:
         if len(data) not in (MOVED.size, MOVED.size + 4 * len(self.kind.low)):
             return  # cut
         kind, number = MOVED.unpack_from(data)
+        if number > time.monotonic_ns():
+            return  # of no driver: they number by this machine's clock
         if kind == UNPLUG:
-            self.deaf_until = now + number / 1e3
+            self.deaf_until = now + min(number / 1e3, DEAF_MOST_S)
         elif kind == RESET and number > self.episode:
             self.episode, self.action = number, np.zeros(len(self.kind.low))
             self.env.reset()

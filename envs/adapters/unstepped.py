@@ -3,12 +3,12 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any, NoReturn
 
 import jax.numpy as jnp
 from jax import Array
 
+from hybrid_rl import parts
 from hybrid_rl.errors import FAULTS, UsageError, user_line
 from hybrid_rl.types import EnvState, Spec
 
@@ -70,13 +70,15 @@ def import_named(make: Any) -> Callable[..., Any]:
     """
     if not isinstance(make, str):
         return make
-    module, colon, name = make.partition(":")
-    if not colon:
-        raise UsageError(f"env.make={make}: give MODULE:CLASS or MODULE:FUNCTION")
     try:
-        return getattr(import_module(module), name)
+        return getattr(*parts.imported(make))
     except FAULTS as error:  # whatever the user's module does
-        file = re.fullmatch(r"(?:\./)?(\w+)\.py", module)
-        hint = f"a module has no .py: {file[1]}:{name}" if file else str(error)
+        file = re.fullmatch(r"(?:\./)?(\w+)\.py:(\w+)", make)
+        hint = f"a module has no .py: {file[1]}:{file[2]}" if file else str(error)
         line = user_line(error) or hint
         raise UsageError(f"env.make={make}: cannot be imported ({line})") from error
+
+
+def registered(name: str) -> str:
+    """The id of MODULE:ID, whose module registers it; any other name as it is."""
+    return parts.imported(name)[1] if ":" in name else name

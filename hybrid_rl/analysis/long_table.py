@@ -18,9 +18,11 @@ import numpy as np
 from hybrid_rl.analysis.curves import Curve, curve_of
 from hybrid_rl.analysis.logged import Learner
 from hybrid_rl.errors import UsageError
+from hybrid_rl.run.files.reading import text as text_of
 
 COLUMNS = ("exp_name", "env_name", "seed", "metric", "env_step", "value")
 NAMES = {"eval/return": "avg_return"}
+FLOAT32 = float(np.finfo(np.float32).max)  # greatest number that is drawn
 
 
 def text(drawn: Sequence[Curve], x: str) -> str:
@@ -53,14 +55,15 @@ def read(file: str | Path, metric: str, tasks: Iterable[str], smooth: float = 0.
     """
     found: dict = defaultdict(lambda: defaultdict(list))
     try:
-        with open(file, newline="", encoding="utf-8-sig") as lines:
-            for row in csv.DictReader(lines):
-                point = float(row["env_step"]), float(row["value"])
-                if row["metric"] in (metric, NAMES.get(metric)):
-                    found[row["env_name"], row["exp_name"]][int(row["seed"])].append(point)
-    except OSError as error:
-        raise UsageError(f"others={file}: {error.strerror}") from error
-    except (KeyError, ValueError, TypeError) as error:
+        rows = csv.DictReader(io.StringIO(text_of(Path(file)).removeprefix("\ufeff")))
+        for row in rows:
+            point = float(row["env_step"]), float(row["value"])
+            drawable = max(map(abs, point)) <= FLOAT32  # NaN is not
+            if row["metric"] in (metric, NAMES.get(metric)) and drawable:
+                found[row["env_name"], row["exp_name"]][int(row["seed"])].append(point)
+    except UsageError as error:
+        raise UsageError(f"others={error}") from error
+    except (KeyError, ValueError, TypeError, csv.Error) as error:
         raise UsageError(f"others={file}: must have the columns {', '.join(COLUMNS)}") from error
     if not found:
         raise UsageError(f"others={file}: no row's metric is {NAMES.get(metric, metric)}")

@@ -16,6 +16,7 @@ import numpy as np
 from hydra.core.override_parser.types import Override
 
 from hybrid_rl.cli.combinations import listed
+from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import UsageError
 from hybrid_rl.fields import Count, Natural, part
 from hybrid_rl.run.logs.records import Row
@@ -118,7 +119,7 @@ class Study:
         for lost in study.get_trials(states=(TrialState.RUNNING,)):  # of a process that stopped
             study.tell(lost.number, state=TrialState.FAIL)
             seen = {str(step): value for step, value in lost.intermediate_values.items()}
-            kept = {"run": lost.user_attrs.get("run", lost.number), "seen": seen}
+            kept = {"run": run_of(lost), "seen": seen}
             study.enqueue_trial(lost.params, user_attrs=kept)
 
     @property
@@ -142,7 +143,7 @@ class Study:
         trial = self._study.ask(self._space)
         for step, value in trial.user_attrs.get("seen", {}).items():
             trial.report(value, int(step))
-        trial.set_user_attr("run", trial.user_attrs.get("run", trial.number))
+        trial.set_user_attr("run", run_of(trial))
         return trial
 
     def known(self, trial: "Trial") -> bool:
@@ -152,7 +153,7 @@ class Study:
             if each.params == trial.params:
                 for step, value in each.intermediate_values.items():
                     trial.report(value, step)
-                trial.set_user_attr("run", each.user_attrs["run"])
+                trial.set_user_attr("run", run_of(each))
                 self._answer(trial, each.state, f"as trial {each.number}")
                 return True
         return False
@@ -228,6 +229,8 @@ def open_study(
     pruner: Any = optuna.pruners.NopPruner()
     if settings.prune:
         pruner = optuna.pruners.MedianPruner(settings.startup, n_warmup_steps=SAFE * every)
+    for file in folder.glob(f"{FILE}*"):
+        refuse_link(file)
     try:
         storage = optuna.storages.RDBStorage(f"sqlite:///{folder / FILE}")
     except (DatabaseError, RuntimeError) as error:
@@ -250,6 +253,12 @@ def open_study(
     finally:
         storage.remove_session()
         storage.engine.dispose()
+
+
+def run_of(trial: "FrozenTrial | Trial") -> int:
+    """The number that names the folder of its run, which an earlier trial may have had."""
+    run = trial.user_attrs.get("run")
+    return run if isinstance(run, int) else trial.number
 
 
 def text(value: Any) -> str:
@@ -276,7 +285,7 @@ def _row(trial: "FrozenTrial") -> Row:
     return {
         "trial": trial.number,
         "values": trial.params,
-        "run": str(trial.user_attrs["run"]),
+        "run": str(run_of(trial)),
         "state": trial.state.name.lower(),  # complete, pruned, fail
         "result": seen[max(seen)] if seen else None,  # of the last evaluation
         "step": max(seen) if seen else None,  # of it

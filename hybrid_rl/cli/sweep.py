@@ -123,7 +123,7 @@ class Sweeper:
         except OSError as error:
             line = f"hydra.sweep.dir={folder}: cannot be written to ({error.strerror})"
             raise UsageError(line) from error
-        OmegaConf.save(self.config, folder / "multirun.yaml")
+        write_text(folder / "multirun.yaml", OmegaConf.to_yaml(self.config))
         print(f"sweep of {len(jobs)} jobs: {folder}", flush=True)
         results, size = self.task.results, self.max_batch_size or len(jobs)
         try:

@@ -21,9 +21,11 @@ from hybrid_rl import overrides
 from hybrid_rl.cli import study, sweep
 from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.composition import options
+from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
 from hybrid_rl.run.checkpoints import checkpoint
+from hybrid_rl.run.files.integrity import write_text
 from hybrid_rl.run.files.lock import lock
 
 INSTALL = f"hydra/sweeper=tuned: Optuna is not installed; {install('tune')}"
@@ -78,7 +80,7 @@ class Tuner(sweep.Sweeper):
             lock(folder, "run_dir"),
             study.open_study(folder, settings, space, kept, config.eval_every) as opened,
         ):
-            OmegaConf.save(self.config, folder / "multirun.yaml")
+            write_text(folder / "multirun.yaml", OmegaConf.to_yaml(self.config))
             print(f"study of {settings.trials} trials: {folder}", flush=True)
             try:
                 while opened.open:
@@ -137,7 +139,7 @@ class Tuner(sweep.Sweeper):
         trial = self._trial = opened.ask()
         if opened.known(trial):
             return
-        number, run_dir = trial.number, folder / str(trial.user_attrs["run"])
+        number, run_dir = trial.number, refuse_link(folder / str(study.run_of(trial)))
         values = [f"{key}={study.text(value)}" for key, value in trial.params.items()]
         if checkpoint.steps(run_dir / "checkpoints"):
             values.append(f"resume={overrides.quoted(str(run_dir))}")

@@ -8,6 +8,8 @@ from typing import Any
 import jax
 import numpy as np
 
+from hybrid_rl.drafts import open_own
+
 HEAD = np.dtype([("version", "<i8"), ("check", "<u4"), ("size", "<u8")])
 
 
@@ -17,21 +19,23 @@ def publish(file: Path, tree: Any, version: int) -> None:
     body = b"".join(leaf.tobytes() for leaf in leaves)
     head = np.array((version, zlib.crc32(body), len(body)), HEAD)
     new = file.with_suffix(".new")
-    new.write_bytes(head.tobytes() + body)
+    with open_own(new, "wb") as out:
+        out.write(head.tobytes() + body)
     os.replace(new, file)
 
 
 def latest(file: Path, like: Any) -> tuple[int, Any] | None:
     """(version, tree) with the shapes of `like`; None if there is none, or none that fits."""
+    leaves, structure = jax.tree.flatten(like)
+    sizes = [int(np.prod(leaf.shape)) * np.dtype(leaf.dtype).itemsize for leaf in leaves]
     try:
-        data = file.read_bytes()
-    except OSError:
+        with open_own(file, "rb") as given:
+            data = given.read(HEAD.itemsize + sum(sizes) + 1)
+    except FileNotFoundError:
         return None
     if len(data) < HEAD.itemsize:
         return None
     head, body = np.frombuffer(data, HEAD, 1)[0], data[HEAD.itemsize :]
-    leaves, structure = jax.tree.flatten(like)
-    sizes = [int(np.prod(leaf.shape)) * np.dtype(leaf.dtype).itemsize for leaf in leaves]
     if len(body) != sum(sizes) or head["size"] != len(body) or head["check"] != zlib.crc32(body):
         return None
     found, at = [], 0

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hybrid_rl.drafts import own_file
 from hybrid_rl.types import Spec
 
 
@@ -44,20 +45,30 @@ class RowLog:
     def __init__(self, file: Path, spec: Spec) -> None:
         """Open or create the file."""
         self.kind = row_type(spec)
-        self._file = os.open(file, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o644)
+        self._file = own_file(file, os.O_RDWR | os.O_CREAT | os.O_APPEND)
+
+    def count(self) -> int:
+        """Rows in the file."""
+        return os.fstat(self._file).st_size // self.kind.itemsize
 
     def recover(self) -> np.ndarray | None:
         """Cut off a torn row at the end; returns the last sound one, or None."""
-        count = os.fstat(self._file).st_size // self.kind.itemsize
+        count = self.count()
         while count and self.read(count - 1) is None:
             count -= 1
         os.ftruncate(self._file, count * self.kind.itemsize)
         return self.read(count - 1) if count else None
 
     def append(self, row: np.ndarray) -> None:
-        """Write a row [] of `kind`, with its checksum."""
+        """Write a row [] of `kind`, with its checksum.
+
+        Raises:
+            OSError: if the disk is full; `recover` cuts off what was written of it.
+        """
         row["check"] = _check(row)
-        os.write(self._file, row.tobytes())
+        data = row.tobytes()
+        while data:
+            data = data[os.write(self._file, data) :]
 
     def read(self, number: int) -> np.ndarray | None:
         """Row `number` []; None if it is not there, or not whole."""

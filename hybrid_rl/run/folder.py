@@ -21,7 +21,7 @@ from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import ConfigAttributeError, ConfigKeyError, OmegaConfBaseException
 
 from hybrid_rl import __version__, parts
-from hybrid_rl.checks import COUNTS, SECTIONS
+from hybrid_rl.checks import COUNTS, SECTIONS, check_words
 from hybrid_rl.config import CONF
 from hybrid_rl.errors import MisfitError, PartError, UsageError, printable
 from hybrid_rl.overrides import quoted
@@ -139,6 +139,8 @@ def read(folder: Path, key: str) -> DictConfig:
     missing = [name for name in ("task", "algo", "seed", *SECTIONS, *COUNTS) if name not in config]
     if missing:
         raise UsageError(f"{path}: lacks {', '.join(missing)}{of_another_commit(folder)}")
+    with blame_config(folder):
+        check_words(config)
     _check_seeds(folder, config)
     return config
 

@@ -10,7 +10,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.config import Run
-from hybrid_rl.drafts import naming
+from hybrid_rl.drafts import naming, refuse_link
 from hybrid_rl.networks import precision
 from hybrid_rl.run.checkpoints.store import Store
 from hybrid_rl.run.logs import loggers
@@ -81,7 +81,7 @@ class Job:
         stores = []
         for run, run_dir in zip(self.runs, self.folders, strict=True):
             own = loop if len(self.runs) == 1 else Loop(run.agent, run.seeds, loop.stride)
-            replay, path = run.config.checkpoint_replay, run_dir / "checkpoints"
+            replay, path = run.config.checkpoint_replay, refuse_link(run_dir / "checkpoints")
             stores.append(Store(path, own, replay, written(run.config)))
         return Shelf(loop, logs, stores)
 

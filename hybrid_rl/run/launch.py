@@ -14,6 +14,7 @@ from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, one_of, whole
 from hybrid_rl.composition import CONF
 from hybrid_rl.config import Run
+from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
 from hybrid_rl.networks import precision
 from hybrid_rl.run import folder, together
@@ -78,7 +79,7 @@ def train(
     if len(runs) == 1:
         return begin(runs[0], handled, output, made[0][1])
     axis, start = together.axis_of(members, runs), starting.joined([each for _, each in made])
-    size = _fits(runs)
+    size = fits(runs)
     loggers.check(config.get("logger"))
     with together.claim_folders(members) as folders:
         each = _run(Job(runs, folders, axis), size, handled, output, start)
@@ -89,7 +90,7 @@ def begin(
     run: Run, handled: Handler, output: Output = CONSOLE, start: Start | None = None
 ) -> dict[str, Any]:
     """Run what is built, in a new folder, as `train`; start: what another run gave it."""
-    size = _fits([run])
+    size = fits([run])
     loggers.check(run.config.get("logger"))
     with folder.claim_folder(run.config) as run_dir:
         return _run(Job([run], [run_dir]), size, handled, output, start)[0]
@@ -99,7 +100,7 @@ def proceed(run: Run, handled: Handler, output: Output = CONSOLE) -> dict[str, A
     """Continue what is built from the newest checkpoint in the folder `config.resume`."""
     run_dir = Path(str(run.config.resume))
     with lock(run_dir, "run_dir"):
-        return _run(Job([run], [run_dir]), _fits([run]), handled, output)[0]
+        return _run(Job([run], [run_dir]), fits([run]), handled, output)[0]
 
 
 def _resume(
@@ -107,8 +108,8 @@ def _resume(
 ) -> dict[str, Any]:
     """Continue the run, or the runs of a sweep, in the folder `resume`, as `train`."""
     parent = Path(str(wanted[0].config.resume))
-    values = folder.members(parent) or {parent: {}}
-    swept, folders = parent not in values, list(values)
+    each = folder.members(parent)
+    values, swept, folders = each or {parent: {}}, bool(each), [*map(refuse_link, each)] or [parent]
     typed = dict(zip(folders, cycle(wanted), strict=False))  # one, or one for each
 
     def settings(run_dir: Path) -> DictConfig:
@@ -131,14 +132,14 @@ def _resume(
                 check(own)
                 prepare(own)
                 runs.append(configuration.build(own))
-            _refuse_edits(own, run_dir)
+            refuse_edits(own, run_dir)
             members.append(Member(own, values[run_dir]))
         axis = together.axis_of(members, runs)
-        each = _run(Job(runs, folders, axis), _fits(runs), handled, output)
+        each = _run(Job(runs, folders, axis), fits(runs), handled, output)
         return together.summary(parent, each) if swept else each[0]
 
 
-def _fits(runs: Sequence[Run]) -> str:
+def fits(runs: Sequence[Run]) -> str:
     """A line about the replay memory; raise UsageError if it, or the evaluations, do not fit."""
     refuse_x64()
     run, learners = runs[0], len(runs) * len(runs[0].seeds)
@@ -244,7 +245,7 @@ def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
     return old
 
 
-def _refuse_edits(config: DictConfig, run_dir: Path) -> None:
+def refuse_edits(config: DictConfig, run_dir: Path) -> None:
     """Raise UsageError if config.yaml is not what the newest checkpoint was trained with."""
     now = written(config)
     then = checkpoint.meta(run_dir / "checkpoints").get("settings", now)  # none may be readable

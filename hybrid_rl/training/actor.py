@@ -30,7 +30,7 @@ from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import FAULTS, UsageError, WorldError, blame, one_line
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.decider import Decider
-from hybrid_rl.training.robot_process import WAITING
+from hybrid_rl.training.robot_process import WAITING, report
 from hybrid_rl.types import Params
 
 RESET_S = 120.0  # [s] that a robot's `reset` may take
@@ -53,7 +53,8 @@ class Counts:
 class Actor:
     """One robot, with the controller of `agent`; its files are in `folder`.
 
-    recording: whether decisions are appended to `rows`, and a learner is expected.
+    recording: whether decisions are appended to `rows`, and a learner is expected. most: decisions
+    in `rows`, after which motion ends.
     """
 
     agent: Agent
@@ -61,6 +62,7 @@ class Actor:
     seed: int = 0
     recording: bool = True
     params: Params | None = None  # None: the first that a learner writes
+    most: float = math.inf
     counts: Counts = field(default_factory=Counts)
     asked: bool = False  # by a signal
 
@@ -79,6 +81,7 @@ class Actor:
 
         Raises:
             WorldError: if a method of the robot's is wrong; motion has ended then.
+            TimeoutError: likewise, without a sign of the learner for `alone_s`.
         """
         self.robot = self.env.made()
         self.log = RowLog(self.folder / "rows", self.spec) if self.recording else None
@@ -102,14 +105,14 @@ class Actor:
             self.robot.stop()
 
     def _over(self) -> bool:
-        """Whether to stop: a signal, the file `stop`, or no sign of the learner for too long."""
-        if self.asked or (self.folder / "stop").exists():
+        """Whether to stop: after a signal, for the file `stop`, or with enough rows."""
+        if self.asked or (self.folder / "stop").exists() or self._number >= self.most:
             return True
-        if not self.recording:
-            return False
-        file = self.folder / "parameters"
+        file, alone_s = self.folder / "parameters", self.env.alone_s
         seen = max(file.stat().st_mtime if file.exists() else 0.0, self._made)
-        return time.time() - seen > self.env.alone_s
+        if self.recording and time.time() - seen > alone_s:
+            raise TimeoutError(f"{self.env.name}: no sign of its learner for {alone_s:g} s")
+        return False
 
     def _drive(self, end: float) -> None:
         """An episode, or what there is of it until the robot falls silent."""
@@ -218,7 +221,7 @@ class Actor:
         """
         self.robot.stop()
         line = f"{self.env.name}: {why}"
-        (self.folder / "error").write_text(line + WAITING)
+        report(self.folder, line + WAITING)
         self._since = min(self._since, time.monotonic())
         while not self._over():
             if time.monotonic() - self._since > self.env.alone_s:
@@ -263,7 +266,7 @@ class Actor:
             time.sleep(0.05)
             if time.monotonic() - self._beat > self._allowed:
                 line = f"{self.env.name}: {self._in}: did not return in {self._allowed:g} s"
-                (self.folder / "error").write_text(line)
+                report(self.folder, line)
                 try:
                     self.robot.stop()
                 finally:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from hybrid_rl.drafts import own_folder
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.errors import UsageError
@@ -30,9 +31,7 @@ def loop_of(
     if axis.numbers and isinstance(env, Robot | Outside):
         raise UsageError("sweep: one robot has one learner; use -m, with one job after another")
     if isinstance(env, Robot):
-        files = folder / "robot"
-        files.mkdir(exist_ok=True)
-        return RobotLoop(agent, seeds, stride, folder=files)
+        return RobotLoop(agent, seeds, stride, folder=own_folder(folder / "robot"))
     if isinstance(env, Outside):
         raise UsageError("task=online: is for a loop of yours; use hybrid_rl.OnlineLearner")
     return (HostLoop if isinstance(env, External) else Loop)(agent, seeds, stride, axis=axis)

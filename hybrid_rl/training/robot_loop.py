@@ -1,13 +1,15 @@
 """Training on a robot: rows come at the robot's rate, updates at the device's.
 
-    row = next of the robot's process?   observe: into the memory
-    none yet?                            learn: the updates of one decision, at most one per row
-    every `handover_s`                   publish: the newest parameters
+    a row waits?          observe: into the memory, in up to half of the time while updates are owed
+    an update is owed?    learn: the updates of the first decision that was not learned from
+    every `handover_s`    publish: the newest parameters
 
-`training.actor` is the robot's process. Row n is decision n of the run, so that a resumed learner
-goes on behind the last row of its checkpoint, and loses none that came in the meantime.
+`training.actor` is the robot's process. Row n is decision n of the run, and its step counts those
+that were learned from: the memory may be ahead, and the file ahead of the memory. So a resumed
+learner makes the updates that it owes, and loses no row that came in the meantime.
 """
 
+import sys
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,22 +20,25 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from hybrid_rl.core.batching import where
 from hybrid_rl.data import handover
+from hybrid_rl.data.replay import Memory
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.envs.adapters.copies import Outcome
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.errors import WorldError
 from hybrid_rl.training.actor import check_one
-from hybrid_rl.training.agent import AgentState
+from hybrid_rl.training.agent import AgentState, update_schedule
 from hybrid_rl.training.host_loop import outcome_like, states
 from hybrid_rl.training.loop import METRICS, REPLICATED, SEEDS, Loop, put
 from hybrid_rl.training.metrics import outcome
 from hybrid_rl.training.robot_process import RobotProcess
+from hybrid_rl.types import Transition
 
 RESUMED = "the robot went on, or begins a new episode: its rows so far are read first, and the "
 RESUMED += "decisions after them differ from those of a run without the interruption"
 POLL_S = 5e-4  # [s]
+OWN = {"late_s": "late", "age_s": "age", "missed": "missed", "unsafe": "unsafe"}  # of a row
+LATE_S = 10.0  # [s] of the robot's time that a learner is behind when it first says so
 
 
 @dataclass
@@ -53,16 +58,15 @@ class RobotLoop(Loop):
         began, zero, no = time.perf_counter(), np.int32(0), np.bool_(False)
         got = outcome_like(state.env)
         action = jnp.zeros((*got.obs.shape[:-1], self.agent.spec.act))
-        now = jax.eval_shape(jax.vmap(self._observed), state, action, got)[1]
-        learned = jax.eval_shape(jax.vmap(self.agent.learn, (0, None)), state, zero)[1]
-        self.rows = self.rows_of({**now, **learned})
-        parts = (SEEDS, METRICS, SEEDS, SEEDS, *[REPLICATED] * 3), (SEEDS, METRICS)
-        observe = self.shard(self._observe, *parts, donate_argnums=(0, 1))
-        parts = (SEEDS, METRICS, REPLICATED, REPLICATED), (SEEDS, METRICS)
+        learned = jax.vmap(self._learned, (0, 0, 0, None, None))
+        self.rows = self.rows_of(jax.eval_shape(learned, state, action, got, no, zero)[1])
+        parts = (SEEDS, SEEDS, SEEDS, REPLICATED), SEEDS
+        observe = self.shard(jax.vmap(self._observed, (0, 0, 0, None)), *parts, donate_argnums=0)
+        parts = (SEEDS, METRICS, REPLICATED, SEEDS, SEEDS, REPLICATED, REPLICATED), (SEEDS, METRICS)
         learn = self.shard(self._learn, *parts, donate_argnums=(0, 1))
         traced = [
-            observe.trace(state, self.rows, action, got, no, no, zero),
-            learn.trace(state, self.rows, zero, zero),
+            observe.trace(state.memory, action, got, no),
+            learn.trace(state, self.rows, zero, action, got, no, zero),
         ]
         self.compile_s += time.perf_counter() - began
         return traced
@@ -73,7 +77,12 @@ class RobotLoop(Loop):
         return self.program
 
     def halves(self, state: AgentState) -> list[Any]:
-        """The compiled programs that observe and that learn; both donate state and rows."""
+        """The compiled programs that observe and that learn.
+
+        (memory, action, outcome, gap) -> memory, and (state, rows, i, action, outcome, first, step)
+        -> (state, rows): of decision `step`, with its metrics in row i. gap: whether decisions are
+        missing before it; first: whether it begins an episode. What comes back is donated.
+        """
         return list(map(self.compile_trace, self.trace(state)))
 
     def empty(self) -> dict[str, np.ndarray]:
@@ -92,53 +101,44 @@ class RobotLoop(Loop):
         if hasattr(self, "program"):
             self.program.process.stop()
 
-    def _observed(
-        self, state: AgentState, action: Array, got: Outcome
+    def _observed(self, memory: Memory, action: Array, got: Outcome, gap: Array) -> Memory:
+        """The memory of one learner with a decision more."""
+        replay, spec = self.agent.replay, self.agent.spec
+        memory = jax.lax.cond(
+            gap, lambda old: replay.interrupted(old, spec), lambda old: old, memory
+        )
+        led: Any = got.reward, got.terminated, got.truncated, got.obs
+        before: Any = got.following
+        return replay.add(memory, Transition(before, action, *led))
+
+    def _learned(
+        self, state: AgentState, action: Array, got: Outcome, first: Array, step: Array
     ) -> tuple[AgentState, dict[str, Array]]:
-        """One learner with a decision more in its memory, and what it led to."""
-        now, after = states(state.env, got)
-        return self.agent.observe(state, action, now, after), outcome(action, now)
+        """One learner after the updates of a decision, and what that one led to.
 
-    def _observe(
-        self, state: Any, rows: Any, action: Array, got: Outcome, gap: Array, first: Array, i: Array
-    ) -> tuple[Any, Any]:
-        """All learners with a decision more, and its metrics in row i.
-
-        gap: whether decisions are missing before it; first: whether it begins an episode.
         `got.following` is the observation before the decision.
         """
+        clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.info)
+        now, after = states(state.env.replace(obs=got.following, info=clock), got)
+        state, metrics = self.agent.learn(state.replace(env=after), step)
+        return state, {**metrics, **outcome(action, now)}
 
-        def one(state: AgentState, action: Array, got: Outcome) -> tuple[AgentState, Any]:
-            cut = self.agent.replay.interrupted(state.memory, self.agent.spec)
-            clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.info)
-            env = state.env.replace(obs=got.following, info=clock)
-            state = state.replace(env=env, memory=where(gap, cut, state.memory))
-            return self._observed(state, action, got)
-
-        state, metrics = jax.vmap(one)(state, action, got)
-        return state, put(rows, metrics, i)
-
-    def _learn(self, state: Any, rows: Any, i: Array, step: Array) -> tuple[Any, Any]:
-        """All learners after the updates of decision `step`, with their metrics in row i."""
-        state, metrics = jax.vmap(self.agent.learn, (0, None))(state, step)
+    def _learn(self, state: Any, rows: Any, i: Array, *decision: Any) -> tuple[Any, Any]:
+        """All learners after the updates of a decision, with its metrics in row i."""
+        state, metrics = jax.vmap(self._learned, (0, 0, 0, None, None))(state, *decision)
         return state, put(rows, metrics, i)
 
 
 def packed(
     action: Any, next_obs: Any, reward: Any, terminated: Any, truncated: Any, obs: Any
 ) -> Any:
-    """(action [1, 1, m], outcome [1, 1, ...]) of one decision, for the program that observes."""
+    """(action [1, 1, m], outcome [1, 1, ...]) of one decision, for the two programs."""
 
     def each(value: Any, kind: type = np.float32) -> np.ndarray:
         return np.array(value, kind)[None, None]  # [S, E, ...]; a copy
 
     ends = each(terminated, bool), each(truncated, bool)
     return each(action), Outcome(each(next_obs), each(reward), *ends, each(obs))
-
-
-def flags(gap: bool, first: bool, i: int) -> tuple[Any, ...]:
-    """The last arguments of the program that observes."""
-    return np.bool_(gap), np.bool_(first), np.int32(i)
 
 
 class RobotProgram:
@@ -150,12 +150,12 @@ class RobotProgram:
         self.memory_analysis = learn.memory_analysis
         env = loop.agent.episode.env
         assert isinstance(env, Robot)
-        self.env, self.published = env, 0.0
+        self.env, self.published, self.said = env, 0.0, LATE_S / 2
         self.in_order = any(each.data == "latest" for each in loop.agent.learners.values())
         self.process = RobotProcess(env, loop.folder)
-        self.log: RowLog | None = None  # opened at the first call
-        self.learned = 0  # decisions that were learned from
-        self.last: Any = None  # the row before
+        self.log = RowLog(loop.folder / "rows", env.spec)
+        self.read: int | None = None  # rows in the memory
+        self.room = 0  # as many as fit into it
 
     def __call__(self, state: AgentState, start: Array, rounds: Array) -> tuple[AgentState, Any]:
         """As the program of `Loop`.
@@ -167,45 +167,78 @@ class RobotProgram:
             WorldError: of that kind, before the first decision of the run.
         """
         first, count, done, began = int(start), int(rounds), 0, time.monotonic()
-        if self.log is None:
-            self.log, self.learned = RowLog(self.loop.folder / "rows", self.env.spec), first
-            self.last = self.log.read(first - 1) if first else None
         rows: Any = self.loop.empty()
-        host, updates = [], 0
+        read = self._known(state, first) if self.read is None else self.read
+        host, updates, until = [], 0, 0.0
         while done < count and not self.loop.cut:
-            row = self.log.read(first + done)
+            at, row = first + done, None
+            owed, now = read > at, time.monotonic()
+            if not owed or (read < max(first + count, self.room) and now < until):
+                row = self.log.read(read)
             if row is not None:
-                state, rows = self._into(state, rows, row, done)
-                host.append([row["late"], row["age"], row["missed"], row["unsafe"]])
-                self.process.tries, done = 0, done + 1
-            if (row is None or self.in_order) and self.learned < first + done:
-                at = np.int32(self.learned), np.int32(max(done - 1, 0))
-                state, rows = self.learn(state, rows, at[1], at[0])
-                jax.block_until_ready(state.key)
-                self.learned, updates = self.learned + 1, updates + 1
-            elif row is None:
-                try:
-                    self.process.watch()
-                except WorldError as error:
-                    if not first + done:
-                        raise
-                    self.loop.fault = error
-                self.loop.cut |= self.process.ended or self.loop.fault is not None
+                state = state.replace(memory=self._into(state.memory, row))
+                self.process.tries, read = 0, read + 1
+            elif owed:
+                state, rows, own = self._after(state, rows, at, done)
+                host.append(own)
+                done, updates = done + 1, updates + self._due(at)
+                until = 0.0 if self.in_order else 2 * time.monotonic() - now
+            else:
+                self.loop.cut |= self.process.ended
                 time.sleep(POLL_S)
             if time.monotonic() - self.published > self.env.handover_s:
                 self._publish(state, first + done)
-        seconds = max(time.monotonic() - began, 1e-9)
-        return state, self._metrics(jax.device_get(rows), done, host, updates / seconds)
+                self._watch(first + done)
+        self.read, rate = read, updates / max(time.monotonic() - began, 1e-9)
+        behind = self.log.count() - first - done
+        self._say(behind)
+        return state, self._metrics(jax.device_get(rows), host, rate, behind)
 
-    def _into(self, state: Any, rows: Any, row: Any, i: int) -> tuple[Any, Any]:
-        """The row in the memory of the learner."""
-        last, self.last = self.last, row
-        gap = first = False
-        if last is not None:
-            gap = not (last["terminated"] or last["truncated"]) and last["stretch"] < row["stretch"]
-            first = last["episode"] != row["episode"]
-        got = (row[name] for name in ("next_obs", "reward", "terminated", "truncated", "obs"))
-        return self.observe(state, rows, *packed(row["action"], *got), *flags(gap, first, i))
+    def _known(self, state: AgentState, first: int) -> int:
+        """Rows in the memory at the first call; a checkpoint's may go beyond `first`, its step."""
+        agent, held = self.loop.agent, int(state.memory.count[0])
+        given = agent.replay.num_demonstrated(1) + max(-agent.first_update, 0)
+        read = max(first, held - given)
+        self.room = read + state.memory.rows.shape[1] - held
+        return read
+
+    def _into(self, memory: Memory, row: Any) -> Memory:
+        """The memory with a row."""
+        gap = False
+        if (last := self._before(row)) is not None and last["stretch"] < row["stretch"]:
+            gap = not (last["terminated"] or last["truncated"])
+        return jax.block_until_ready(self.observe(memory, *_decision(row), np.bool_(gap)))
+
+    def _after(self, state: Any, rows: Any, at: int, i: int) -> tuple[Any, Any, list[float]]:
+        """State and rows after the updates of decision `at`, in row i; the robot's own numbers."""
+        row: Any = self.log.read(at)
+        before = self._before(row)
+        first = before is not None and before["episode"] != row["episode"]
+        last = np.bool_(first), np.int32(at)
+        state, rows = self.learn(state, rows, np.int32(i), *_decision(row), *last)
+        jax.block_until_ready(state.key)
+        return state, rows, [row[name] for name in OWN.values()]
+
+    def _before(self, row: Any) -> Any:
+        """The row before; None before the first."""
+        return self.log.read(int(row["number"]) - 1) if row["number"] else None
+
+    def _due(self, step: int) -> int:
+        """Gradient steps of all learners after decision `step`."""
+        agent, due = self.loop.agent, 0
+        for name, start in agent.starts().items():
+            count, every = update_schedule(name, agent.learners[name], 1)
+            due += count * (name not in agent.frozen and step >= start and step % every == 0)
+        return due
+
+    def _watch(self, made: int) -> None:
+        """See to the robot's process, after so many decisions."""
+        try:
+            self.process.watch()
+        except WorldError as error:
+            if not made:
+                raise
+            self.loop.fault, self.loop.cut = error, True
 
     def _publish(self, state: Any, version: int) -> None:
         params = jax.vmap(self.loop.agent.params)(state)
@@ -213,10 +246,25 @@ class RobotProgram:
         handover.publish(self.loop.folder / "parameters", one, version)
         self.published = time.monotonic()
 
-    def _metrics(self, rows: Any, done: int, host: list, rate: float) -> Any:
+    def _say(self, behind: int) -> None:
+        """Print that the learner is behind, and again when it is twice as much."""
+        seconds = behind * self.env.spec.dt
+        if seconds >= 2 * self.said:
+            self.said = seconds
+            line = f"the learner is {behind:,} decisions ({seconds:.0f} s) behind the robot; "
+            line += "settings=light, fewer updates or less load on this machine make it faster"
+            print(f"hybrid_rl: {line}", file=sys.stderr, flush=True)
+
+    def _metrics(self, rows: Any, host: list, rate: float, behind: int) -> Any:
         """The rows of this call, with the robot's own numbers."""
-        table = np.array(host, np.float32).reshape(done, 4, 1)
-        names = ("late_s", "age_s", "missed", "unsafe")
-        own = {f"robot/{name}": table[:, k] for k, name in enumerate(names)}
+        done = len(host)
+        table = np.array(host, np.float32).reshape(done, len(OWN), 1)
+        own = {f"robot/{name}": table[:, k] for k, name in enumerate(OWN)}
         own["robot/updates_per_s"] = np.full((done, 1), rate, np.float32)
+        own["robot/behind"] = np.full((done, 1), behind, np.float32)
         return {name: row[:done] for name, row in rows.items()} | own
+
+
+def _decision(row: Any) -> Any:
+    got = (row[name] for name in ("next_obs", "reward", "terminated", "truncated", "obs"))
+    return packed(row["action"], *got)

@@ -8,8 +8,9 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from hybrid_rl.drafts import open_own
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.errors import WorldError
+from hybrid_rl.errors import UsageError, WorldError
 
 TRIES = 5  # starts of the process in a row without a new decision
 LOWER = 10  # priority of the learner
@@ -29,7 +30,7 @@ class RobotProcess:
         """Whether a process owns the robot: a child of this one, or of a learner before it."""
         if self.child is not None and self.child.poll() is None:
             return True
-        with open(self.folder / "lock", "a") as file:
+        with open_own(self.folder / "lock") as file:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except OSError:
@@ -46,8 +47,8 @@ class RobotProcess:
             return
         self.checked = time.monotonic()
         alive, line, error = self.alive(), "", self.folder / "error"
-        with suppress(OSError):
-            line = error.read_text()
+        with suppress(FileNotFoundError), open_own(error, "r") as file:
+            line = file.read(10_000)
         if alive:  # else the line is that of its end, which may come a moment later
             return self._show(line) if line.endswith(WAITING) or not line else None
         code = None if self.child is None else self.child.returncode
@@ -71,7 +72,7 @@ class RobotProcess:
         run = self.folder.parent.resolve()
         _lower()
         flags = f"{os.environ.get('XLA_FLAGS', '')} --xla_cpu_multi_thread_eigen=false"
-        with open(self.folder / "console", "ab") as out:
+        with open_own(self.folder / "console") as out:
             self.child = subprocess.Popen(
                 [sys.executable, "-m", "hybrid_rl.robot", f"run={run}", "learning=true"],
                 env=os.environ | {"JAX_PLATFORMS": "cpu", "XLA_FLAGS": flags},
@@ -83,12 +84,18 @@ class RobotProcess:
         """End motion, then the process."""
         if not self.alive():
             return
-        (self.folder / "stop").touch()
+        open_own(self.folder / "stop").close()
         until = time.monotonic() + 10
         while self.alive() and time.monotonic() < until:
             time.sleep(0.01)
         if self.child is not None and self.child.poll() is None:
             self.child.kill()
+
+
+def report(folder: Path, line: str) -> None:
+    """Leave a line for the learner, which shows it; to end motion does not depend on it."""
+    with suppress(OSError, UsageError), open_own(folder / "error", "w") as file:
+        file.write(line)
 
 
 def _lower() -> None:

@@ -275,7 +275,7 @@ def test_a_table_of_others_is_drawn_beside_the_runs(tmp_path, monkeypatch):
     np.testing.assert_array_equal(got.x, np.float32(theirs.x))
     np.testing.assert_array_equal(got.each[:2], np.float32(theirs.each[:2]))
     for change, line in (
-        ({"others": "none.csv"}, "others=none.csv: No such file"),
+        ({"others": "none.csv"}, "others=none.csv: cannot be read (No such file"),
         ({"others": __file__}, "must have the columns exp_name, env_name, seed, metric, env_step"),
         ({"metric": "train/return"}, "no row's metric is train/return"),
         ({"x": "wall_s"}, "others: is drawn beside folders of runs, over decisions"),

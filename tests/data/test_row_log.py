@@ -1,5 +1,9 @@
 """Rows and parameters in files, which one process writes and another reads."""
 
+import errno
+import os
+import resource
+
 import numpy as np
 import pytest
 
@@ -43,6 +47,21 @@ def test_a_torn_row_is_cut_off(log, tmp_path, cut):
     row["number"] = 2
     log.append(row)
     assert log.read(2)["number"] == 2
+
+
+def test_a_row_that_the_disk_has_no_room_for_is_an_error(log, tmp_path):
+    row = np.zeros((), log.kind)
+    row["number"] = 3
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (3 * log.kind.itemsize + 10, limits[1]))
+    try:
+        with pytest.raises(OSError, match=os.strerror(errno.EFBIG)):
+            log.append(row)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert log.recover()["number"] == 2
+    log.append(row)
+    assert log.read(3)["number"] == 3
 
 
 def test_a_damaged_row_is_not_read(log, tmp_path):

@@ -6,6 +6,7 @@ import re
 import socket
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from hybrid_rl.cli import command
 from hybrid_rl.data.row_log import RowLog
 from hybrid_rl.doctor.__main__ import CHECKS, examine
 from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.envs.adapters.stand_in import Cartpole
+from hybrid_rl.envs.adapters.stand_in import ACTION, MOVED, RESET, Cartpole, Physics
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError, WorldError
 from hybrid_rl.run.files.lock import lock
@@ -76,6 +77,17 @@ def test_a_run_on_a_robot(port, tmp_path, capfd):
     assert "compiling" not in printed.out
 
 
+def test_a_stand_in_obeys_its_driver_after_a_foreign_datagram():
+    physics, action = Physics(Cartpole, 0), np.array([2.0], "<f4").tobytes()
+    for number in (2**62, time.monotonic_ns()):
+        physics._take(MOVED.pack(RESET, number), time.monotonic())
+        physics._take(MOVED.pack(ACTION, number) + 2 * action, time.monotonic())  # cut
+        physics._take(MOVED.pack(ACTION, number) + action, time.monotonic())
+        assert physics.action.tolist() == [2.0 if number < 2**62 else 0.0]
+    assert physics.episode == physics.newest == number
+    physics.socket.close()
+
+
 def test_a_robot_that_ends_a_run_leaves_what_was_learned(tmp_path, capfd, monkeypatch):
     """As an emergency stop that its class raises."""
 
@@ -96,6 +108,29 @@ def test_a_robot_that_ends_a_run_leaves_what_was_learned(tmp_path, capfd, monkey
         hybrid_rl.train([*line, "total_steps=100", f"run_dir={tmp_path / 'run'}"])
     assert (tmp_path / "run" / "checkpoints" / "3").is_dir()
     assert "continue: python -m hybrid_rl.train resume=" in capfd.readouterr().out
+
+
+def test_a_resumed_run_learns_from_the_rows_that_wait(tmp_path, capfd, monkeypatch):
+    def watch(process):
+        log = RowLog(process.folder / "rows", SPEC)
+        for n in range(0 if process.ended else 600 - log.count()):
+            row = np.zeros((), log.kind)
+            row["number"] = n
+            log.append(row)
+        process.ended = True
+
+    monkeypatch.setattr(RobotProcess, "watch", watch)
+    monkeypatch.setattr(RobotProcess, "stop", lambda process: None)
+    line = [*LINE, "policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=8"]
+    line += ["random_steps=0", "log_every=10", f"run_dir={tmp_path / 'run'}"]
+    for steps, words in ((20, line), (40, [f"resume={tmp_path / 'run'}"])):
+        rows = []
+        result = hybrid_rl.train([*words, f"total_steps={steps}"], on_row=rows.append)
+        assert result["finished"]
+        assert [row["step"] for row in rows if "sac/critic_loss" in row] == [steps - 10, steps]
+        assert all(row["robot/updates_per_s"] > 0 for row in rows)
+        assert 600 - steps <= rows[-1]["robot/behind"] < 610 - steps
+    assert "hybrid_rl: the learner is 5" in capfd.readouterr().err
 
 
 def test_one_process_moves_a_robot(tmp_path, capfd, monkeypatch):

@@ -1,4 +1,4 @@
-"""The process that owns a robot, in this process, and the learner that reads its rows."""
+"""The process that owns a robot, in this process."""
 
 import threading
 import time
@@ -10,83 +10,20 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from counting import LINE, Counting, broken, lost, moved, of
 
 from hybrid_rl import config
 from hybrid_rl.data.row_log import RowLog
-from hybrid_rl.envs.adapters.robot import Robot
-from hybrid_rl.errors import UsageError, WorldError
+from hybrid_rl.errors import WorldError
 from hybrid_rl.training import actor as actors
 from hybrid_rl.training.actor import Actor
-from hybrid_rl.training.loops import loop_of
 from hybrid_rl.training.robot_process import RobotProcess
-
-LINE = ["task=robot", "env.make=hybrid_rl.envs.adapters.stand_in:Cartpole", "algo=sac"]
-LINE += ["policy.hidden=[8]", "critic.hidden=[8]", "policy_learner.batch_size=4", "total_steps=200"]
-LINE += ["random_steps=0", "episode.steps=10", "log_every=20"]
-
-
-class Counting:
-    """A robot whose observation is (episode, step, 0, 0); `fault` at step 4 of episode 2."""
-
-    dt, low, high, obs = 0.004, (0.0,), (2.0,), 4
-    safe = (0.5,)
-    faults: ClassVar[dict] = {}
-
-    def __init__(self) -> None:
-        self.episode, self.count, self.applied, self.stopped = 0, 0, [], 0
-
-    def reset(self) -> None:
-        self.episode, self.count = self.episode + 1, 0
-
-    def observe(self) -> tuple:
-        self.count += 1
-        obs = np.array([self.episode, self.count, 0.0, 0.0])
-        fault = self.faults.get((self.episode, self.count), lambda obs: (obs, time.monotonic()))
-        return fault(obs)
-
-    def apply(self, action: np.ndarray) -> None:
-        self.applied.append(float(action[0]))
-
-    def reward(self, obs: np.ndarray, action: np.ndarray, next_obs: np.ndarray) -> float:
-        return float(next_obs[1])
-
-    def terminated(self, obs: np.ndarray) -> bool:
-        return self.episode == 3 and obs[1] > 5
-
-    def stop(self) -> None:
-        self.stopped += 1
 
 
 @pytest.fixture(scope="module")
 def agent():
     """Soft actor-critic of small parts."""
     return config.build(config.load(LINE)).agent
-
-
-def of(agent, kind, **fields):
-    """The agent on another robot."""
-    return replace(agent, episode=replace(agent.episode, env=Robot(make=kind, **fields)))
-
-
-def moved(agent, folder, kind, **fields):
-    """(actor, its rows) after it moved through five episodes with the first parameters."""
-
-    def reset(robot):
-        actor.asked = robot.episode == 5
-        kind.reset(robot)
-
-    agent = of(agent, type(kind.__name__, (kind,), {"reset": reset}), **fields)
-    actor = Actor(agent, folder, params=agent.params(agent.init(jax.random.key(0))))
-    actor.run(seconds=20)
-    rows, log = [], RowLog(folder / "rows", agent.spec)
-    while (row := log.read(len(rows))) is not None:
-        rows.append(row)
-    return actor, rows
-
-
-def broken(fault):
-    """A class of robots with a fault."""
-    return type("Broken", (Counting,), {"faults": {(2, 4): fault}})
 
 
 def test_rows_are_decisions_in_order(agent, tmp_path):
@@ -150,10 +87,20 @@ def test_an_episode_begins_with_a_controller_that_remembers_nothing(agent, tmp_p
     assert max(first.values()) < 0.4  # a missed deadline leaves decisions out
 
 
+def test_it_ends_with_the_decisions_of_the_run(agent, tmp_path):
+    params = agent.params(agent.init(jax.random.key(0)))
+    for most in (15, 18):  # the second process finds those of the first
+        actor = Actor(of(agent, Counting), tmp_path, params=params, most=most)
+        actor.run(seconds=20)
+        assert RowLog(tmp_path / "rows", agent.spec).count() == most
+        assert actor.robot.stopped == 1
+
+
 def test_it_ends_without_a_learner(agent, tmp_path):
     actor = Actor(of(agent, Counting, alone_s=0.2), tmp_path)
     began = time.monotonic()
-    actor.run()
+    with pytest.raises(TimeoutError, match=r"Counting: no sign of its learner for 0.2 s"):
+        actor.run()
     assert 0.1 < time.monotonic() - began < 5
     assert actor.robot.stopped == 1
     assert not actor.robot.applied
@@ -162,11 +109,6 @@ def test_it_ends_without_a_learner(agent, tmp_path):
     began = time.monotonic()
     asked.run()
     assert time.monotonic() - began < 5
-
-
-def lost(obs):
-    """A connection that is lost."""
-    raise ConnectionError("no datagram")
 
 
 @pytest.mark.parametrize(
@@ -266,35 +208,3 @@ def test_a_method_that_does_not_return_ends_motion_and_the_process(agent, tmp_pa
     assert codes[0] == actors.LOST
     assert actor.robot.stopped >= 2
     assert "observe: did not return in 0.1 s" in (tmp_path / "error").read_text()
-
-
-def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
-    """Its memory is what the file holds; a gap ends the row before; a call may end early."""
-    loop = loop_of(of(agent, broken(lost)), (0,), 20, tmp_path)
-    _, rows = moved(agent, tmp_path / "robot", broken(lost))
-    monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
-    state = loop.init()
-    program = loop.compile(state)
-    state, metrics = program(state, jnp.int32(0), jnp.int32(20))
-    state, more = program(state, jnp.int32(20), jnp.int32(10))
-    memory = np.asarray(state.memory.rows)[0, :30, 0]
-    assert np.array_equal(memory[:, :5], [[*row["obs"], *row["action"]] for row in rows[:30]])
-    assert np.array_equal(memory[:, -4:], [row["next_obs"] for row in rows[:30]])
-    cut = [row["stretch"] != after["stretch"] for row, after in pairwise(rows[:31])]
-    ended = [bool(row["terminated"]) for row in rows[:30]]
-    assert sum(cut) >= 3  # time limits, and the gap
-    wanted = [c and not e for c, e in zip(cut, ended, strict=True)]
-    assert (memory[:, 7] == 1).tolist()[:29] == wanted[:29]  # the last one's follower is unread
-    assert (memory[:, 6] == 1).tolist() == ended
-    assert metrics["episode/length"][:, 0, 0].tolist() == [*range(1, 11), *range(1, 11)]
-    assert len(more["episode/done"]) == len(more["robot/late_s"]) == 10
-    threading.Timer(0.5, loop.cut_short).start()
-    state, more = program(state, jnp.int32(len(rows)), jnp.int32(20))  # it learns: no row comes
-    assert (len(more["episode/done"]), program.learned > 0) == (0, True)
-
-
-@pytest.mark.parametrize("word", ["num_seeds=2", "num_envs=2"])
-def test_one_robot_has_one_learner(word):
-    run = config.build(config.load([*LINE, word]))
-    with pytest.raises(UsageError, match="one robot has one learner"):
-        loop_of(run.agent, run.seeds, 20)

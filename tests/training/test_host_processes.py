@@ -1,5 +1,6 @@
 """Environments in processes of their own, with a limit to a step; those that draw themselves."""
 
+import multiprocessing
 import sys
 
 import gymnasium
@@ -29,6 +30,7 @@ FAULTS = {
     "raise": lambda: 1 / 0,
     "exit": lambda: sys.exit("gone"),
     "kill": lambda: os.kill(os.getpid(), 9),
+    "stop": lambda: os.kill(os.getpid(), 19),  # a stopped process hears no SIGTERM
 }
 
 
@@ -59,6 +61,7 @@ class Sleeper(gymnasium.Env):
     ("fault", "line"),
     [
         ("sleep", r"sleeper:Sleeper: step: took longer than env\.timeout_s=1\.0"),
+        ("stop", r"sleeper:Sleeper: step: took longer than env\.timeout_s=1\.0"),
         ("raise", r"sleeper:Sleeper: step: .*sleeper\.py:\d+: ZeroDivisionError"),
         ("exit", r"sleeper:Sleeper: step: .*sleeper\.py:\d+: SystemExit: gone; raise an error"),
         ("kill", r"sleeper:Sleeper: step: its process ended with exit code -9, as after out of"),
@@ -77,7 +80,8 @@ def test_a_step_that_does_not_return_raises_or_ends_is_one_line(
         assert copies.step(np.zeros((2, 1))).obs.tolist() == [[count], [count]]
     with pytest.raises(WorldError, match=line):
         copies.step(np.zeros((2, 1)))
-    copies.close(terminate=True)
+    copies.close()
+    assert not multiprocessing.active_children()
     assert not [each for each in recwarn if "gymnasium" in each.filename]
     with pytest.warns(UserWarning, match="another thing"):
         gymnasium.logger.warn("another thing")

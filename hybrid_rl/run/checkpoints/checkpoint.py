@@ -25,7 +25,7 @@ from typing import Any
 
 import jax
 
-from hybrid_rl.drafts import sync
+from hybrid_rl.drafts import own_folder, sync
 from hybrid_rl.errors import CheckpointError
 from hybrid_rl.run.checkpoints import leaves
 from hybrid_rl.run.files import integrity
@@ -87,7 +87,7 @@ def save(
     texts = {"meta.json": json.dumps(meta, indent=1), "leaves.json": json.dumps(kinds, indent=0)}
     draft = folder / f".{step}.tmp"
     try:
-        folder.mkdir(exist_ok=True)  # not its parents: a run folder that is gone stays gone
+        own_folder(folder)  # not its parents: a run folder that is gone stays gone
         _recover(folder)
         draft = _free(folder, str(step))
         draft.mkdir()

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from hybrid_rl.drafts import own_file
 from hybrid_rl.errors import UsageError
 
 LOCK = "lock"
@@ -47,11 +48,12 @@ def _open(path: Path, key: str) -> int:
     while True:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
-        except OSError as error:
-            why = f"{LOCK} is a link" if path.is_symlink() else error.strerror
-            line = f"{key}={path.parent}: cannot be written to ({why})"
-            raise UsageError(line) from error
+            handle = own_file(path, os.O_RDWR | os.O_CREAT)
+        except (OSError, ValueError) as error:  # ValueError: of a name that no file has
+            if isinstance(error, UsageError):
+                raise
+            why = getattr(error, "strerror", error)
+            raise UsageError(f"{key}={path.parent}: cannot be written to ({why})") from error
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             if os.path.samestat(os.fstat(handle), path.stat()):

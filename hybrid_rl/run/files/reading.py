@@ -4,7 +4,6 @@ A file that is no plain one, such as a pipe or a device, is not read; one that i
 whose content would grow beyond measure, is refused before it is parsed.
 """
 
-import errno
 import json
 import os
 import stat
@@ -14,12 +13,12 @@ from typing import Any, BinaryIO
 
 import yaml
 
+from hybrid_rl.drafts import NO_WAIT
 from hybrid_rl.errors import UsageError
 
 TEXT, YAML, LINE = 2**25, 2**20, 2**20  # [bytes] of a file, of one in YAML, of a line at most
 VALUES = 20_000  # of a YAML file at most; what is referenced counts each time
 DEEPEST = 40  # groups within groups
-NO_WAIT, NO_LINK = getattr(os, "O_NONBLOCK", 0), getattr(os, "O_NOFOLLOW", 0)
 Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
@@ -37,25 +36,6 @@ def open_file(file: Path) -> BinaryIO:
         raise UsageError(f"{file}: cannot be read ({error.strerror})") from error
     os.close(handle)
     raise UsageError(f"{file}: cannot be read (it is no plain file)")
-
-
-def open_to_append(file: Path, mode: str = "ab", **how: Any) -> Any:
-    """A file of a run, open to append, made if there is none; a link in a run is not followed.
-
-    how: as for `open`.
-
-    Raises:
-        UsageError: for a link, a pipe or a device, behind which something else may be lost.
-    """
-    try:
-        handle = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND | NO_LINK | NO_WAIT, 0o666)
-        if stat.S_ISREG(os.fstat(handle).st_mode):
-            return os.fdopen(handle, mode, **how)
-        os.close(handle)
-    except OSError as error:
-        if error.errno not in (errno.ELOOP, errno.ENXIO):
-            raise
-    raise UsageError(f"{file}: is a link, or no plain file; a run writes to its own files")
 
 
 def text(file: Path, most: int = TEXT) -> str:

@@ -20,8 +20,9 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, Protocol
 
+from hybrid_rl.drafts import open_own, own_folder
 from hybrid_rl.errors import FAULTS, CheckpointError, UsageError, install
-from hybrid_rl.run.files.reading import lines, open_to_append, text
+from hybrid_rl.run.files.reading import lines
 from hybrid_rl.run.logs.records import COORDINATES, Row, row_of
 
 HEADER = (*COORDINATES, "metric", "value")
@@ -59,7 +60,7 @@ class Lines(Logger):
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / "metrics.jsonl"
-        self._file = open_to_append(self.path)
+        self._file = open_own(self.path)
 
     @property
     def size(self) -> int:
@@ -104,7 +105,7 @@ class CSV(Logger):
     def __init__(self, folder: Path) -> None:
         self._path = folder / "metrics.csv"
         new = not self._path.exists()
-        self._file = open_to_append(self._path, "a", buffering=1, encoding="ascii", newline="")
+        self._file = open_own(self._path, "a", buffering=1, encoding="ascii", newline="")
         self._lines = csv.writer(self._file)
         if new:
             self._lines.writerow(HEADER)
@@ -163,9 +164,11 @@ class WandB(Logger):
         """The id of the run of a seed, the same when it is resumed."""
         file = self._folder / "wandb" / f"seed_{seed}.id"
         if not file.exists():
-            file.parent.mkdir(exist_ok=True)
-            file.write_text(uuid.uuid4().hex[:12], encoding="ascii")
-        return text(file)
+            own_folder(file.parent)
+            with open_own(file, "w", encoding="ascii") as out:
+                out.write(uuid.uuid4().hex[:12])
+        with open_own(file, "r", encoding="ascii") as given:
+            return given.read(100)
 
     def close(self) -> None:
         """End the runs."""

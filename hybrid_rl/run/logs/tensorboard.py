@@ -14,6 +14,7 @@ from tensorboardX.proto.event_pb2 import (  # made at import, so pyright cannot 
 )
 from tensorboardX.proto.summary_pb2 import Summary  # pyright: ignore[reportAttributeAccessIssue]
 
+from hybrid_rl.drafts import own_folder
 from hybrid_rl.run.logs.loggers import Logger, scalars
 from hybrid_rl.run.logs.records import Row
 
@@ -44,8 +45,8 @@ class TensorBoard(Logger):
     def _file(self, seed: int) -> EventsWriter:
         if seed not in self._files:
             self._check()
-            folder = self._folder / f"seed_{seed}" if self._several else self._folder
-            folder.mkdir(parents=True, exist_ok=True)
+            folder = own_folder(self._folder)
+            folder = own_folder(folder / f"seed_{seed}") if self._several else folder
             unique = f".{time.time_ns()}"  # files of the same second stay apart, in order
             self._files[seed] = EventsWriter(str(folder / "events"), unique)
             if self._purged is not None:

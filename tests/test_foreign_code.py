@@ -1,0 +1,265 @@
+"""Names of code in files from anybody: whatever key they stand under, they are judged first."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from foreign import changed, made, refused
+from tiny import call, call_train, contents, only_line
+
+from hybrid_rl import (
+    OnlineLearner,
+    __version__,
+    config,
+    demonstrate,
+    evaluate,
+    export,
+    parts,
+    render,
+    robot,
+)
+from hybrid_rl.cli import command
+from hybrid_rl.data import archive
+from hybrid_rl.data import trained as saved
+from hybrid_rl.doctor import __main__ as doctor
+from hybrid_rl.envs.adapters.external import External
+from hybrid_rl.envs.adapters.robot import Robot
+from hybrid_rl.errors import UsageError
+from hybrid_rl.run import folder as run_folder
+from hybrid_rl.trained import read
+from hybrid_rl.view import __main__ as view
+
+EXTERNAL = {"_target_": "hybrid_rl.envs.adapters.external.External"}
+ROBOT = {"_target_": "hybrid_rl.envs.adapters.robot.Robot"}
+WANTED = {"cmd": "touch ran", "command": "touch ran", "file": "ran", "path": "ran"}
+GETOUTPUT = EXTERNAL | {"make": "subprocess:getoutput", "kwargs": {"cmd": "touch ran"}}
+MINE = """
+import subprocess as hidden
+from os import system
+from pickle import *
+from subprocess import getoutput as run
+try:
+    from subprocess import check_output
+except ImportError:
+    def check_output(cmd): pass
+open("ran", "w")
+import gymnasium
+class Env(gymnasium.Env):
+    def popen(self): pass
+def make(): return Env()
+"""
+NAMES = [
+    *("subprocess:getoutput", "subprocess:run", "os:system", "os:makedirs", "posix:system"),
+    *("builtins:exec", "builtins:open", "pickle:loads", "marshal:loads", "importlib:import_module"),
+    *("runpy:run_path", "shutil:rmtree", "pathlib:Path", "ctypes:CDLL", "code:interact"),
+    *("webbrowser:open", "logging.config:dictConfig", "antigravity:webbrowser", "this:s"),
+    *(
+        "numpy:load",
+        "numpy:save",
+        "yaml:unsafe_load",
+        "pytest:main",
+        "pip:main",
+        "_pytest.pathlib:rm",
+    ),
+    *("__main__:main", "sys:exit", "hydra.utils:instantiate"),
+    *("gymnasium:make", "gymnasium:register", "gymnasium.envs.registration:make"),
+    *("gymnasium.envs.registration:load_env_creator", "gymnasium.utils.play:play"),
+    *("hybrid_rl.robot:main", "hybrid_rl.data.row_log:RowLog", "hybrid_rl.data.trained:save"),
+    *("hybrid_rl.training.robot_process:RobotProcess", "hybrid_rl.envs.adapters.gymnasium:make"),
+    *("hybrid_rl.envs.adapters.external:gymnasium", "hybrid_rl.parts:imported", "hybrid_rl:train"),
+    *("scripts.bootstrap:main", "tests.tiny:call", "envs.gym:_register", "thesis.conftest:x"),
+    *("theirs.run.zz_evil:World", "theirs.zz_evil:World", "theirs:zz_evil"),
+    *("zz_mine:system", "zz_mine:hidden", "zz_mine:run", "zz_mine:loads", "zz_mine:check_output"),
+    *("zz_mine:popen", "zz_mine:Nowhere", "zz_mine:gymnasium"),
+]
+IDS = [
+    *("antigravity:Pendulum-v1", "this:Pendulum-v1", "subprocess:lab/A-v0", "os:A-v0", "pip:A-v0"),
+    *("theirs.run.zz_evil:A-v0", "theirs.zz_evil:lab/A-v0", "scripts.bootstrap:A-v0"),
+    *("hybrid_rl.robot:A-v0", "numpy:A-v0", "zz_mine.sub:A-v0", "__main__:A-v0"),
+]
+TREES = [  # where a name stands
+    {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"wrapper": "os:system"}}},
+    {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"a": [1, {"b": ["os:system"]}]}}},
+    {"env": EXTERNAL | {"id": "Pendulum-v1", "kwargs": {"env_id": "os:A-v0"}}},
+    {"env": ROBOT | {"make": "os:system", "kwargs": {"command": "touch ran"}}},
+    {"env": {"_target_": "hybrid_rl.envs.adapters.playground.Playground", "name": "os:system"}},
+    {"env": GETOUTPUT, "task": "robot"},
+    *({key: "os:system"} for key in ("study", "query", "logger", "task", "resume", "run", "new")),
+    {"recipe": ["task=gymnasium", "env.make=os:system"]},
+    {"recipe": ["+env.make='os:system'"]},
+    {"recipe": ["env={_target_:x,make:os:system}"]},
+    {"extra": [[["os:system"]]]},
+    {"extra": "see os:system"},
+    {"reward": {"make": "os:system"}},
+    {"expert": {"_target_": "hybrid_rl.controllers.policy.PolicyController", "make": "os:system"}},
+    {"learners": {"policy": {"make": "os:system"}}},
+    {"controllers": {"full": {"any": {"depth": "os:system"}}}},
+]
+COMMANDS = {
+    "evaluate": evaluate.main,
+    "export": export.main,
+    "render": render.main,
+    "demonstrate": demonstrate.main,
+    "doctor": doctor.main,
+    "view": view.main,
+}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch) -> Path:
+    """A run folder in the current one, with a module of the user beside its parent."""
+    path = made(tmp_path, monkeypatch)
+    Path("zz_mine.py").write_text(MINE)
+    (path / "checkpoints" / "5").mkdir(parents=True)
+    (path / "robot").mkdir()
+    return path
+
+
+def judged(folder: Path, **keys: object) -> str:
+    """The line by which a short config.yaml with these keys is refused."""
+    (folder.parent / "__init__.py").write_text("")
+    (folder / "config.yaml").write_text(json.dumps({"version": __version__} | keys))
+    return refused(folder, lambda folder: run_folder.parse_config(folder, "run"))
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("part", [EXTERNAL, ROBOT], ids=["external", "robot"])
+def test_a_name_of_others_makes_no_environment(folder, part, name):
+    line = judged(folder, env=part | {"make": name, "kwargs": WANTED})
+    assert line.startswith(f"{folder}/config.yaml: env.make={name}: ")
+
+
+@pytest.mark.parametrize("name", IDS)
+def test_an_id_of_others_imports_nothing(folder, name):
+    line = judged(folder, env=EXTERNAL | {"id": name})
+    assert line.startswith(f"{folder}/config.yaml: env.id={name}: ")
+
+
+@pytest.mark.parametrize("keys", TREES, ids=range(len(TREES)))
+def test_a_name_is_judged_wherever_it_stands(folder, keys):
+    assert ": is no part of hybrid_rl" in judged(folder, **keys)
+
+
+@pytest.mark.parametrize("keys", ["make", "id", "kwargs"])
+@pytest.mark.parametrize("name", ["subprocess:getoutput", "antigravity:A-v0"])
+def test_a_policy_names_no_code_of_others(tmp_path, monkeypatch, keys, name):
+    """Whether it acts, or teaches in the configuration of another run."""
+    monkeypatch.chdir(tmp_path)
+    arrays: Any = dict(np.load(archive.find("policies/lander.npz")))
+    about = json.loads(str(arrays["about"]))
+    about["env"] = EXTERNAL | {"id": "", "make": "", "kwargs": {"cmd": "touch ran"}}
+    about["env"] |= {keys: {"cmd": name}} if keys == "kwargs" else {keys: name}
+    about["policy"] = about["policy"] | {"activation": name}
+    np.savez("theirs.npz", **arrays | {"about": np.array(json.dumps(about))})
+    for open_file in (read, saved.described):
+        with pytest.raises(ValueError, match=f"={name}: is no part of hybrid_rl"):
+            open_file("theirs.npz")
+    assert [*Path().iterdir()] == [Path("theirs.npz")]
+
+
+@pytest.mark.parametrize("key", ["env", "objective", "new"])
+def test_a_policy_has_no_interpolations(tmp_path, key):
+    arrays: Any = dict(np.load(archive.find("policies/lander.npz")))
+    about = json.loads(str(arrays["about"]))
+    about[key] = about.get(key, {}) | {"task": "${oc.env:HOME}"}
+    np.savez(tmp_path / "a.npz", **arrays | {"about": np.array(json.dumps(about))})
+    with pytest.raises(UsageError, match="is an interpolation; it must be a plain value"):
+        read(str(tmp_path / "a.npz"))
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_refuses_it(folder, capfd, name):
+    changed(folder, env=GETOUTPUT)
+    before = contents(folder)
+    given = [f"run={folder}", *(["out=a.npz"] if name == "export" else [])]
+    assert call(lambda: command.run(COMMANDS[name]), *given) == 2
+    assert "env.make=subprocess:getoutput: is no part" in only_line(capfd)
+    assert contents(folder) == before
+    assert not Path("ran").exists()
+
+
+@pytest.mark.parametrize(
+    "line", [["resume={}", "total_steps=200"], ["run={}", "total_steps=9", "run_dir=mine"]]
+)
+def test_no_run_goes_on_or_begins_with_it(folder, capfd, line):
+    changed(folder, env=GETOUTPUT)
+    assert call_train(*(text.format(folder) for text in line)) == 2
+    assert "env.make=subprocess:getoutput: is no part" in only_line(capfd)
+    assert not Path("ran").exists()
+    assert not Path("mine").exists()
+
+
+def test_no_learner_goes_on_and_no_robot_moves_with_it(folder, capfd):
+    changed(folder, env=ROBOT | {"make": "os:system"})
+    with pytest.raises(UsageError, match=r"env\.make=os:system: is no part"):
+        OnlineLearner.load(folder)
+    for mode in ("learning=true", "mode=full"):
+        assert call(lambda: command.run(robot.main), f"run={folder}", mode) == 2
+        assert "env.make=os:system: is no part" in only_line(capfd)
+
+
+@pytest.mark.parametrize("key", ["task", "algo", "policy_learning"])
+@pytest.mark.parametrize("name", ["../../theirs/evil", "sac,ddpg", "sac +env.make=os", "a/../b"])
+def test_a_run_chooses_no_file_of_others(folder, capfd, key, name):
+    """For `train run=DIR` a word of it becomes an override."""
+    (folder.parent / "evil.yaml").write_text("# @package _global_\nalgo: ${oc.env:HOME}\n")
+    changed(folder, **{key: name})
+    assert call_train(f"run={folder}", "total_steps=9", "run_dir=mine") == 2
+    assert f"{key}={name}: must be letters, digits" in only_line(capfd)
+
+
+def test_an_id_of_ours_makes_parts_only(monkeypatch, tmp_path):
+    """Its keywords are fields of an environment of the package, not another class."""
+    monkeypatch.chdir(tmp_path)
+    kwargs = {"world": "subprocess.getoutput", "cmd": "touch ran"}
+    with pytest.raises(UsageError, match="is no part of hybrid_rl"):
+        External(id="hybrid_rl.envs.gym:hybrid_rl/Pendulum", kwargs=kwargs)
+    assert not Path("ran").exists()
+    External(id="hybrid_rl.envs.gym:hybrid_rl/Pendulum")
+
+
+@pytest.mark.parametrize(
+    "env",
+    [
+        EXTERNAL | {"make": "zz_mine:Env"},
+        EXTERNAL | {"make": "zz_mine:make"},
+        EXTERNAL | {"make": "zz_both:Env"},  # a package, whose module has it
+        EXTERNAL | {"make": "zz_both.deep:Env"},
+        EXTERNAL | {"make": "gymnasium.envs.classic_control.pendulum:PendulumEnv"},
+        EXTERNAL | {"make": "gymnasium.envs.classic_control:PendulumEnv"},
+        EXTERNAL | {"make": "zz_absent:Env"},  # which cannot be imported
+        EXTERNAL | {"id": "zz_mine:lab/A-v0"},
+        EXTERNAL | {"id": "Hopper-v5", "kwargs": {"device": "cuda:0", "at": "10:30", "a": "b: c"}},
+        EXTERNAL | {"id": "zz_robots:Reach-v4"},  # an installed package that depends on Gymnasium
+        EXTERNAL | {"id": "hybrid_rl.envs.gym:hybrid_rl/Pendulum"},
+        ROBOT | {"make": "hybrid_rl.envs.adapters.stand_in:HalfCheetah"},
+    ],
+    ids=lambda env: env.get("make") or env["id"],
+)
+def test_a_name_of_ones_own_is_one_without_importing_it(folder, env, monkeypatch):
+    installed = Path("site-packages").absolute()
+    for path in ("zz_both", "site-packages/zz_robots", "site-packages/zz_robots-4.dist-info"):
+        Path(path).mkdir(parents=True)
+    Path("zz_both/__init__.py").write_text("from zz_both.deep import *\nfrom .deep import Env\n")
+    Path("zz_both/deep.py").write_text(MINE)
+    (installed / "zz_robots" / "__init__.py").write_text(MINE)
+    metadata = "Name: zz_robots\nVersion: 4\nRequires-Dist: gymnasium>=1.0\n"
+    (installed / "zz_robots-4.dist-info" / "METADATA").write_text(metadata)
+    monkeypatch.syspath_prepend(str(installed))
+    changed(folder, env=env)
+    assert run_folder.read(folder, "run").env == env
+    assert not Path("ran").exists()
+    changed(folder, env=EXTERNAL | {"make": "zz_robots:Env"})
+    assert "env.make=zz_robots:Env: is no part" in refused(folder)
+
+
+def test_a_name_that_a_user_types_or_passes_is_the_users(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for line in ("env.make=json:loads", "env.id=antigravity:A-v0"):
+        given = config.load(["task=gymnasium", "algo=sac", line])
+        parts.check({"env": dict(given.env)})
+    with pytest.raises(UsageError, match=r"env\.make=json:loads: TypeError"):
+        External(make="json:loads")
+    assert Robot(make="hybrid_rl.envs.adapters.stand_in:Cartpole").spec.act == 1

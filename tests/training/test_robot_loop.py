@@ -1,0 +1,81 @@
+"""The learner that reads the rows of a robot's process."""
+
+import threading
+import time
+from itertools import pairwise
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from counting import LINE, Counting, broken, lost, moved, of
+
+from hybrid_rl import config
+from hybrid_rl.errors import UsageError
+from hybrid_rl.training.loops import loop_of
+from hybrid_rl.training.robot_loop import RobotProgram
+from hybrid_rl.training.robot_process import RobotProcess
+
+
+@pytest.fixture(scope="module")
+def agent():
+    """Soft actor-critic of small parts."""
+    return config.build(config.load(LINE)).agent
+
+
+def test_the_learner_learns_from_the_rows(agent, tmp_path, monkeypatch):
+    """Its memory is what the file holds; a gap ends the row before; a call may end early."""
+    loop = loop_of(of(agent, broken(lost)), (0,), 20, tmp_path)
+    _, rows = moved(agent, tmp_path / "robot", broken(lost))
+    monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
+    state = loop.init()
+    program = loop.compile(state)
+    state, metrics = program(state, jnp.int32(0), jnp.int32(20))
+    state, more = program(state, jnp.int32(20), jnp.int32(10))
+    memory = np.asarray(state.memory.rows)[0, :30, 0]
+    assert np.array_equal(memory[:, :5], [[*row["obs"], *row["action"]] for row in rows[:30]])
+    assert np.array_equal(memory[:, -4:], [row["next_obs"] for row in rows[:30]])
+    cut = [row["stretch"] != after["stretch"] for row, after in pairwise(rows[:31])]
+    ended = [bool(row["terminated"]) for row in rows[:30]]
+    assert sum(cut) >= 3  # time limits, and the gap
+    wanted = [c and not e for c, e in zip(cut, ended, strict=True)]
+    assert (memory[:, 7] == 1).tolist()[:29] == wanted[:29]  # the last one's follower is unread
+    assert (memory[:, 6] == 1).tolist() == ended
+    assert metrics["episode/length"][:, 0, 0].tolist() == [*range(1, 11), *range(1, 11)]
+    assert len(more["episode/done"]) == len(more["robot/late_s"]) == 10
+    assert more["robot/behind"].tolist() == [[len(rows) - 30]] * 10
+    threading.Timer(0.5, loop.cut_short).start()
+    state, more = program(state, jnp.int32(30), jnp.int32(1000))  # no row comes any more
+    assert len(more["episode/done"]) == len(rows) - 30
+
+
+def test_reading_and_learning_share_the_time_of_a_slow_learner(agent, tmp_path, monkeypatch):
+    """Each decision has its updates, also after an interruption, though rows always wait."""
+    loop = loop_of(of(agent, Counting), (0,), 20, tmp_path)
+    _, rows = moved(agent, tmp_path / "robot", Counting)
+    monkeypatch.setattr(RobotProcess, "watch", lambda self: None)
+    observe, learn = loop.halves(loop.init())
+    learned, state = [], loop.init()
+
+    def slowly(*given):
+        time.sleep(5e-3)
+        learned.append(int(given[-1]))
+        return learn(*given)
+
+    for start in (0, 12):
+        program = RobotProgram(loop, observe, learn)
+        monkeypatch.setattr(program, "learn", slowly)
+        state, metrics = program(state, jnp.int32(start), jnp.int32(12))
+        assert learned == list(range(start + 12))
+        rewards = [row["reward"] for row in rows[start : start + 12]]
+        assert metrics["world/reward"].ravel().tolist() == rewards
+    count = int(state.memory.count[0])
+    assert count > 30  # it reads on while it learns
+    memory = np.asarray(state.memory.rows)[0, :count, 0]
+    assert np.array_equal(memory[:, :4], [row["obs"] for row in rows[:count]])
+
+
+@pytest.mark.parametrize("word", ["num_seeds=2", "num_envs=2"])
+def test_one_robot_has_one_learner(word):
+    run = config.build(config.load([*LINE, word]))
+    with pytest.raises(UsageError, match="one robot has one learner"):
+        loop_of(run.agent, run.seeds, 20)
