@@ -48,6 +48,7 @@ READ = (  # the keys that a run reads, and with them all keys that they refer to
     *("physics", "run_dir", "resume", "eval_modes", "checkpoint_replay", "compile_cache"),
     *("precision", "distributed", "logger", "run", "freeze"),
 )
+register(CONF)  # before Hydra composes anything
 COMPOSING = Lock()  # Hydra composes in one thread at a time
 
 
@@ -91,7 +92,6 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
     check_choices(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
     words = overriding.forced(overrides, groups(config_dir))
-    register(CONF)
     try:
         with COMPOSING:
             known = GlobalHydra.instance().is_initialized()

@@ -42,11 +42,10 @@ from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE
 from hybrid_rl.errors import UsageError
-from hybrid_rl.overrides import forced, name, raw_values, value_of
+from hybrid_rl.overrides import forced, raw_values, value_of
 from hybrid_rl.parts import part_class
 from hybrid_rl.protocols import Controller
 from hybrid_rl.settings.complete import LACKING, complete, refusal, select
-from hybrid_rl.settings.registry import register
 from hybrid_rl.trained import Trained, load_named
 from hybrid_rl.training.agent import Agent
 from hybrid_rl.training.contract import check_controllers
@@ -57,6 +56,7 @@ from hybrid_rl.training.traced import users
 from hybrid_rl.types import Params
 
 PLANNERS = ("planner", "planner_alone")
+UNLEARNED = dict.fromkeys(("model", "reward_model", "policy"))  # where a run has none
 SOFT = ("world", "price", "chance", "width")  # of a constraint: not what it limits
 GROUPS = (*configuration.PAID, "imagine", "proposal")  # of conf/retarget.yaml
 KEYS = (*configuration.PAID, *PLANNERS, "imagine")  # of conf/retarget.yaml, which a user may change
@@ -125,20 +125,21 @@ def aimed(
         if dot and not named & {group, *goal}:
             raise UsageError(f"{text}: is a key of {group}=NAME; give that with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
-    goal = _fitting(config, _composed(overrides, config_dir))
+    composed = _composed(overrides, config_dir)
+    typed = [text.partition("=")[0] for text in overrides if "." in text.partition("=")[0]]
+    raw = complete({**UNLEARNED, **config, **raw_values(composed)}, [*composed], typed)
+    for key in typed:
+        if select(raw, key) is LACKING:
+            raise UsageError(refusal(key, [{**raw, "algo": config.get("algo")}]))
+    goal = _fitting(config, OmegaConf.create({key: raw[key] for key in composed}))
     for lost in overrides:
         key = lost.split("=")[0].split(".")[0]
         if key in (*PLANNERS, "imagine") and key not in goal:
             does = "imagine with" if key == "imagine" else "plan with"
             raise UsageError(f"{lost}: there is no learned model to {does}")
-    kept = {key: value for key, value in config.items() if key not in KEYS}
-    changed: Any = OmegaConf.merge({"controllers": {}}, kept, goal)
-    typed = [name(text) for text in overrides if "." in name(text)]
-    raw = complete(raw_values(changed), [*changed], typed)
-    for key in typed:
-        if select(raw, key) is LACKING:
-            raise UsageError(refusal(key, [raw]))
-    changed = OmegaConf.create(raw)
+    kept = {key: value for key, value in config.items() if key not in {*KEYS, *goal}}
+    kept["controllers"] = config.get("controllers", {})
+    changed: Any = OmegaConf.merge(kept, goal)
     OmegaConf.resolve(changed)
     episode, controllers, before = configuration.acting(changed)
     notes = trained.notes
@@ -245,7 +246,6 @@ def _composed(overrides: Sequence[str], config_dir: str | Path | None) -> DictCo
     words = [f"controller@{text}" if text.split("=")[0] in PLANNERS else text for text in overrides]
     if config_dir:
         words.append(search_path(config_dir))
-    register(CONF)
     try:
         check_choices(words)
         with configuration.COMPOSING, initialize_config_dir(str(CONF), version_base="1.3"):

@@ -240,7 +240,7 @@ def test_a_return_that_is_not_finite_is_one_line_and_no_file(
         ("constraint.most=2", "constraint.most=2: is a key of constraint=NAME; give that with it"),
         ("episode.sensor_noise=a", "episode.sensor_noise=a: must be 1 or 5 numbers, each 0 or"),
         ("episode.sensor_noise=[1", "episode.sensor_noise=[1: is no YAML: expected ',' or ']'"),
-        ("reward=speed reward.tarket=2", "reward.tarket: unknown key; did you mean reward.target"),
+        ("reward=speed reward.tarket=2", "has no such key; did you mean reward.target?"),
         ("reward=speed reward.target=fast", "reward.target=fast: must be"),
         ("reward=level", "reward.world=Cartpole: has no pitch, only position, speed, height"),
         ("planner=gradient planner.tail=-1", "planner.tail=-1: must be a whole number, 0 or more"),

@@ -26,7 +26,6 @@ from hybrid_rl.composition import CONF, check_choices, explain, groups, search_p
 from hybrid_rl.errors import UsageError, printable, user_line
 from hybrid_rl.fields import FieldError
 from hybrid_rl.run import inherited
-from hybrid_rl.settings.registry import register
 
 FLAGS = {  # of Hydra -> how many words follow
     **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
@@ -100,7 +99,6 @@ def hydra_main(job: Callable[..., Any]) -> None:
             ]
             line = [CHOICE.sub(r"\1choice(\2)", text) if text in chosen else text for text in line]
         sys.argv[1:] = line
-        register(CONF)
         hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
     except Exception as error:
         report(error)
