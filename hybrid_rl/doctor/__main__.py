@@ -20,7 +20,7 @@ from pathlib import Path
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.cli.arguments import read as arguments
-from hybrid_rl.doctor import learned, observed, task
+from hybrid_rl.doctor import learned, observed, regular, task
 from hybrid_rl.doctor.evidence import Evidence, of_each, read
 
 ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
@@ -40,6 +40,8 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that 
     "action rate": observed.rare,
     "noise": observed.noise,
     "action": observed.action,
+    "every other decision": regular.alternates,
+    "action's gain": regular.gains,
     "hidden state": observed.hidden,
     "model": of_each(learned.forecast),
     "ends": task.ends,
