@@ -91,7 +91,7 @@ def action(run: Evidence) -> str | None:
     effect, late = each[:, most], int(np.argmax(each[:, most]))
     shown = ", ".join(f"{min(part, 1):.0%}" for part in effect)
     shown = f"of what actions can explain, those 0, 1, ... decisions old explain {shown}"
-    old = (each[0] == 0) & (each.max(0) > HISTORY * together) & each.any(0)
+    old = (each[0] == 0) & (each.max(0) > HISTORY * together) & (together > HISTORY)
     if old.any() and each[0].any():
         return (
             f"obs {_numbers(run.moving[old])} shows an action later than obs "
@@ -106,7 +106,7 @@ def action(run: Evidence) -> str | None:
             "no action changed what is observed afterwards: is it applied, and is the motor on? "
             "render run=DIR shows it"
         )
-    if late and not effect[0]:
+    if late and not effect[0] and together[most] > HISTORY:
         return (
             f"an action acts {late} decision{'s' * (late > 1)} later ({shown}): a delay; shorten "
             "it, or show the learner its last actions (env.past_actions of task=robot)"
