@@ -44,6 +44,7 @@ class Evidence:
     made: Transition | None  # [K, T, ...] NumPy; None: no checkpoint has the replay memory
     whole: "Evidence | None" = None  # of the run, of which this is a learner's part
     learner: int = 0  # its number; of the run the first one's
+    damaged: bool = False  # whether the replay memory has numbers that are not finite
 
     @property
     def path(self) -> Path:
@@ -189,7 +190,9 @@ def read(path: Path) -> Evidence:
     with run_folder.blame_config(path):
         prepare(config)
         run = build_run(config, "memory")
-        return Evidence(RunFolder(path), config, run, _made(path, config, run))
+        made = _made(path, config, run)
+        damaged = made is not None and not all(np.isfinite(each).all() for each in made)
+        return Evidence(RunFolder(path), config, run, None if damaged else made, damaged=damaged)
 
 
 def _made(path: Path, config: Any, run: Run) -> Transition | None:

@@ -17,6 +17,7 @@ SLOW = 0.75  # quantile of it: the middle of the slower half, as positions among
 NOISE = 0.5  # share of an entry's change that the next decision takes back
 UNSEEN = 0.5  # share of the change that observation and actions, or a model, do not predict
 HISTORY = 0.5  # share of what is left that the last observation then predicts
+LEAST = 0.005  # share of a change or reward that is left open, below which nobody minds
 NOTHING = 0.25  # gain of an action without effect, over that of one with
 TWO = 0.125  # variance that two means leave of the gains: half of what they leave of uniform ones
 STRETCH = 5  # decisions of an episode in turn that are fitted, and predicted

@@ -8,7 +8,7 @@ decisions there are. Each of two folds, stretches of time in turn, is predicted 
 
 import numpy as np
 
-from hybrid_rl.doctor.limits import ERRORS, HISTORY
+from hybrid_rl.doctor.limits import ERRORS, HISTORY, LEAST
 
 FAR = 4.0  # standard deviations
 FOLDS = 100  # stretches of time, of which every second one is predicted by the others
@@ -41,7 +41,9 @@ def predicted(
         own, other = fold == part, fold != part
         a, b = phi[other], y[other].astype(float)
         weights = np.linalg.solve(a.T @ a + RIDGE * len(a) * np.eye(a.shape[1]), a.T @ b)
-        for one, p, w in zip(each, np.split(phi[own], cuts, 1), np.split(weights, cuts), strict=True):
+        for one, p, w in zip(
+            each, np.split(phi[own], cuts, 1), np.split(weights, cuts), strict=True
+        ):
             one[own] = p @ w
     return each
 
@@ -52,10 +54,10 @@ def missed(y: np.ndarray, prediction: np.ndarray) -> np.ndarray:
 
 
 def halved(new: np.ndarray, old: np.ndarray) -> np.ndarray:
-    """[q] whether errors `new` [N, q] are surely less than `old`, and less than HISTORY of them."""
+    """[q] whether errors `old` [N, q] are above LEAST, and `new` surely less than HISTORY of them."""
     less = old - new
     sure = less.mean(0) > ERRORS * less.std(0) / np.sqrt(len(less))
-    return sure & (new.mean(0) < HISTORY * old.mean(0))
+    return sure & (new.mean(0) < HISTORY * old.mean(0)) & (old.mean(0) > LEAST)
 
 
 def features(z: np.ndarray) -> np.ndarray:

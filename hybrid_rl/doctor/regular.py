@@ -15,6 +15,7 @@ from hybrid_rl.doctor.evidence import Evidence
 from hybrid_rl.doctor.limits import ENOUGH, NOTHING, SHORTEST, STRETCH, TWO
 from hybrid_rl.doctor.regression import features, halved, missed, predicted, products, residual
 
+NEWEST = 5_000  # decisions, of which the regressions are repeated
 ROUNDS = 4  # of gains and effects in turn
 TINY = np.finfo(float).tiny
 
@@ -43,11 +44,11 @@ class Rows(NamedTuple):
 def _rows(run: Evidence) -> Rows | None:
     if run.made is None or len(run.at(1)[0]) < ENOUGH:
         return None
-    (k, t), now = run.at(0), np.arange(run.begins.shape[1])
+    (k, t), now = (each[-NEWEST:] for each in run.at(0)), np.arange(run.begins.shape[1])
     first = np.maximum.accumulate(np.where(run.begins, now, 0), axis=1)[k, t]
     _, episode = np.unique(k * len(now) + first, return_inverse=True)
     y = run.change((k, t)).astype(float)
-    y /= np.maximum(y.std(0), TINY)
+    y /= np.where(y.std(0) > 0, y.std(0), 1.0)
     return Rows(run.known((k, t)), run.made.action[k, t], y, t - first, episode)
 
 
@@ -91,7 +92,10 @@ def _lost(rows: Rows) -> str | None:
         means = np.bincount(arrived, weight * gain, 2) / total
     spread = weight @ (gain - weight @ gain / weight.sum()) ** 2
     lost = 1 - arrived.mean()
-    if weight @ (gain - means[arrived]) ** 2 > TWO * spread or not abs(means[0]) < NOTHING * means[1]:
+    if (
+        weight @ (gain - means[arrived]) ** 2 > TWO * spread
+        or not abs(means[0]) < NOTHING * means[1]
+    ):
         return None
     return (
         f"{lost:.0%} of the actions had no effect, and the others {means[1]:.1f} times that of all: "
