@@ -95,7 +95,9 @@ def main() -> None:
             lines = [": ".join(each) for each in found[kind][name].items()]
             print(f"{kind}: {name}", *lines, sep="\n  ", flush=True)
     if given["out"]:
-        Path(given["out"]).write_text(json.dumps(found, indent=1) + "\n")
+        out = Path(given["out"])
+        old = json.loads(out.read_text()) if out.exists() else {}
+        out.write_text(json.dumps(old | found, indent=1) + "\n")
 
 
 if __name__ == "__main__":

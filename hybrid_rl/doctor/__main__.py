@@ -4,10 +4,10 @@
 
 A line for each fault: what was seen, what it means, what to try. Fix the first one first: later
 ones may follow from it. The command reads metrics.jsonl, summary.json, and the replay memory and
-networks of the newest checkpoint. It also runs new episodes with the policy, with random actions
-and with zero actions, in a Gymnasium environment only with the policy and with linear ones. It writes
-nothing. The page "My robot does not learn" of the documentation explains the checks, and what they
-found.
+networks of the newest checkpoint. It also runs new episodes with the policy, linear ones, random
+actions and zero actions; in a Gymnasium environment only with the policy and with linear ones. It
+writes nothing. The page "My robot does not learn" of the documentation explains the checks, and
+what they found.
 """
 
 if __name__ == "__main__":

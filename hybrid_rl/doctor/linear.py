@@ -64,11 +64,11 @@ def better(run: Evidence) -> str | None:
     error = np.sqrt((again.var(ddof=1) + own.var(ddof=1)) / EPISODES)
     if not again.mean() - own.mean() > ERRORS * error:
         return None
+    steps = max(run.run.agent.episode.steps // 4, 1)
     return (
-        f"the best of {POLICIES} random linear policies returns {again.mean():.4g}, the learned one "
-        f"{own.mean():.4g}: it explores too little, and the decision may be too short ({spec.dt:.3g} "
-        f"s); try episode.action_repeat=4 episode.steps={max(run.run.agent.episode.steps // 4, 1)}, "
-        "or more decisions"
+        f"the best of {POLICIES} random linear policies returns {again.mean():.4g}, the learned "
+        f"one {own.mean():.4g}: it explores too little, and the decision may be too short "
+        f"({spec.dt:.3g} s); try episode.action_repeat=4 episode.steps={steps}, or more decisions"
     )
 
 

@@ -54,7 +54,7 @@ def missed(y: np.ndarray, prediction: np.ndarray) -> np.ndarray:
 
 
 def halved(new: np.ndarray, old: np.ndarray) -> np.ndarray:
-    """[q] whether errors `old` [N, q] are above LEAST, and `new` surely less than HISTORY of them."""
+    """[q] whether errors `old` [N, q] exceed LEAST, and `new` are surely below HISTORY of them."""
     less = old - new
     sure = less.mean(0) > ERRORS * less.std(0) / np.sqrt(len(less))
     return sure & (new.mean(0) < HISTORY * old.mean(0)) & (old.mean(0) > LEAST)

@@ -98,8 +98,8 @@ def _lost(rows: Rows) -> str | None:
     ):
         return None
     return (
-        f"{lost:.0%} of the actions had no effect, and the others {means[1]:.1f} times that of all: "
-        "commands are lost, or too small for the motor; compare what is sent and what arrives"
+        f"{lost:.0%} of the actions had no effect, and the others {means[1]:.1f} times that of "
+        "all: commands are lost, or too small for the motor; compare what is sent and what arrives"
     )
 
 
@@ -123,9 +123,9 @@ def _by_episode(rows: Rows) -> str | None:
     turned = min((gain < 0).sum(), (gain > 0).sum())
     how = f"the other way in {turned} of {len(gain)}" if turned else "more in some than in others"
     return (
-        f"what an action does depends on the episode, {how}: that leaves {each[:, best].mean():.0%} "
-        f"of a change open, one rule for all {single[:, best].mean():.0%}; does reset change a sign, "
-        "the motor or the body?"
+        f"what an action does depends on the episode, {how}: that leaves "
+        f"{each[:, best].mean():.0%} of a change open, one rule for all "
+        f"{single[:, best].mean():.0%}; does reset change a sign, the motor or the body?"
     )
 
 
