@@ -17,7 +17,7 @@ from hybrid_rl.doctor.limits import (
     UNSEEN,
 )
 from hybrid_rl.doctor.regression import curved, explained, features, missed, predicted, residual
-from hybrid_rl.doctor.regular import gains
+from hybrid_rl.doctor.regular import alternates, gains
 
 
 def constant(run: Evidence) -> str | None:
@@ -103,7 +103,7 @@ def action(run: Evidence) -> str | None:
     if (left[most] if effect.any() else left.max()) > UNSEEN:
         return None
     if not effect.any():
-        if gains(run):  # which cancel out
+        if gains(run) or alternates(run):  # then they cancel out
             return None
         return (
             "no action changed what is observed afterwards: is it applied, and is the motor on? "
