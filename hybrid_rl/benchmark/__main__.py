@@ -78,7 +78,7 @@ GROUPS = {name: f"a key of the method's {name}" for name in PLANNED}
 
 
 def _check(settings: dict[str, Any]) -> None:
-    """Raise UsageError for a list that none of the parts uses, or an unknown task."""
+    """Raise UsageError for a list that none of the parts uses, or an unknown task or method."""
     for name, parts in OF.items():
         if settings[name] and not set(parts) & set(settings["parts"]):
             value = settings[name]
@@ -86,6 +86,7 @@ def _check(settings: dict[str, Any]) -> None:
             line = f"{name}={value}: parts={','.join(settings['parts'])} does not use it"
             raise UsageError(f"{line}; {', '.join(parts)} would")
     several(*composition.options("task"))("tasks", settings["tasks"] or TASKS)
+    several(*composition.options("algo"))("algo", settings["algo"])
 
 
 def main() -> None:

@@ -138,13 +138,13 @@ class Tuner(sweep.Sweeper):
         trial = self._trial = opened.ask()
         if opened.known(trial):
             return
-        number, run_dir = trial.number, refuse_link(folder / str(study.run_of(trial)))
+        number, run_dir = len(opened.trials), refuse_link(folder / str(study.run_of(trial)))
         values = [f"{key}={study.text(value)}" for key, value in trial.params.items()]
         if checkpoint.steps(run_dir / "checkpoints"):
             values.append(f"resume={overrides.quoted(str(run_dir))}")
         elif run_dir.exists():
-            run_dir = folder / str(number)
-            trial.set_user_attr("run", number)
+            run_dir = folder / str(trial.number)
+            trial.set_user_attr("run", trial.number)
         values.append(f"run_dir={overrides.quoted(str(run_dir))}")
         self.task.labels[number] = study.short(trial.params)
         self.launcher.launch([[*fixed, *values]], number)
