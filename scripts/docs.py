@@ -24,7 +24,7 @@ from textwrap import dedent
 
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import composition, config
+from hybrid_rl import conf_files, config
 from hybrid_rl.errors import UsageError
 from hybrid_rl.parts import targets
 from scripts.browser import robots
@@ -138,8 +138,8 @@ def methods() -> None:
         sections |= dict.fromkeys(heading.split(", "), text)
     links = re.compile(r"\]\((?!https?:)")
     lines = []
-    for name in composition.options("algo"):
-        path = composition.file("algo", name)
+    for name in conf_files.options("algo"):
+        path = conf_files.file("algo", name)
         yaml = path.read_text(encoding="utf-8")
         about = " ".join(line[2:] for line in re.findall(r"^# (?!@).*", yaml, re.MULTILINE))
         text = links.sub("](../docs/", sections[name])

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hybrid_rl.composition import options
+from hybrid_rl.conf_files import options
 from hybrid_rl.list import FIRST
 from scripts import docs
 
