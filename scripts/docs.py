@@ -111,8 +111,9 @@ def copy() -> None:
         for name in NOTEBOOKS:
             on_binder(f"{name}.ipynb", repository)
     results = SOURCE / "docs" / "results" / "README.md"
-    listed = {results.stem, *(Path(page.strip("<>")).stem for each in PAGES["Start"] for page in each.split())}
-    others = sorted({path.stem for path in results.parent.glob("*.md")} - listed)
+    above = str(PAGES)  # which stand higher in the side bar
+    names = sorted(path.stem for path in results.parent.glob("*.md"))
+    others = [name for name in names if f"docs/results/{name}" not in above]
     with results.open("a", encoding="utf-8") as page:
         page.write(tree("", others))
     atlas = SOURCE / "docs" / "atlas.md"

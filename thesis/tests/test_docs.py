@@ -66,6 +66,11 @@ def test_the_same_eight_methods_come_first_everywhere():
         assert names[: len(FIRST)] == list(FIRST), name
 
 
+def test_every_method_in_the_tables_leads_to_its_section():
+    page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8").partition("\n## Settings")[0]
+    assert sorted({*re.findall(r"\[`(\w+)[^`]*`\]\(#", page)}) == options("algo")
+
+
 def test_a_workflow_on_github_links_the_notebooks_to_binder(tmp_path, monkeypatch):
     monkeypatch.setattr(docs, "SOURCE", tmp_path)
     monkeypatch.setenv("GITHUB_REPOSITORY", "somebody/a_fork")
