@@ -1,4 +1,4 @@
-"""What the commands share: Hydra's command line, exit codes, one line for each error.
+"""What the commands share: exit codes, one line for each error; without JAX.
 
 Exit codes: 0 done; 2 bad usage; 128 + number after a signal, as 130 after Ctrl-C and 143 after
 SIGTERM; 1 any other failure.
@@ -6,181 +6,15 @@ SIGTERM; 1 any other failure.
 
 import inspect
 import os
-import re
 import select as polling
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NoReturn
 
-import yaml
-from omegaconf import DictConfig
-from omegaconf.errors import OmegaConfBaseException
-
-from hybrid_rl import config as configuration
-from hybrid_rl import overrides, renamed
-from hybrid_rl.cli import arguments, interrupt
-from hybrid_rl.composition import CONF, check_choices, explain, file, options, search_path
-from hybrid_rl.errors import UsageError, printable, user_line
-from hybrid_rl.fields import FieldError
-from hybrid_rl.overrides import select
-from hybrid_rl.run import inherited
-
-FLAGS = {  # of Hydra -> how many words follow
-    **dict.fromkeys(("-m", "--multirun", "-r", "--run", "--resolve", "--version"), 0),
-    **dict.fromkeys(("--hydra-help", "-sc", "--shell-completion"), 0),
-    **dict.fromkeys(("-c", "--cfg", "-p", "--package", "-cd", "--config-dir"), 1),
-    **dict.fromkeys(("-cp", "--config-path", "-cn", "--config-name"), 1),
-    **dict.fromkeys(("-i", "--info"), 1),
-}
-KEYS = (*configuration.READ, "schedule", "settings", "experiment", "sweep")  # in the help
-MODES = ("-m", "--multirun", "-r", "--run", "-c", "--cfg", "-i", "--info")  # Hydra takes one
-# KEY.KEY=VALUE or GROUP=NAME, of one value
-OF_PART = re.compile(r"^((?!hydra|task|algo|settings|experiment)[\w.@]+)=(\[[^][()]*\]|[^][,(]+)$")
-NO_FLAGS = ("-cp", "--config-path", "-cn", "--config-name")  # they would leave conf/train.yaml
-USAGE = """
-
-{doc}
-
-Keys that every method and every task has, with their defaults; the task sets those with null:
-{keys}
-
-Options:
-  -m, --multirun   one job for every combination of values with commas between them
-  --config-dir DIR a folder with groups of your own, such as DIR/algo/mine.yaml
-  --cfg job        show the composed configuration, which is every key there is, and end
-  --help           this text
-
-`python -m hybrid_rl.list` shows the tasks, the methods and the experiments."""
-
-
-def hydra_main(job: Callable[..., Any]) -> None:
-    """Run `job` on the configuration that the command line composes, once or in a sweep.
-
-    A sweeper may give `job` further arguments.
-    """
-    import hydra
-    from hydra.core.hydra_config import HydraConfig
-    from hydra.types import RunMode
-
-    def checked(config: DictConfig) -> None:
-        typed = overrides.of_job(HydraConfig.get())
-        if (launcher := HydraConfig.get().runtime.choices["hydra/launcher"]) != "basic":
-            raise UsageError(f"hydra/launcher={launcher}: sends the jobs of a sweep; add -m")
-        with as_typed(typed):
-            for note in configuration.check_overrides([(config, HydraConfig.get())]):
-                print(note, flush=True)
-            job(config)
-
-    def alone(config: DictConfig, *more: Any) -> Any:
-        if HydraConfig.get().mode == RunMode.MULTIRUN:  # checked, and reported, by sweep.Sweeper
-            return job(config, *more)
-        return _reported(lambda: checked(config))  # ends here, before Hydra adds lines of its own
-
-    if set(arguments.HELP) & set(sys.argv[1:]):
-        print(usage(inspect.getmodule(job)))
-        return
-    os.environ.setdefault("HYDRA_FULL_ERROR", "1")  # raises here instead of printing there
-    try:
-        sys.argv[1:] = overrides.allow_sweep_keys(inherited.add_choices(_ordered(sys.argv[1:])))
-        hydra.main(config_path=str(CONF), config_name="train", version_base="1.3")(alone)()
-    except Exception as error:
-        report(error)
-    except KeyboardInterrupt:
-        _interrupted()
-
-
-@contextmanager
-def as_typed(typed: Sequence[str]) -> Iterator[None]:
-    """A UsageError names the key and the value as they were typed."""
-    try:
-        yield
-    except UsageError as error:
-        line = overrides.as_typed(str(error), typed)
-        raise UsageError(_of_settings(line, overrides.typed_values(typed))) from error
-
-
-def _of_settings(line: str, given: Mapping[str, str]) -> str:
-    """A message about a field that a part lacks, with what set it, and what leaves it out."""
-    field = re.match(r"([\w.]+): \w+ (?:in \S+ )?has ([\w, ]+)", line)
-    name = given.get("settings", "")
-    if field is None or field[1] in given:
-        return line
-    part, _, lacking = field[1].rpartition(".")
-    text = file("settings", name).read_text() if name in options("settings") else ""
-    of_part: Any = select(yaml.safe_load(text) or {}, part)
-    if not isinstance(of_part, dict) or lacking not in of_part:
-        remedy = f"add a field {lacking}, leave it out by '~{field[1]}', or take another part"
-        return f"{line}; the method or a YAML file sets {field[1]}: {remedy}"
-    lost = " ".join(f"'~{part}.{key}'" for key in of_part if key not in field[2].split(", "))
-    return f"settings={name}: is not for this method: {line}; add {lost} to leave out what it lacks"
-
-
-def usage(module: Any) -> str:
-    """What --help of a command with Hydra's overrides prints."""
-    text = (CONF / "train.yaml").read_text(encoding="utf-8")
-    lines = re.findall(r"^(?:  - )?(\w+): (\S.*?)(?: +# (.*))?$", text, re.MULTILINE)
-    scalars = {line[0]: line for line in lines if line[0] in KEYS}.values()  # the last of each
-    width = max(len(f"{key}={value}") for key, value, _ in scalars)
-    keys = "\n".join(f"  {f'{key}={value}':{width}}  {about}" for key, value, about in scalars)
-    return USAGE.format(doc=inspect.getdoc(module), keys=keys).strip()
-
-
-def _ordered(line: Sequence[str]) -> list[str]:
-    """The options, then the overrides; Hydra's parser refuses options between these.
-
-    Raises:
-        UsageError: for what is neither key=value nor an option of Hydra's.
-    """
-    for text in line:
-        if text.startswith(("config_dir=", "--config-dir=")):
-            search_path(text.partition("=")[2])  # refuses what is no folder
-    line = [re.sub("^config_dir=", "--config-dir=", text) for text in line]  # as elsewhere
-    renamed.check(line)
-    check_choices(line)
-    follow, found, modes = 0, [], []  # words that belong to an option; places of all these; modes
-    for at, text in enumerate(line):
-        name, equals, _ = text.partition("=")
-        if follow:
-            follow -= 1
-            found.append(at)
-        elif name.startswith("-"):
-            flags = [flag for flag in FLAGS if flag.startswith(name)]
-            if not flags:
-                raise UsageError(f"{text}: unknown option; write {arguments.as_pair(line, at)}")
-            if flags[0] in NO_FLAGS:
-                raise UsageError(f"{text}: a run has one configuration; choose by experiment=NAME")
-            follow = 0 if equals else FLAGS[flags[0]]
-            found.append(at)
-            if flags[0] in MODES:
-                modes.append(text)
-        elif not equals and text.count("]") > text.count("["):
-            raise UsageError(f"{text}: has no key; put a list in quotes: 'key=[a, b]'")
-        elif not equals and not text.startswith("~"):
-            raise UsageError(f"{text}: has no value; write {arguments.as_pair(line, at)}")
-    if len(modes) > 1:
-        raise UsageError(f"{', '.join(modes)}: give one of them")
-    rest = [text for at, text in enumerate(line) if at not in found]
-    if {"-m", "--multirun"} & {*modes} and not any("hydra/sweeper=" in text for text in rest):
-        rest = _of_each(rest)
-    return [*(line[at] for at in found), *rest]
-
-
-def _of_each(texts: Sequence[str]) -> list[str]:
-    """The overrides of a sweep over methods, those of parts and their keys as choices of one value.
-
-    Hydra applies what is no choice to the default method first, which may not have the part.
-    """
-    if not any(re.match("(algo|experiment)=.*,", text) for text in texts):
-        return [*texts]
-
-    def one(found: re.Match[str]) -> str:
-        of_part = "." in found[1] or options(found[1].partition("@")[0])
-        return f"{found[1]}=choice({found[2]})" if of_part else found[0]
-
-    return [OF_PART.sub(one, text) for text in texts]
+from hybrid_rl.cli import interrupt
+from hybrid_rl.errors import DivergenceError, UsageError, printable, user_line
 
 
 def report(error: BaseException) -> NoReturn:
@@ -206,13 +40,14 @@ def _unread() -> bool:
 
 def diagnosis(error: BaseException) -> tuple[int, str] | None:
     """Exit code and line for what went wrong; None for a fault of ours."""
-    from hydra.errors import HydraException
-
-    from hybrid_rl.errors import DivergenceError
-
-    if isinstance(error, (UsageError, FieldError)):  # the latter while a program is traced
+    if isinstance(error, UsageError):
         return 2, str(error)
-    if isinstance(error, (HydraException, OmegaConfBaseException, yaml.YAMLError)):
+    from hybrid_rl.composition import UNCOMPOSED, explain
+    from hybrid_rl.fields import FieldError
+
+    if isinstance(error, FieldError):  # while a program is traced
+        return 2, str(error)
+    if isinstance(error, UNCOMPOSED):
         return 2, explain(error)
     if isinstance(error, (OSError, DivergenceError, MemoryError)):
         return 1, str(error)
@@ -261,10 +96,11 @@ def make_callable(module: str, function: Callable[..., Any]) -> None:
 def run(job: Callable[[], None]) -> None:
     """Run `job`; what goes wrong becomes one line and an exit code, after it has cleaned up."""
     with interrupt.as_exception():
-        _reported(job)
+        reported(job)
 
 
-def _reported(job: Callable[[], None]) -> None:
+def reported(job: Callable[[], None]) -> None:
+    """Run `job`; what goes wrong becomes one line and an exit code."""
     try:
         job()
     except Exception as error:

@@ -20,7 +20,7 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import overrides
 from hybrid_rl.cli import study, sweep
 from hybrid_rl.cli.combinations import jobs_of, labels
-from hybrid_rl.composition import options
+from hybrid_rl.conf_files import options
 from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
