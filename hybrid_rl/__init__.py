@@ -8,12 +8,9 @@ Begin with a task and a method by name, as on the command line (`python -m hybri
     policy = result.load().policy(seed=0)  # action = policy(obs)
     (curve,) = hr.curves(result.folder, "eval/return")  # curve.x [G], curve.each [S, G]
 
-Public are the names in `__all__`: `train`, `evaluate`, `load`, `curves`, `metrics`, `make` and
-`compose` by name; `Agent`, `Episode`, `Loop`, `EnvState`, `Spec` and `check` for methods and worlds
-of your own; `OnlineLearner` for a loop of your own, such as a robot's; the planning cores
-`sampling` and `adjoint`, whose `plan` takes any `step(x, u)`; and two errors. Parts are in their
-modules, such as `hybrid_rl.learners.sac.SAC`. What is public changes only with a line in the
-changelog; the rest may change without one. docs/python.md has an example of each.
+Public are the names in `__all__` and the classes that YAML files of conf/ name by `_target_`, the
+parts, such as `hybrid_rl.learners.sac.SAC`. What is public changes only with a line in the
+changelog; the rest may change without one. docs/python.md lists both, with examples.
 
 Importing this package imports neither JAX nor MuJoCo: each name is imported at its first use.
 """
@@ -23,13 +20,27 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hybrid_rl import fields, protocols, types
     from hybrid_rl.analysis.curves import curves
     from hybrid_rl.analysis.dataframes import metrics
     from hybrid_rl.config import load as compose
-    from hybrid_rl.core import adjoint, sampling
+    from hybrid_rl.core import (
+        adjoint,
+        fisher,
+        least_squares,
+        lifting,
+        riccati,
+        sampling,
+        statistics,
+    )
+    from hybrid_rl.envs.analytic.state import fully_observed
     from hybrid_rl.envs.contract import check
+    from hybrid_rl.envs.mujoco.body import Body
+    from hybrid_rl.envs.mujoco.physics import Physics
     from hybrid_rl.errors import DivergenceError, UsageError
     from hybrid_rl.evaluate import evaluate
+    from hybrid_rl.fields import part
+    from hybrid_rl.goals import retargeted
     from hybrid_rl.named import load, make
     from hybrid_rl.online import OnlineLearner
     from hybrid_rl.train import train
@@ -42,11 +53,13 @@ __version__ = "0.3.0.dev0"
 
 __all__ = [
     "Agent",
+    "Body",
     "DivergenceError",
     "EnvState",
     "Episode",
     "Loop",
     "OnlineLearner",
+    "Physics",
     "Spec",
     "UsageError",
     "adjoint",
@@ -54,45 +67,66 @@ __all__ = [
     "compose",
     "curves",
     "evaluate",
+    "fields",
+    "fisher",
+    "fully_observed",
+    "least_squares",
+    "lifting",
     "load",
     "make",
     "metrics",
+    "part",
+    "protocols",
+    "retargeted",
+    "riccati",
     "sampling",
+    "statistics",
     "train",
+    "types",
 ]
 
-_MODULES = {  # train and evaluate can be called
+_PUBLIC = {  # name -> its module, or MODULE:NAME; train and evaluate can be called
+    "Agent": "training.agent:Agent",
+    "Body": "envs.mujoco.body:Body",
+    "DivergenceError": "errors:DivergenceError",
+    "EnvState": "types:EnvState",
+    "Episode": "training.episode:Episode",
+    "Loop": "training.loop:Loop",
+    "OnlineLearner": "online:OnlineLearner",
+    "Physics": "envs.mujoco.physics:Physics",
+    "Spec": "types:Spec",
+    "UsageError": "errors:UsageError",
     "adjoint": "core.adjoint",
+    "check": "envs.contract:check",
+    "compose": "config:load",
+    "curves": "analysis.curves:curves",
     "evaluate": "evaluate",
+    "fields": "fields",
+    "fisher": "core.fisher",
+    "fully_observed": "envs.analytic.state:fully_observed",
+    "least_squares": "core.least_squares",
+    "lifting": "core.lifting",
+    "load": "named:load",
+    "make": "named:make",
+    "metrics": "analysis.dataframes:metrics",
+    "part": "fields:part",
+    "protocols": "protocols",
+    "retargeted": "goals:retargeted",
+    "riccati": "core.riccati",
     "sampling": "core.sampling",
+    "statistics": "core.statistics",
     "train": "train",
-}
-_MEMBERS = {  # public name -> module and name there
-    "Agent": ("training.agent", "Agent"),
-    "DivergenceError": ("errors", "DivergenceError"),
-    "EnvState": ("types", "EnvState"),
-    "Episode": ("training.episode", "Episode"),
-    "Loop": ("training.loop", "Loop"),
-    "OnlineLearner": ("online", "OnlineLearner"),
-    "Spec": ("types", "Spec"),
-    "UsageError": ("errors", "UsageError"),
-    "check": ("envs.contract", "check"),
-    "compose": ("config", "load"),
-    "curves": ("analysis.curves", "curves"),
-    "load": ("named", "load"),
-    "make": ("named", "make"),
-    "metrics": ("analysis.dataframes", "metrics"),
+    "types": "types",
 }
 
 
 def __getattr__(name: str) -> Any:
     """A public name, imported when it is first used."""
-    if name in _MODULES:
-        return import_module(f"hybrid_rl.{_MODULES[name]}")
-    if name in _MEMBERS:
-        module, member = _MEMBERS[name]
-        return getattr(import_module(f"hybrid_rl.{module}"), member)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name not in _PUBLIC:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, _, member = _PUBLIC[name].partition(":")
+    found = import_module(f"hybrid_rl.{module}")
+    return getattr(found, member) if member else found
 
 
 def __dir__() -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any, get_origin
 from omegaconf import DictConfig, ListConfig, OmegaConf
 
 from hybrid_rl import parts
+from hybrid_rl.conf_files import MODES
 from hybrid_rl.envs.adapters.external import External
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.adapters.unstepped import Unstepped
@@ -30,7 +31,6 @@ PAID = ("reward", "constraint")  # what the world pays and asks for; a run may l
 STEPS = 2**31  # decisions, fewer of which are counted
 FINITE = 3.4e38  # the largest number of 32 bits
 SEEDS = 2**32  # distinct seeds of JAX's generator
-MODES = ("full", "policy", "planner")
 KINDS = {  # type of a part's field -> its name in messages
     int: "a whole number",
     float: "a number",

@@ -8,67 +8,26 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from hydra.errors import HydraException, MissingConfigException, OverrideParseException
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from hybrid_rl import overrides
 from hybrid_rl.checks import COUNTS, check_fields
+from hybrid_rl.conf_files import CONF, THESIS, options
 from hybrid_rl.errors import UsageError, install, printable, relative
 from hybrid_rl.parts import asked, part_class
-from hybrid_rl.settings import registry
 from hybrid_rl.settings.complete import keys, nearest
 from hybrid_rl.training.episode import Episode
 
-HERE = Path(__file__).parent
-CONF = next(p for p in (HERE / "conf", HERE.parent / "conf") if (p / "train.yaml").exists())
-THESIS = CONF.parent / "thesis" / "conf"  # methods by the thesis' names, on the search path
 OF_A_TASK = ("task", "env", *COUNTS, "random_steps")  # keys without which no run can begin
 SLURM = "submitit_slurm"  # the launcher of an extra
 MANY = 40  # names that are too many for a line; tasks are fewer
 GLOBAL, METHODS = "# @package _global_", "`python -m hybrid_rl.list` shows methods"
 OF_GYMNASIUM = re.compile(r"(?P<id>-v\d+$)|(?P<make>\w:\w)")  # ids, and MODULE:CLASS
+UNCOMPOSED = (HydraException, OmegaConfBaseException, yaml.YAMLError)  # what `explain` explains
 ROOT_KEY = re.compile(r"^(\w+):", re.MULTILINE)
 INHERIT = "set them, or begin with defaults: [/task@_global_: pendulum, _self_] to take its values"
-
-
-def search_path(config_dir: str | Path) -> str:
-    """The override by which Hydra finds the groups in a folder of the user.
-
-    Raises:
-        UsageError: if there is no such folder, or Hydra would take another file for one of it.
-    """
-    folder = Path(config_dir).expanduser().resolve()
-    if not folder.is_dir():
-        raise UsageError(f"config_dir={config_dir}: no such folder")
-    ours = {file.relative_to(CONF): file.read_bytes() for file in CONF.glob("*/**/*.yaml")}
-    for group, names in registry.choices(CONF).items():
-        ours |= {Path(group, f"{name}.yaml"): b"" for name in names}
-    for name, text in sorted(ours.items()):
-        mine = folder / name
-        if mine.is_file() and mine.read_bytes() != text:
-            raise UsageError(
-                f"config_dir={config_dir}: hybrid_rl has {name.parent.as_posix()}={name.stem} of "
-                f"its own, which a run would take; rename {name}"
-            )
-    return f"hydra.searchpath=['file://{folder}','pkg://hybrid_rl.thesis.conf']"
-
-
-def options(group: str) -> list[str]:
-    """Names that a configuration group offers, with their folders."""
-    files = {
-        path.relative_to(conf / group).with_suffix("").as_posix()
-        for conf in (CONF, THESIS)
-        for path in (conf / group).rglob("*.yaml")
-    }
-    return sorted(files | registry.choices(CONF).get(group, {}).keys())
-
-
-def groups(config_dir: str | Path | None = None) -> set[str]:
-    """The names of the groups in conf/, and of those in a folder of the user."""
-    folders = [CONF, THESIS, *([Path(config_dir).expanduser()] if config_dir else [])]
-    files = (path.relative_to(folder) for folder in folders for path in folder.rglob("*.yaml"))
-    found = {above.as_posix() for file in files for above in file.parents} - {"."}
-    return found | registry.ROLES.keys()
 
 
 def keys_of(texts: Sequence[str], hydra: Any) -> dict[str, str]:
@@ -113,22 +72,10 @@ def check_choices(texts: Sequence[str]) -> None:
             raise UsageError(f"{text}: {_choice(value, known)}")
 
 
-def file(group: str, name: str) -> Path:
-    """The YAML file of an option of the library or of the thesis.
-
-    Raises:
-        FileNotFoundError: if there is none.
-    """
-    for conf in (CONF, THESIS):
-        if (path := conf / group / f"{name}.yaml").is_file():
-            return path
-    raise FileNotFoundError(f"{group}={name}")
-
-
-def tasks_with(*methods: str, conf: Path = CONF, keys: Collection[str] = ()) -> list[str]:
+def tasks_with(*methods: str, keys: Collection[str] = ()) -> list[str]:
     """Tasks whose environment has these methods, as `dynamics` if it is analytic, and keys."""
     names = []
-    for path in sorted((conf / "task").glob("*.yaml")):
+    for path in sorted((CONF / "task").glob("*.yaml")):
         task: Any = OmegaConf.load(path)
         with suppress(ValueError, KeyError, AttributeError):  # an unfinished task of the user
             kind, has = part_class(task.env._target_), {*keys} <= {*task.env}
@@ -138,8 +85,6 @@ def tasks_with(*methods: str, conf: Path = CONF, keys: Collection[str] = ()) -> 
 
 def explain(error: Exception) -> str:
     """One line that names the key, the value and what is allowed, from an error of Hydra's."""
-    from hydra.errors import MissingConfigException, OverrideParseException
-
     if isinstance(error, yaml.YAMLError):
         return _no_yaml(error)
     if isinstance(error, MissingConfigException) and error.missing_cfg_file is not None:

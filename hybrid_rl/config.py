@@ -8,10 +8,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-import yaml
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
-from hydra.errors import HydraException
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
@@ -19,17 +17,16 @@ from hybrid_rl import checks, renamed
 from hybrid_rl import overrides as overriding
 from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
 from hybrid_rl.composition import (
-    CONF,
+    UNCOMPOSED,
     check_choices,
     check_keys,
     check_task,
     explain,
-    groups,
     keys_of,
-    search_path,
     settings_keys,
     tasks_with,
 )
+from hybrid_rl.conf_files import CONF, groups, search_path
 from hybrid_rl.envs.adapters.external import External, check_world
 from hybrid_rl.envs.adapters.robot import Robot
 from hybrid_rl.envs.mujoco.physics import resolve as resolve_physics
@@ -97,7 +94,7 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
             known = GlobalHydra.instance().is_initialized()
             with nullcontext() if known else initialize_config_dir(str(CONF), version_base="1.3"):
                 config = compose("train", [*more, *words], return_hydra_config=True)
-    except (HydraException, OmegaConfBaseException, yaml.YAMLError) as error:
+    except UNCOMPOSED as error:
         raise UsageError(explain(error)) from error
     return read_only([config])[0]
 

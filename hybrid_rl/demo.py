@@ -48,7 +48,7 @@ def installed() -> str:
     """Lines about this machine and this installation."""
     import jax
 
-    from hybrid_rl.composition import options
+    from hybrid_rl.conf_files import options
     from hybrid_rl.trained import names
 
     device = jax.devices()[0]

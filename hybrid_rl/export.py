@@ -24,28 +24,9 @@ if __name__ == "__main__":
 
     interrupt.install()
 
-import sys
-from collections.abc import Callable, Sequence
-from keyword import iskeyword
-from pathlib import Path
-from typing import Any
-
-import jax
-import jax.numpy as jnp
-import numpy as np
-from jax import Array
-
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import POLICY, Argument, output, read, several, whole
-from hybrid_rl.controllers.policy import PolicyController
-from hybrid_rl.core.lifting import is_identity
-from hybrid_rl.data.layers import SCRIPT, save_c, save_numpy, save_onnx
-from hybrid_rl.drafts import replacing
-from hybrid_rl.errors import UsageError, install, printable
-from hybrid_rl.networks import Perceptron, precision
-from hybrid_rl.protocols import Controller
-from hybrid_rl.trained import load_named
-from hybrid_rl.types import Params, Spec
+from hybrid_rl.errors import UsageError, printable
 
 SUFFIXES = (".stablehlo", ".npz", ".onnx", ".h")
 SHOWN = ".stablehlo, .npz, .onnx or .h"
@@ -60,125 +41,15 @@ ARGUMENTS = (
 )
 
 
-def program(
-    spec: Spec,
-    controller: Controller,
-    params: Params,
-    platforms: Sequence[str] = ("cpu",),
-    span: tuple[np.ndarray, np.ndarray] | None = None,
-) -> jax.export.Exported:
-    """The controller with `params` as a program of the form that this module's docstring gives.
-
-    span: middle [m] and half the width [m] of the actions' bounds; None: they are -1 and 1.
-    """
-
-    def scaled(u: Array) -> Array:
-        return u if span is None else span[0] + span[1] * jnp.clip(u, -1.0, 1.0)
-
-    obs = jax.ShapeDtypeStruct((spec.obs,), jnp.float32)
-    if isinstance(controller, PolicyController):
-
-        def act(obs: Array) -> Array:
-            return scaled(controller.act(params, (), obs, jax.random.key(0))[0])
-
-        return _exported(act, platforms, obs)
-    first = controller.init(spec)
-    words = _words((jnp.zeros((), jnp.uint32), first))
-
-    def decide(obs: Array, state: Array, key: Array) -> tuple[Array, Array]:
-        count, now = _tree(state, (jnp.zeros((), jnp.uint32), first))
-        now = jax.tree.map(lambda begin, later: jnp.where(count == 0, begin, later), first, now)
-        u, now, _ = controller.act(params, now, obs, jax.random.wrap_key_data(key))
-        return scaled(u), _words((count + 1, now))
-
-    two = jax.ShapeDtypeStruct((2,), jnp.uint32)
-    state = jax.ShapeDtypeStruct(words.shape, jnp.uint32)
-    return _exported(decide, platforms, obs, state, two)
-
-
-def _exported(f: Callable[..., Any], platforms: Sequence[str], *given: Any) -> jax.export.Exported:
-    """`f` of arrays of these shapes, in float32 whatever it was trained in."""
-    with precision.using("float32"):
-        return jax.export.export(jax.jit(f), platforms=platforms)(*given)
-
-
-def _words(tree: Any) -> Array:
-    """The leaves of 32 bits or bool, one after the other, as uint32 [w]."""
-
-    def one(leaf: Array) -> Array:
-        leaf = leaf.astype(jnp.uint32) if leaf.dtype == bool else leaf
-        return jax.lax.bitcast_convert_type(leaf, jnp.uint32).reshape(-1)
-
-    return jnp.concatenate([one(jnp.asarray(leaf)) for leaf in jax.tree.leaves(tree)])
-
-
-def _tree(words: Array, like: Any) -> Any:
-    """The inverse of `_words`, for a tree like `like`."""
-    leaves, structure = jax.tree.flatten(jax.tree.map(jnp.asarray, like))
-    parts = jnp.split(words, np.cumsum([leaf.size for leaf in leaves])[:-1])
-
-    def one(part: Array, leaf: Array) -> Array:
-        part = part.reshape(leaf.shape)
-        if leaf.dtype == bool:
-            return part != 0
-        return jax.lax.bitcast_convert_type(part, leaf.dtype)
-
-    return jax.tree.unflatten(structure, map(one, parts, leaves))
-
-
-def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
-    """The policy that acts as plain arrays.
-
-    Raises:
-        UsageError: if it plans, is no multilayer perceptron, or sees features of observations.
-    """
-    other = "; choose out=FILE.stablehlo"
-    if not isinstance(controller, PolicyController):
-        raise UsageError(f"mode: the file holds a policy, {type(controller).__name__} plans{other}")
-    policy: Any = controller.policy
-    if not hasattr(policy, "perceptron"):
-        name = type(policy).__name__
-        raise UsageError(f"out: the file holds a multilayer perceptron, this is {name}{other}")
-    if not is_identity(controller.model, params.model, spec.obs):
-        raise UsageError(f"out: the file holds a policy of observations, not of features{other}")
-    return policy.perceptron(params.policy, spec)
-
-
-def _check_script(out: Path) -> None:
-    """Raise UsageError if OUT.py is a file of the user's, or would hide a module of Python."""
-    script = out.with_suffix(".py")
-    if out.stem in {*sys.stdlib_module_names, "numpy"}:
-        raise UsageError(f"out={out}: {script} would hide Python's {out.stem}; choose another name")
-    if script.exists() and not script.read_text(encoding="utf-8").startswith(SCRIPT[:16]):
-        raise UsageError(f"out={out}: {script} would be replaced; choose another name")
-
-
-def _saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
-    """Write the file of a policy; returns a line that says how it is used.
-
-    Raises:
-        UsageError: if the format needs a package that is not installed.
-    """
-    if out.suffix == ".h":
-        return f'{out}: #include "{out.name}"; {save_c(out, task, spec, net)}(obs, action)'
-    if out.suffix == ".npz":
-        script = save_numpy(out, task, spec, net)
-        name = script.stem
-        act = f"from {name} import act" if name.isidentifier() and not iskeyword(name) else ""
-        act = act or f'act = importlib.import_module("{name}").act'
-        return f"{out} and {script}: {act}; action = act(obs)"
-    try:
-        save_onnx(out, task, spec, net)
-    except ImportError as error:
-        raise UsageError(f"out={out}: needs onnx; {install('onnx')}") from error
-    return f'{out}: onnxruntime.InferenceSession("{out.name}").run(None, {{"obs": obs[None]}})'
-
-
 def main() -> None:
     """The command."""
     given, _ = read(__doc__, ARGUMENTS)
     others = (".py",) if given["out"].endswith(".npz") else ()
     out = output("out", given["out"], SUFFIXES, *others)
+    from hybrid_rl import exported  # imports JAX, for seconds
+    from hybrid_rl.drafts import replacing
+    from hybrid_rl.trained import load_named
+
     trained = load_named(given)
     if given["mode"] == "policy" and "policy" not in trained.controllers:
         line = "the run has no policy, only a planner; give mode=full out=FILE.stablehlo"
@@ -186,15 +57,15 @@ def main() -> None:
     controller, params = trained.learner(given["seed"], given["mode"])
     spec = trained.episode.spec
     if out.suffix == ".npz":
-        _check_script(out)
+        exported.check_script(out)
     if parts := getattr(trained.episode.env, "parts", ""):
         flat = "gymnasium.spaces.flatten(env.observation_space, obs)"
         print(f"obs [{spec.obs}]: {printable(parts)}; {flat} makes it")
     if out.suffix != ".stablehlo":
-        net = layers(spec, controller, params)._replace(span=trained.span)
-        print(_saved(out, trained.task, spec, net))
+        net = exported.layers(spec, controller, params)._replace(span=trained.span)
+        print(exported.saved(out, trained.task, spec, net))
         return
-    made = program(spec, controller, params, given["platforms"], trained.span)
+    made = exported.program(spec, controller, params, given["platforms"], trained.span)
     with replacing(out) as draft:
         draft.write_bytes(made.serialize())
     print(f"{out}: {trained.task}, {given['mode']}, {', '.join(given['platforms'])}")

@@ -37,7 +37,8 @@ from omegaconf.errors import OmegaConfBaseException
 
 from hybrid_rl import config as configuration
 from hybrid_rl.cli.arguments import GOAL
-from hybrid_rl.composition import CONF, check_choices, explain, search_path
+from hybrid_rl.composition import check_choices, explain
+from hybrid_rl.conf_files import CONF, search_path
 from hybrid_rl.data.replay import Replay
 from hybrid_rl.envs.adapters.robot import Outside, Robot
 from hybrid_rl.envs.adapters.unstepped import ALONE

@@ -3,9 +3,10 @@
     python -m hybrid_rl.list
     python -m hybrid_rl.list config_dir=my_conf
 
-The description is the first comment of the YAML file; a comment "Needs an analytic task." of a
-method is listed as [needs an analytic task]. With config_dir=DIR, or --config-dir DIR
-(two words) as for `train`, the entries of that folder are listed, too.
+The description is the first comment of the YAML file. A comment "Needs an analytic task." of a
+method is listed as [needs an analytic task], and "Has analytic dynamics." of a task likewise.
+With config_dir=DIR, or --config-dir DIR (two words) as for `train`, the entries of that folder are
+listed, too.
 """
 
 if __name__ == "__main__":
@@ -18,15 +19,9 @@ from pathlib import Path
 
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import CONFIG_DIR, read
-from hybrid_rl.composition import CONF, THESIS, search_path, tasks_with
+from hybrid_rl.conf_files import CONF, THESIS, search_path
 
-HAS = {  # method of an environment -> its mark
-    "dynamics": "analytic",
-    "equilibrium": "equilibrium",
-    "reference": "reference",
-    "reward_of": "known reward",
-}
-NEEDS = "# Needs "  # begins the comment of a method that not every task fits
+MARKS = ("# Has ", "# Needs ")  # of a task, and of a method that not every task fits
 GROUPS = {"task": "Tasks", "algo": "Methods", "experiment": "Experiments"}
 FIRST = (  # of the methods; parts of others and baselines follow
     *("hybrid_stochastic", "hybrid_deterministic", "sac", "flash_sac", "nn_mppi", "hybrid_bc"),
@@ -35,11 +30,11 @@ FIRST = (  # of the methods; parts of others and baselines follow
 ARGUMENTS = (CONFIG_DIR,)
 
 
-def listing(conf: Path = CONF) -> dict[str, dict[str, str]]:
-    """Group -> name -> what it is."""
+def listing(conf: Path = CONF) -> dict[str, dict[str, Path]]:
+    """Group -> name -> its YAML file."""
     return {
         group: {
-            path.relative_to(conf / group).with_suffix("").as_posix(): about(path)
+            path.relative_to(conf / group).with_suffix("").as_posix(): path
             for path in sorted((conf / group).rglob("*.yaml"))
         }
         for group in GROUPS
@@ -55,28 +50,17 @@ def about(path: Path) -> str:
     return ""
 
 
-def marks(conf: Path = CONF) -> dict[str, dict[str, str]]:
-    """Group -> name -> what the environment of a task has, or that of a method must have."""
-    has: dict[str, list[str]] = {}
-    for method, mark in HAS.items():
-        for name in tasks_with(method, conf=conf):
-            has.setdefault(name, []).append(mark)
-    tasks = {name: ", ".join(each) for name, each in has.items()}
-    methods = {path.stem: needs(path) for path in sorted((conf / "algo").glob("*.yaml"))}
-    return {"task": tasks, "algo": methods, "experiment": {}}
-
-
-def needs(path: Path) -> str:
-    """What a method says it needs, "needs an analytic task"; empty if it says nothing."""
+def mark(path: Path) -> str:
+    """What a task has or a method needs, "needs an analytic task", by its file; or ""."""
     for line in path.read_text(encoding="utf-8").splitlines():
-        if line.startswith(NEEDS):
-            return f"needs {line.removeprefix(NEEDS).strip().rstrip('.')}"
+        if line.startswith(MARKS):
+            return line[2].lower() + line[3:].rstrip(" .")
     return ""
 
 
-def _mark(needed: str | None) -> str:
-    """What a task has or a method needs, in brackets."""
-    return f"[{needed}]" if needed else ""
+def _row(name: str, path: Path, width: int) -> str:
+    words = mark(path)
+    return f"  {name:{width}}  {about(path)} {f'[{words}]' if words else ''}".rstrip()
 
 
 def main() -> None:
@@ -89,18 +73,14 @@ def main() -> None:
     if given["config_dir"]:
         search_path(given["config_dir"])  # refuses what is no folder
         folders.insert(1, Path(given["config_dir"]).expanduser())
-    listed = [(listing(folder), marks(folder)) for folder in folders]
-    width = max(len(name) for names, _ in listed for group in GROUPS for name in names[group])
+    listed = [listing(folder) for folder in folders]
+    width = max(len(name) for groups in listed for names in groups.values() for name in names)
     for group, title in GROUPS.items():
-        each = [
-            {
-                name: f"  {name:{width}}  {text} {_mark(restricted[group].get(name))}".rstrip()
-                for name, text in names[group].items()
-            }
-            for names, restricted in listed
+        *ours, theirs = [
+            {name: _row(name, path, width) for name, path in groups[group].items()}
+            for groups in listed
         ]
-        theirs = each.pop()
-        rows = {name: line for lines in each for name, line in lines.items()}
+        rows = {name: line for lines in ours for name, line in lines.items()}
         first = [rows.pop(name) for name in FIRST if name in rows] if group == "algo" else []
         print(f"{title}  ({group}=NAME{'; start with these eight' if first else ''})")
         if first:

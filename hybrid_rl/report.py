@@ -94,8 +94,8 @@ def _state(run: RunFolder) -> str:
 
 def _runs(runs: Sequence[RunFolder]) -> str:
     """What ran, where, how fast, and how it ended."""
-    head = ("run", "task", "method", "seeds", "decisions", "end", "evaluation", "training return")
-    head += ("decisions/s", "wall time")
+    head = ("run", "task", "method", "seeds", "decisions", "end")
+    head += ("evaluation return", "training return", "decisions/s", "wall time")
 
     def row(run: RunFolder) -> list[Any]:
         get = run.summary.get
@@ -118,10 +118,11 @@ def _runs(runs: Sequence[RunFolder]) -> str:
 
 
 def _span(seeds: Sequence[int]) -> str:
-    """Seeds as a text; three or more that follow each other by their ends."""
+    """How many seeds and which; three or more that follow each other by their ends."""
+    which = ", ".join(map(str, seeds))
     if len(seeds) > 2 and list(seeds) == list(range(seeds[0], seeds[-1] + 1)):
-        return f"{seeds[0]} to {seeds[-1]}"
-    return ", ".join(map(str, seeds))
+        which = f"{seeds[0]} to {seeds[-1]}"
+    return f"{len(seeds)} ({'seed' if len(seeds) == 1 else 'seeds'} {which})"
 
 
 def _videos(runs: Sequence[RunFolder], wanted: bool) -> str:
@@ -158,7 +159,8 @@ def _drawn(folder: Path) -> dict[str, bytes]:
         out = Path(parent, "video.mp4")
         render.draw_film(trained.episode, film, out)
         caption = (
-            f"step {trained.step:,}, {len(film.poses) - 1} decisions, return {film.total:,.1f}"
+            f"after {trained.step:,} decisions of training: the first {len(film.poses) - 1} of "
+            f"{trained.episode.steps:,} decisions of an episode, return so far {film.total:,.1f}"
         )
         return {caption: out.read_bytes()}
 

@@ -34,7 +34,7 @@ from omegaconf import DictConfig
 
 import hybrid_rl
 from hybrid_rl import overrides
-from hybrid_rl.cli import command, interrupt
+from hybrid_rl.cli import command, hydra_line, interrupt
 from hybrid_rl.config import Run
 from hybrid_rl.errors import DivergenceError, UsageError
 from hybrid_rl.run import assembled, divergence, folder, launch, together
@@ -252,4 +252,4 @@ def _result(summary: Mapping[str, Any]) -> str:
 command.make_callable(__name__, train)
 
 if __name__ == "__main__":
-    command.hydra_main(_job)
+    hydra_line.hydra_main(_job)

@@ -11,19 +11,21 @@ found.
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
-from hybrid_rl.cli.arguments import Argument, one_of, read, whole
+from hybrid_rl.cli.arguments import Argument, read, whole
 from hybrid_rl.doctor.__main__ import examine
+from scripts.broken.faulty_world import AUDITED, INVENTED
 
 HERE = Path(__file__).parent / "broken"  # the user's files: a world, and its task
 ARGUMENTS = (
     Argument("folder", "runs/broken", "of the runs"),
     Argument("seed", 6, "of each run", whole(0)),
-    Argument("runs", "all", "which: all, broken or sound", one_of("all", "broken", "sound")),
+    Argument("runs", "all", "which: all, or some of broken, audited, invented, sound"),
     Argument("out", "", "JSON with the lines on each run; empty: printed alone"),
 )
 SMALL = "settings=light total_steps=3000 random_steps=500 eval_every=1500 eval_episodes=3"
@@ -54,12 +56,20 @@ SOUND = {  # name -> its task and method
 }
 
 
+KINDS = {
+    "broken": BROKEN,
+    "audited": {name: f"task=faulty algo=sac 'env.kind={name}'" for name in AUDITED},
+    "invented": {name: f"task=faulty algo=sac 'env.kind={name}'" for name in INVENTED},
+    "sound": SOUND,
+}
+
+
 def train(folder: Path, words: str, seed: int) -> None:
     """One run into `folder`; that of a world whose reward is NaN ends with 1."""
     if (folder / "summary.json").exists():
         return
     command = [sys.executable, "-m", "hybrid_rl.train", "--config-dir", str(HERE)]
-    command += [*SMALL.split(), *words.split(), f"seed={seed}", f"run_dir={folder}"]
+    command += [*SMALL.split(), *shlex.split(words), f"seed={seed}", f"run_dir={folder}"]
     done = subprocess.run(command, env=_paths(), capture_output=True, text=True)
     if done.returncode not in (0, 1):
         raise RuntimeError(f"{folder}: {done.stderr.strip()}")
@@ -73,12 +83,11 @@ def _paths() -> dict[str, str]:
 def main() -> None:
     """The command."""
     given: Any = read(__doc__, ARGUMENTS)[0]
-    kinds = {"broken": BROKEN, "sound": SOUND}
     found: dict[str, dict[str, dict[str, str]]] = {}
     sys.path.insert(0, str(HERE))
-    for kind in kinds if given["runs"] == "all" else [given["runs"]]:
+    for kind in KINDS if given["runs"] == "all" else given["runs"].split(","):
         found[kind] = {}
-        for name, words in kinds[kind].items():
+        for name, words in KINDS[kind].items():
             folder = Path(given["folder"], name.replace(",", "").replace(" ", "_"))
             task = "" if "task=" in words else "task=broken "
             train(folder, task + words, given["seed"])
@@ -86,7 +95,9 @@ def main() -> None:
             lines = [": ".join(each) for each in found[kind][name].items()]
             print(f"{kind}: {name}", *lines, sep="\n  ", flush=True)
     if given["out"]:
-        Path(given["out"]).write_text(json.dumps(found, indent=1) + "\n")
+        out = Path(given["out"])
+        old = json.loads(out.read_text()) if out.exists() else {}
+        out.write_text(json.dumps(old | found, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -19,20 +19,22 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 from textwrap import dedent
 
 from omegaconf import DictConfig, OmegaConf
 
-from hybrid_rl import composition, config
+from hybrid_rl import conf_files, config
 from hybrid_rl.errors import UsageError
 from hybrid_rl.parts import targets
 from scripts.browser import robots
 
 ROOT = Path(__file__).resolve().parents[1]
+BEGAN = time.monotonic()
 BUILD = ROOT / "build" / "docs"
 SOURCE, HTML, LINKS = BUILD / "source", BUILD / "html", BUILD / "links"
-AT_TOP = ("CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
+AT_TOP = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "CITATION.cff", "LICENSE")
 TASKS = ("pendulum", "cart_double_pendulum", "quadcopter_se3", "sprk_sand", "contact_plane")
 TASKS += ("sawyer_torque", "cart_swing_up", "lander", "no_dynamics", "halfcheetah")
 PACKAGES = {  # page of the reference -> folders and modules
@@ -64,11 +66,24 @@ TREE = """
 PAGES
 ```
 """
-ROBOTS = r"```{container} robots\n\g<0>\n```"  # README's first picture, where robots run on a click
+FIRST = """# hybrid_rl
+
+Trains robots from few environment steps: it learns a model, a policy that learns through the model,
+and a planner that acts with both, in JAX and MuJoCo.
+
+```{container} robots
+![A trained humanoid runs](docs/humanoid.jpg)
+```
+
+* **[Train a robot](README.md)**: two commands, three to four minutes on two cores
+* **[Give a trained robot a new goal](docs/results/planning.md)**: it plans, nothing is trained
+* **[Bring your own](docs/howto.md)**: robot, task, method or planner
+"""  # the first page, on which robots run on a click
 NOTEBOOKS = [f"docs/notebooks/{path.stem}" for path in sorted(ROOT.glob("docs/notebooks/*.ipynb"))]
 PAGES = {
     "Start": [
-        *("Getting started <self>", "docs/concepts", "docs/which_method", "docs/howto"),
+        *("First page <self>", "Getting started <README>", "docs/concepts", "docs/which_method"),
+        *("New goals <docs/results/planning>", "docs/howto"),
         *("docs/not_learning", "docs/python", "docs/faq"),
         *("docs/files", "docs/renamed", "CONTRIBUTING"),
     ],
@@ -91,13 +106,14 @@ def copy() -> None:
     for name in AT_TOP:
         shutil.copy(ROOT / name, SOURCE / name)
     trees = "".join(tree(caption, pages) for caption, pages in PAGES.items())
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    write("index.md", re.sub(r"(?m)^!\[.*\)$", ROBOTS, text, count=1) + trees)
+    write("index.md", FIRST + trees)
     if repository := os.environ.get("GITHUB_REPOSITORY"):
         for name in NOTEBOOKS:
             on_binder(f"{name}.ipynb", repository)
     results = SOURCE / "docs" / "results" / "README.md"
-    others = sorted(path.stem for path in results.parent.glob("*.md") if path != results)
+    above = str(PAGES)  # which stand higher in the side bar
+    names = sorted(path.stem for path in results.parent.glob("*.md"))
+    others = [name for name in names if f"docs/results/{name}" not in above]
     with results.open("a", encoding="utf-8") as page:
         page.write(tree("", others))
     atlas = SOURCE / "docs" / "atlas.md"
@@ -138,8 +154,8 @@ def methods() -> None:
         sections |= dict.fromkeys(heading.split(", "), text)
     links = re.compile(r"\]\((?!https?:)")
     lines = []
-    for name in composition.options("algo"):
-        path = composition.file("algo", name)
+    for name in conf_files.options("algo"):
+        path = conf_files.file("algo", name)
         yaml = path.read_text(encoding="utf-8")
         about = " ".join(line[2:] for line in re.findall(r"^# (?!@).*", yaml, re.MULTILINE))
         text = links.sub("](../docs/", sections[name])
@@ -220,7 +236,7 @@ def shown(path: Path) -> bool:
 
 def build(builder: str, out: Path, *options: str) -> None:
     """Run Sphinx; the process ends if it fails."""
-    command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
+    command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going"]
     command += ["--fresh-env", "-c", str(ROOT / "docs"), "-d", str(BUILD / "doctrees")]
     command += ["--jobs", "2", "--builder", builder, *options]
     shutil.rmtree(out, ignore_errors=True)
@@ -234,16 +250,25 @@ def main() -> None:
     if sys.argv[1:] not in ([], ["fast"], ["links"]):
         sys.exit("usage: python scripts/docs.py [fast | links]")
     still = ("-D", "nb_execution_mode=off") if sys.argv[1:] else ()
+    say("copying the pages")
     copy()
+    say("writing a page per method and the reference")
     methods()
     reference()
+    say("Sphinx: five minutes of a core, with notebooks ten")
     if "links" in sys.argv:
         build("linkcheck", LINKS, *still)
         print(LINKS / "output.txt")
     else:
         build("html", HTML, *still)
+        say("writing the robots of the first page")
         robots.write(HTML / "_static" / "robots" / "robots.js")
         print(HTML / "index.html")
+
+
+def say(what: str) -> None:
+    """A line about what comes next, with the seconds so far."""
+    print(f"{time.monotonic() - BEGAN:4.0f} s: {what}", flush=True)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from omegaconf import OmegaConf
 from tiny import SMALL
 
 from hybrid_rl import config
-from hybrid_rl.composition import file, options
+from hybrid_rl.conf_files import file, options
 from hybrid_rl.controllers.gradient import GradientController
 
 PARTS = [

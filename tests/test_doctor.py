@@ -11,7 +11,8 @@ from tiny import call, only_line, run, summary_of
 from hybrid_rl.analysis.results import RunFolder
 from hybrid_rl.cli import command
 from hybrid_rl.doctor import __main__ as doctor
-from hybrid_rl.doctor import learned, observed, task
+from hybrid_rl.doctor import evidence as evidence_of
+from hybrid_rl.doctor import learned, linear, observed, regular, task
 from hybrid_rl.doctor.evidence import Evidence, of_each, read
 from hybrid_rl.doctor.tried import Tried
 from hybrid_rl.types import Spec, Transition
@@ -20,14 +21,15 @@ DT, STEPS, EPISODES = 0.1, 50, 30
 OBSERVED = ("constant", "clipped", "noise", "action", "rare", "hidden")
 
 
-def oscillator(delay=0, lag=1.0, dt=DT, steps=STEPS, seed=0):
-    """(x, v) [E, T+1, 2] and random actions [E, T, 1] of x'' = -x - 0.4 x' + 3 u."""
+def oscillator(delay=0, lag=1.0, dt=DT, steps=STEPS, seed=0, gain=1.0):
+    """(x, v) [E, T+1, 2] and random actions [E, T, 1] of x'' = -x - 0.4 x' + 3 gain u."""
+    gain = np.broadcast_to(gain, (EPISODES * STEPS // steps, steps))
     rng = np.random.default_rng(seed)
     x = np.empty((EPISODES * STEPS // steps, steps + 1, 2))
     action = rng.uniform(-1, 1, (*x[:, :-1, :1].shape[:2], 1))
     x[:, 0], motor = rng.normal(size=(len(x), 2)), np.zeros(len(x))
     for t in range(steps):
-        asked = action[:, t - delay, 0] if t >= delay else np.zeros(len(x))
+        asked = gain[:, t] * action[:, t - delay, 0] if t >= delay else np.zeros(len(x))
         motor = motor + (asked - motor) / lag
         now = x[:, t]
         for _ in range(20):
@@ -65,7 +67,8 @@ def test_a_sound_world_gets_no_line():
     goal = np.broadcast_to(np.arange(len(x))[:, None], x.shape[:2])  # one in each episode
     given = evidence(np.dstack((x, goal)), action, reward=evidence(x, action).made.reward)
     assert found(given) == set()
-    assert [check(given) for check in (task.ends, task._fixed, task.reward)] == [None] * 3
+    rest = task.ends, task._fixed, task.reward, regular.alternates, regular.gains
+    assert [check(given) for check in rest] == [None] * 5
 
 
 @pytest.mark.parametrize("delay", [1, 2, 4])
@@ -81,6 +84,41 @@ def test_a_slow_motor_and_one_that_is_off_have_different_lines():
     assert "no action changed" in observed.action(evidence(x, action))
     clock = np.broadcast_to(np.arange(STEPS + 1.0), x.shape[:2])  # its change is always the same
     assert "no action changed" in observed.action(evidence(np.dstack((x, clock)), action))
+
+
+def test_commands_that_are_lost_and_signs_that_an_episode_draws_are_told_apart():
+    arrived = np.random.default_rng(7).random((EPISODES, STEPS)) < 0.5
+    share, line = regular.gains(evidence(*oscillator(gain=arrived))).split(" of the actions ")
+    assert float(share[:-1]) == pytest.approx(50, abs=3)
+    assert line.startswith("had no effect")
+    signs = np.where(np.arange(EPISODES) % 3, 1.0, -1.0)[:, None]
+    given = evidence(*oscillator(gain=signs))
+    assert f"the other way in 10 of {EPISODES}" in regular.gains(given)
+    assert observed.action(given) is None  # though their effects nearly cancel out
+
+
+def test_entries_that_are_swapped_every_other_decision_are_noticed():
+    x, action = oscillator()
+    assert regular.alternates(evidence(x, action)) is None
+    x[:, 1::2] = x[:, 1::2, ::-1].copy()
+    assert "if every other decision has a rule of its own" in regular.alternates(
+        evidence(x, action)
+    )
+
+
+def test_a_velocity_that_is_one_decision_old_is_a_late_sensor_and_no_delay():
+    x, action = oscillator()
+    x[:, 1:, 1] = x[:, :-1, 1].copy()
+    line = observed.action(evidence(x, action))
+    assert line.startswith("obs 1 shows an action later than obs 0: that sensor is late")
+
+
+def test_a_reward_that_is_one_decision_late_is_noticed():
+    x, action = oscillator()
+    paid = -(x[:, :-1] ** 2).sum(-1) - action[..., 0] ** 2
+    late = np.concatenate((0 * paid[:, :1], paid[:, :-1]), axis=1)
+    assert task.reward(evidence(x, action, reward=paid)) is None
+    assert "the reward is paid one decision late" in task.reward(evidence(x, action, reward=late))
 
 
 def test_limits_and_sensors_that_are_off_are_named_with_their_entries():
@@ -245,6 +283,17 @@ def test_learners_that_diverged_come_first(folder):
     assert next(iter(doctor.CHECKS)) == "numbers"
 
 
+def test_damaged_numbers_are_one_line(folder, monkeypatch, capsys):
+    given = read(folder)
+    made = given.made._replace(obs=np.full_like(given.made.obs, np.nan))
+    monkeypatch.setattr(evidence_of, "_made", lambda *_: made)
+    damaged = read(folder)
+    assert damaged.made is None
+    assert learned.diverged(damaged).startswith("the replay memory of the newest checkpoint has")
+    assert main(f"run={folder}") == 0
+    assert capsys.readouterr().out.startswith("numbers  ")
+
+
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory):
     """A tiny run of two learners without a model, seeds 4 and 5."""
@@ -260,6 +309,9 @@ def test_a_value_beyond_all_rewards_is_noticed(pair):
     assert learned.critic(replace(given, folder=low)) is None
     line = learned.critic(replace(given, folder=high))
     assert line.startswith("the critic's value 70 (sac/q) is above ")
+    unfinished = SimpleNamespace(rows=[row | {"sac/alpha": None}], path=given.path)
+    assert learned.critic(replace(given, folder=unfinished)) is None
+    assert learned.scale(replace(given, folder=unfinished)) is None
     for factor, line in ((1e6, "divide the reward by 1e"), (1e-6, "multiply the reward by 1e")):
         rows = SimpleNamespace(rows=[row | {"step": 9_000}], path=given.path)
         made = given.made._replace(reward=given.made.reward * factor)
@@ -282,6 +334,20 @@ def test_each_learner_is_examined_by_itself(pair):
         many = replace(given, folder=SimpleNamespace(rows=rows, path=given.path))
         assert of_each(learned.critic)(many).startswith(f"{seeds} critic's value")
     assert of_each(learned.critic)(given) is None
+
+
+def test_a_policy_below_linear_ones_may_decide_too_often(pair, monkeypatch):
+    """By chance one of fifty returns more than all others, and does so again."""
+    given = read(pair).learners[0]
+
+    def returns(run, controller, params, number, key):
+        by_chance = isinstance(controller, linear.Linear)
+        return np.full((len(params.policy[0]) if by_chance else 1, number), high * by_chance)
+
+    monkeypatch.setattr(linear, "_returns", returns)
+    for high in (0.0, 9.0):
+        line = linear.better(given)
+        assert ("episode.action_repeat=4" in line) if high else line is None
 
 
 def test_what_is_no_run_is_one_line(tmp_path, capfd):

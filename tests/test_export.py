@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from tiny import call, only_line
 
-from hybrid_rl import export
+from hybrid_rl import export, exported
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.policy import PolicyController
 from hybrid_rl.controllers.sampling import SamplingController
@@ -250,10 +250,10 @@ def test_the_node_of_the_how_to_publishes_only_what_a_fresh_observation_gives(mo
 
 def test_a_state_of_several_types_comes_back():
     state = {"a": jnp.array([1.5, -jnp.inf]), "b": jnp.array(True), "c": jnp.arange(-2, 4)}
-    words = export._words(state)
+    words = exported._words(state)
     assert (words.shape, words.dtype) == ((9,), jnp.uint32)
     for got, want in zip(
-        jax.tree.leaves(export._tree(words, state)), jax.tree.leaves(state), strict=True
+        jax.tree.leaves(exported._tree(words, state)), jax.tree.leaves(state), strict=True
     ):
         np.testing.assert_array_equal(got, want)
         assert got.dtype == want.dtype

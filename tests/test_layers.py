@@ -33,6 +33,7 @@ LAYER_FILES = {
     "fields",
     "checks",
     "composition",
+    "conf_files",
     "config",
     "overrides",
 }
@@ -41,7 +42,7 @@ SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
     *("types", "drafts", "fields", "protocols", "errors", "parts", "networks", "envs"),
     "training",
-    *("checks", "composition", "config", "overrides", "renamed"),
+    *("checks", "composition", "conf_files", "config", "overrides", "renamed"),
 }
 ALLOWED = {
     "types": set(),
@@ -61,8 +62,11 @@ ALLOWED = {
     "policies": {*SHARED, "archive"},
     "renamed": {"errors"},
     "overrides": {"errors"},
-    "checks": {"types", "errors", "fields", "overrides", "parts", "networks", "envs"},
-    "composition": {"errors", "fields", "checks", "overrides", "parts", "training"},
+    "conf_files": {"errors"},
+    "checks": {"types", "errors", "fields", "conf_files", "overrides", "parts", "networks", "envs"},
+    "composition": {
+        *("errors", "fields", "conf_files", "checks", "overrides", "parts", "training"),
+    },
     "config": CONFIG,  # builds the parts that YAML names
     "run": {*CONFIG, "run"},  # a run on the host: folder, session, checkpoints
     "cli": {*CONFIG, "run", "cli"},  # what the commands share

@@ -1,14 +1,34 @@
 """The list command."""
 
+import subprocess
 import sys
+from typing import Any
 
 import pytest
+from omegaconf import OmegaConf
 from tiny import demonstrate
 
 from hybrid_rl import config
 from hybrid_rl import list as listed
 from hybrid_rl.cli import command
-from hybrid_rl.composition import CONF, file
+from hybrid_rl.conf_files import CONF, file
+from hybrid_rl.parts import part_class
+
+HAS = {  # method of an environment -> what its task says
+    "dynamics": "analytic dynamics",
+    "equilibrium": "an equilibrium",
+    "reference": "a reference",
+    "reward_of": "a known reward",
+}
+PROGRAM = """
+import runpy, sys
+sys.argv, code = {}, 0
+try:
+    runpy.run_module(f"hybrid_rl.{{sys.argv[0]}}", run_name="__main__")
+except SystemExit as end:
+    code = end.code
+sys.exit(9 if "jax" in sys.modules else code)
+"""
 
 
 def call(monkeypatch, *arguments):
@@ -38,7 +58,11 @@ def conf(tmp_path):
 
 
 def test_each_name_has_the_first_comment_of_its_file(conf):
-    assert listed.listing(conf) == {
+    names = {
+        group: {name: listed.about(path) for name, path in each.items()}
+        for group, each in listed.listing(conf).items()
+    }
+    assert names == {
         "task": {"hopping": "Hopper: hops."},
         "algo": {"ring": "Around a ring.", "actor": "Actor and critic."},
         "experiment": {"thesis/deep/table_1": "", "thesis/figure_2": "Figure 2."},
@@ -58,8 +82,8 @@ def test_every_one_says_what_it_is():
     silent = [
         f"{group}/{name}.yaml"
         for group, names in listed.listing().items()
-        for name, text in names.items()
-        if not text.endswith(".")
+        for name, path in names.items()
+        if not listed.about(path).endswith(".")
     ]
     assert not silent, "begin these with a comment of one line that is a sentence"
 
@@ -82,8 +106,25 @@ def test_the_entries_of_ones_own_are_listed(conf, monkeypatch, capsys, given):
     assert "Kettle: boils." in printed
     assert "Around a ring. [needs a task with an equilibrium]\n" in printed
     (ours,) = [line for line in printed.splitlines() if line.startswith("  pendulum ")]
-    assert ours.endswith("[analytic, equilibrium, known reward]")
+    assert ours.endswith("[has analytic dynamics, an equilibrium and a known reward]")
     assert "  halfcheetah " in printed
+
+
+@pytest.mark.parametrize("task", listed.listing()["task"])
+def test_a_comment_says_what_the_environment_of_a_task_has(task):
+    path = file("task", task)
+    env: Any = OmegaConf.load(path).env
+    words = [word for name, word in HAS.items() if hasattr(part_class(env._target_), name)]
+    head = ", ".join(words[:-1]) + " and " if len(words) > 1 else ""
+    assert listed.mark(path) == (f"has {head}{words[-1]}" if words else "")
+
+
+@pytest.mark.parametrize(
+    ("line", "code"), [(["list"], 0), (["export", "out=x.c"], 2), (["render", "nonsense=1"], 2)]
+)
+def test_a_command_lists_names_and_refuses_arguments_without_importing_jax(line, code):
+    program = PROGRAM.format(line)
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True).returncode == code
 
 
 @pytest.mark.parametrize("algo", ["sac", "bc", "ddpg", "kle3", "kle3_ddpg", "bayesopt", "ou_noise"])
@@ -92,7 +133,7 @@ def test_what_needs_an_analytic_task_is_marked(algo, tmp_path):
     given = ["task=halfcheetah", f"algo={algo}", "total_steps=100"]
     if algo == "bc":
         given.append(demonstrate(tmp_path, config.load(given)))
-    if not listed.needs(file("algo", algo)):
+    if not listed.mark(file("algo", algo)):
         config.build(config.load(given))
         return
     with pytest.raises(config.UsageError) as raised:

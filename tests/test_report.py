@@ -123,10 +123,21 @@ def test_seeds_make_a_band_and_the_numbers_are_those_of_the_rows(runs):
     cells = Page(text).of("td")
     at = cells.index("eval/return")
     assert cells[at + 1 : at + 4] == ["hopper", "sac", "2"]
+    assert "2 (seeds 0, 1)" in cells
+    assert report._span([3]) == "1 (seed 3)"
+    assert report._span([0, 1, 2]) == "3 (seeds 0 to 2)"
     area = (10 * 1 + 15 * 1 + 25 * 1) / 3 + 0.5  # of seeds 0 and 1, which is 1 above
     ends = cells[at + 4].split()[0], cells[at + 5].split()[0]
     assert ends == ("30.5", f"{area:.4g}")
     assert cells[at + 4].endswith("[30, 31]")
+
+
+def test_a_panel_is_named_by_its_metric_and_by_its_task_only_where_there_are_more(runs):
+    ((curves, drawing),) = report.report_panels.panels(runs[:1], "eval/return")
+    assert drawing.count("Evaluation return") == 1
+    assert ">hopper<" not in drawing
+    (axes,) = report.report_panels._panel(curves, tasks=2).axes
+    assert (axes.get_title(), axes.get_ylabel()) == ("Evaluation return, hopper", "")
 
 
 def test_what_is_missing_or_damaged_is_one_line(runs, tmp_path, capfd):

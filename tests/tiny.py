@@ -13,8 +13,8 @@ from omegaconf import DictConfig
 from programs import shared
 
 from hybrid_rl import config, train
-from hybrid_rl.cli import command
-from hybrid_rl.composition import search_path
+from hybrid_rl.cli import hydra_line
+from hybrid_rl.conf_files import search_path
 from hybrid_rl.data.demonstrations import save
 from hybrid_rl.types import Transition
 
@@ -55,7 +55,7 @@ def call(main: Callable[[], None], *arguments: str | Path) -> int:
 def call_train(*arguments: str | Path) -> int:
     """Exit code of `python -m hybrid_rl.train`."""
     with shared():
-        return call(lambda: command.hydra_main(train._job), *arguments)
+        return call(lambda: hydra_line.hydra_main(train._job), *arguments)
 
 
 def rows_of(folder: Path) -> list[dict]:

@@ -131,11 +131,12 @@ def _panel(axes: "Axes", drawn: list[Curve], styles: dict[str, Any], x: str) -> 
         style = styles[curve.label] | ({} if len(curve.x) <= 10 else {"marker": None})
         _line(axes, curve, curve.x / scale, style, min(0.2, SHADE / len(drawn)))
     axes.set_xlabel(LABELS.get(x, words(x)) + (f" [{name}]" if x == "wall_s" else ""))
-    if x in ("wall_s", "step"):
-        axes.set_xlim(0, MARGIN * end / scale or 1.0)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(5))
         axis.set_major_formatter(FuncFormatter(thousands))
+    if x in ("wall_s", "step"):
+        axes.set_xticks(MaxNLocator(5).tick_values(0, end / scale))  # up to the last step
+        axes.set_xlim(0, MARGIN * end / scale or 1.0)
 
 
 def _rows(axes: "Axes", drawn: list[Curve]) -> None:

@@ -57,10 +57,17 @@ def panels(runs: Sequence[Path], metric: str) -> list[tuple[list[Curve], str]]:
         return []
     tasks = dict.fromkeys(curve.task for curve in drawn)
     each = [[curve for curve in drawn if curve.task == task] for task in tasks]
-    return [
-        (some, svg(plot([replace(curve, notes=()) for curve in some]), f"{metric} {some[0].task}"))
-        for some in each
-    ]
+    return [(some, svg(_panel(some, len(tasks)), f"{metric} {some[0].task}")) for some in each]
+
+
+def _panel(drawn: Sequence[Curve], tasks: int) -> "Figure":
+    """The curves of a task under the name of their metric, and of the task where there are more."""
+    figure = plot([replace(curve, notes=()) for curve in drawn])
+    axes = figure.axes[0]
+    names = [axes.get_ylabel() or axes.get_xlabel(), axes.get_title()]
+    axes.set_title(", ".join(names if tasks > 1 else names[:1]))
+    axes.set_ylabel("")
+    return figure
 
 
 def svg(figure: "Figure", name: str) -> str:

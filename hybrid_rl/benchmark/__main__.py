@@ -27,7 +27,7 @@ import json
 from time import perf_counter
 from typing import Any
 
-from hybrid_rl import composition, config
+from hybrid_rl import conf_files, config
 from hybrid_rl.benchmark.parts import PARTS, TASKS, Table
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument, number, output, read, several, whole
@@ -78,14 +78,15 @@ GROUPS = {name: f"a key of the method's {name}" for name in PLANNED}
 
 
 def _check(settings: dict[str, Any]) -> None:
-    """Raise UsageError for a list that none of the parts uses, or an unknown task."""
+    """Raise UsageError for a list that none of the parts uses, or an unknown task or method."""
     for name, parts in OF.items():
         if settings[name] and not set(parts) & set(settings["parts"]):
             value = settings[name]
             value = ",".join(value) if isinstance(value, list) else value
             line = f"{name}={value}: parts={','.join(settings['parts'])} does not use it"
             raise UsageError(f"{line}; {', '.join(parts)} would")
-    several(*composition.options("task"))("tasks", settings["tasks"] or TASKS)
+    several(*conf_files.options("task"))("tasks", settings["tasks"] or TASKS)
+    several(*conf_files.options("algo"))("algo", settings["algo"])
 
 
 def main() -> None:

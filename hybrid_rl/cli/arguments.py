@@ -11,7 +11,7 @@ from tempfile import TemporaryFile
 from typing import Any
 
 from hybrid_rl import renamed
-from hybrid_rl.checks import MODES
+from hybrid_rl.conf_files import MODES
 from hybrid_rl.errors import UsageError
 
 Kind = Callable[[str, str], Any]  # (name, text) -> value

@@ -149,12 +149,12 @@ class Study:
     def known(self, trial: "Trial") -> bool:
         """Whether a trial before had these values; then this one has its result and is not run."""
         states = self._state.COMPLETE, self._state.PRUNED
-        for each in self._study.get_trials(deepcopy=False, states=states):
-            if each.params == trial.params:
+        for number, each in enumerate(self.trials):
+            if each.state in states and each.params == trial.params:
                 for step, value in each.intermediate_values.items():
                     trial.report(value, step)
                 trial.set_user_attr("run", run_of(each))
-                self._answer(trial, each.state, f"as trial {each.number}")
+                self._answer(trial, each.state, f"as trial {number}")
                 return True
         return False
 
@@ -190,7 +190,7 @@ class Study:
         Importances are those of PED-ANOVA (Watanabe et al. 2023) over the finished trials; their
         sum is 1. There are none for fewer than two results.
         """
-        trials = [_row(each) for each in self.trials]
+        trials = [_row(number, each) for number, each in enumerate(self.trials)]
         done = [row for row in trials if row["state"] == "complete"]
         return {
             "metric": self.settings.metric,
@@ -279,11 +279,11 @@ def _kind(values: Any) -> str:
     return "names" if hasattr(values, "choices") else "log" if values.log else "linear"
 
 
-def _row(trial: "FrozenTrial") -> Row:
-    """A trial in trials.json."""
+def _row(number: int, trial: "FrozenTrial") -> Row:
+    """A trial in trials.json; those without an answer, which were interrupted, do not count."""
     seen = trial.intermediate_values
     return {
-        "trial": trial.number,
+        "trial": number,
         "values": trial.params,
         "run": str(run_of(trial)),
         "state": trial.state.name.lower(),  # complete, pruned, fail

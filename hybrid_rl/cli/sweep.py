@@ -24,7 +24,7 @@ from omegaconf.errors import OmegaConfBaseException
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides as words
 from hybrid_rl.checks import check
-from hybrid_rl.cli import command
+from hybrid_rl.cli import command, hydra_line
 from hybrid_rl.cli.combinations import jobs_of, labels
 from hybrid_rl.cli.submitted import Result, require_slurm, watch
 from hybrid_rl.composition import concerns, explain
@@ -59,7 +59,7 @@ class Task:
         result: Result = {"code": 0, "line": "done"}
         self.results[number] = result
         try:
-            with command.as_typed(texts):
+            with hydra_line.as_typed(texts):
                 result |= _outcome(self.job(config))
         except (SystemExit, KeyboardInterrupt) as end:
             code = end.code if isinstance(end, SystemExit) else 130
@@ -207,7 +207,7 @@ class Sweeper:
                 config = config.copy()
                 config.physics = "native"
             try:
-                with command.as_typed(overrides):
+                with hydra_line.as_typed(overrides):
                     _check(together.expand_sweep(config, overrides), here(self.config.hydra))
             except (UsageError, OmegaConfBaseException) as error:
                 line = error if isinstance(error, UsageError) else explain(error)

@@ -20,7 +20,7 @@ from omegaconf import DictConfig, OmegaConf
 from hybrid_rl import overrides
 from hybrid_rl.cli import study, sweep
 from hybrid_rl.cli.combinations import jobs_of, labels
-from hybrid_rl.composition import options
+from hybrid_rl.conf_files import options
 from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import UsageError, install
 from hybrid_rl.fields import FieldError
@@ -139,13 +139,13 @@ class Tuner(sweep.Sweeper):
         trial = self._trial = opened.ask()
         if opened.known(trial):
             return
-        number, run_dir = trial.number, refuse_link(folder / str(study.run_of(trial)))
+        number, run_dir = len(opened.trials), refuse_link(folder / str(study.run_of(trial)))
         values = [f"{key}={study.text(value)}" for key, value in trial.params.items()]
         if checkpoint.steps(run_dir / "checkpoints"):
             values.append(f"resume={overrides.quoted(str(run_dir))}")
         elif run_dir.exists():
-            run_dir = folder / str(number)
-            trial.set_user_attr("run", number)
+            run_dir = folder / str(trial.number)
+            trial.set_user_attr("run", trial.number)
         values.append(f"run_dir={overrides.quoted(str(run_dir))}")
         self.task.labels[number] = study.short(trial.params)
         self.launcher.launch([self._forced([*fixed, *values])], number)

@@ -4,9 +4,10 @@
 
 A line for each fault: what was seen, what it means, what to try. Fix the first one first: later
 ones may follow from it. The command reads metrics.jsonl, summary.json, and the replay memory and
-networks of the newest checkpoint. It also runs new episodes with the policy, with random actions
-and with zero actions, but not in a Gymnasium environment. It writes nothing. The page
-"My robot does not learn" of the documentation explains the checks, and how often they are right.
+networks of the newest checkpoint. It also runs new episodes with the policy, linear ones, random
+actions and zero actions; in a Gymnasium environment only with the policy and with linear ones. It
+writes nothing. The page "My robot does not learn" of the documentation explains the checks, and
+what they found.
 """
 
 if __name__ == "__main__":
@@ -20,7 +21,7 @@ from pathlib import Path
 from hybrid_rl.cli import command
 from hybrid_rl.cli.arguments import Argument
 from hybrid_rl.cli.arguments import read as arguments
-from hybrid_rl.doctor import learned, observed, task
+from hybrid_rl.doctor import learned, linear, observed, regular, task
 from hybrid_rl.doctor.evidence import Evidence, of_each, read
 
 ARGUMENTS = (Argument("run", "", "folder of the run", needed="run=DIR, a run folder"),)
@@ -40,6 +41,8 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that 
     "action rate": observed.rare,
     "noise": observed.noise,
     "action": observed.action,
+    "every other decision": regular.alternates,
+    "action's gain": regular.gains,
     "hidden state": observed.hidden,
     "model": of_each(learned.forecast),
     "ends": task.ends,
@@ -49,6 +52,7 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that 
     "reward's scale": of_each(learned.scale),
     "random decisions": learned.random,
     "critic": of_each(learned.critic),
+    "linear policies": of_each(linear.better),
 }
 
 

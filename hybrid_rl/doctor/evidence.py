@@ -1,12 +1,6 @@
 """What the checks read of a run: rows, settings, and the decisions in its replay memory.
 
-Decisions are K sequences of T, one for each learner and environment, oldest first. Changes of the
-observation, y = o' - o, are predicted from what was known at the decision by
-
-    y = W phi(z),  phi(z) = (1, z, z z^T),  W = argmin |Y - W Phi|^2 + ridge |W|^2,
-
-with z scaled to variance 1; phi is linear where z has too many entries for the decisions there
-are. Every second of FOLDS stretches of time is predicted by W of the others.
+Decisions are K sequences of T, one for each learner and environment, oldest first.
 
 What a learner has learned is examined in the evidence of that learner alone, for the first
 LEARNERS of a run (`of_each`).
@@ -34,12 +28,9 @@ from hybrid_rl.run.machine.jax_settings import prepare
 from hybrid_rl.trained import Trained, build_run, load, restore
 from hybrid_rl.types import Params, Transition
 
-FOLDS = 100  # stretches of time, of which every second one is predicted by the others
 LEARNERS = 4  # of a run that are examined one by one
 LONGER = 4  # time limits that an episode of the policy lasts
 MOST = 12_000  # decisions of a regression, the newest ones
-PER_FEATURE = 10  # decisions at least for each feature of a regression
-RIDGE = 1e-4  # of features with variance 1, per decision
 STILL = 1e-6  # std of an entry, over its size, below which it does not change
 
 
@@ -53,6 +44,7 @@ class Evidence:
     made: Transition | None  # [K, T, ...] NumPy; None: no checkpoint has the replay memory
     whole: "Evidence | None" = None  # of the run, of which this is a learner's part
     learner: int = 0  # its number; of the run the first one's
+    damaged: bool = False  # whether the replay memory has numbers that are not finite
 
     @property
     def path(self) -> Path:
@@ -186,41 +178,6 @@ def of_each(check: Callable[[Evidence], str | None]) -> Callable[[Evidence], str
     return checked
 
 
-def residual(z: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """[N, q] of y [N, q] predicted from z [N, p], each by decisions of other times."""
-    phi = _features(z)
-    fold = np.arange(len(y)) * FOLDS // len(y) % 2
-    left = np.empty_like(y, float)
-    for part in (0, 1):
-        own, other = fold == part, fold != part
-        a, b = phi[other], y[other].astype(float)
-        weights = np.linalg.solve(a.T @ a + RIDGE * len(a) * np.eye(a.shape[1]), a.T @ b)
-        left[own] = y[own] - phi[own] @ weights
-    return left
-
-
-def explained(z: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """[q] share of the variance of y [N, q] that z [N, p] predicts; 0 if its mean does better."""
-    left = (residual(z, y) ** 2).mean(0) / np.maximum(y.var(0), np.finfo(float).tiny)
-    return np.maximum(1 - left, 0)
-
-
-def _features(z: np.ndarray) -> np.ndarray:
-    z = np.asarray(z, float)
-    z = (z - z.mean(0)) / np.maximum(z.std(0), np.finfo(np.float32).eps)
-    phi = [np.ones((len(z), 1)), z]
-    if curved(z):
-        i, j = np.triu_indices(z.shape[1])
-        phi.append(z[:, i] * z[:, j])
-    return np.concatenate(phi, axis=1)
-
-
-def curved(z: np.ndarray) -> bool:
-    """Whether z [N, p] are decisions enough for the products of its entries."""
-    n, p = z.shape
-    return n >= PER_FEATURE * (1 + p + p * (p + 1) // 2)
-
-
 def read(path: Path) -> Evidence:
     """The run in `path`.
 
@@ -233,7 +190,9 @@ def read(path: Path) -> Evidence:
     with run_folder.blame_config(path):
         prepare(config)
         run = build_run(config, "memory")
-        return Evidence(RunFolder(path), config, run, _made(path, config, run))
+        made = _made(path, config, run)
+        damaged = made is not None and not all(np.isfinite(each).all() for each in made)
+        return Evidence(RunFolder(path), config, run, None if damaged else made, damaged=damaged)
 
 
 def _made(path: Path, config: Any, run: Run) -> Transition | None:

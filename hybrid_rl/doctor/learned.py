@@ -12,6 +12,11 @@ from hybrid_rl.doctor.evidence import STILL, Evidence
 from hybrid_rl.doctor.limits import ENOUGH, INFLATED, OUTWEIGHED, SUMMED, UNSEEN
 from hybrid_rl.run.logs.rows import of_world
 
+UNSOUND = (
+    "the replay memory of the newest checkpoint has numbers that are not finite: what is observed "
+    "is not examined; train again, or resume another copy of the run"
+)
+
 
 def diverged(run: Evidence) -> str | None:
     """Learners that reached NaN or infinity."""
@@ -21,7 +26,7 @@ def diverged(run: Evidence) -> str | None:
         if "diverged" in row
     ]
     if not ends:
-        return None
+        return UNSOUND if run.damaged else None
     first = min(ends, key=lambda end: end["step"])
     what = str(first["quantity"])
     cure = (
@@ -112,12 +117,12 @@ def random(run: Evidence) -> str | None:
 
 def critic(run: Evidence) -> str | None:
     """A critic whose values are larger than any possible return, with entropy."""
-    rows = [row for row in run.rows if row.get("sac/q") is not None]
+    rows = _learning(run)
     learner: Any = run.run.agent.learners.get("policy")
     if run.made is None or not rows or getattr(learner.critic, "scale", True):
         return None
     last = rows[-1]
-    entropy = last.get("sac/alpha", 0.0) * run.run.agent.spec.act * log(2)  # uniform on [-1, 1]
+    entropy = last["sac/alpha"] * run.run.agent.spec.act * log(2)  # uniform on [-1, 1]
     most = (max(float(run.made.reward.max()), 0.0) + entropy) / (1 - learner.discount)
     if last["sac/q"] <= most:
         return None
@@ -135,7 +140,7 @@ def scale(run: Evidence) -> str | None:
     after n updates they hold sums of about n tau rewards, if Adam has moved the weights that far.
     """
     learner: Any = run.run.agent.learners.get("policy")
-    rows = [row for row in run.rows if {"sac/alpha", "sac/q"} <= row.keys()]
+    rows = _learning(run)
     if run.made is None or run.params is None or not rows:  # or rewards are scaled already
         return None
     act, std = run.run.agent.spec.act, float(run.made.reward.std())
@@ -159,6 +164,12 @@ def scale(run: Evidence) -> str | None:
         f"it has not learned values that large; divide the reward by {_round(one)}, or "
         "critic.scale=true"
     )
+
+
+def _learning(run: Evidence) -> list[dict[str, Any]]:
+    """The rows that have the critic's value and the entropy's weight."""
+    names = "sac/alpha", "sac/q"
+    return [row for row in run.rows if all(row.get(name) is not None for name in names)]
 
 
 def _round(x: float) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hybrid_rl.doctor.evidence import Evidence, curved, explained, residual
+from hybrid_rl.doctor.evidence import Evidence
 from hybrid_rl.doctor.limits import (
     CLIPPED,
     DISTINCT,
@@ -16,6 +16,8 @@ from hybrid_rl.doctor.limits import (
     SLOW,
     UNSEEN,
 )
+from hybrid_rl.doctor.regression import curved, explained, features, missed, predicted, residual
+from hybrid_rl.doctor.regular import alternates, gains
 
 
 def constant(run: Evidence) -> str | None:
@@ -49,12 +51,12 @@ def clipped(run: Evidence) -> str | None:
     )
 
 
-def effects(run: Evidence) -> tuple[np.ndarray, np.ndarray, tuple[float, float]] | None:
-    """Effect [L] of the actions 0, 1, ... decisions old, its standard error [L], and what is left.
+def effects(run: Evidence) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Effect [L, o] of the actions 0, 1, ... decisions old, of all together [o], and what is left.
 
-    The squared error of the change's prediction without that action, less that with all, over that
-    without any; of the entry of the observation on which they all have the largest. What is left
-    [2] is the error with all, over the variance of the change: of that entry, and the largest.
+    The error of the change's prediction without an action, less that with all, over that without
+    any; 0 below ERRORS standard errors. What is left [o] is the share of the change that is
+    not predicted.
     """
     lags = LAGS
     while lags > 2 and len(run.at(lags - 1)[0]) < ENOUGH:
@@ -65,42 +67,49 @@ def effects(run: Evidence) -> tuple[np.ndarray, np.ndarray, tuple[float, float]]
     y, obs, actions = run.change(where), run.known(where), run.known(where, actions=lags)
     actions = actions[:, obs.shape[1] :].reshape(len(obs), lags, -1)  # [N, L, m]
 
-    def squared(kept: list[int]) -> np.ndarray:
-        return residual(np.concatenate((obs, *(actions[:, k] for k in kept)), axis=1), y) ** 2
+    def prediction(kept: list[int]) -> np.ndarray:
+        z = np.concatenate((obs, *(actions[:, k] for k in kept)), axis=1)
+        return sum(predicted([features(z)], y))
 
-    every = list(range(lags))
-    none, best = squared([]), squared(every)
-    size = none.mean(0)
-    size = np.where(size > 0, size, np.inf)  # what needs no action has no effect of one
-    most = np.argmax((none - best).mean(0) / size)
-    loss = [squared([j for j in every if j != k])[:, most] - best[:, most] for k in every]
-    size, spread = size[most], y.var(0)
-    left = best.mean(0) / np.where(spread > 0, spread, np.inf)  # what changes evenly is predicted
-    return (
-        np.array([each.mean() for each in loss]) / size,
-        np.array([each.std() for each in loss]) / size / np.sqrt(len(y)),
-        (float(left[most]), float(left.max())),
-    )
+    every, full = list(range(lags)), prediction(list(range(lags)))
+    none, best = missed(y, prediction([])), missed(y, full)
+    size = np.where(none.any(0), none.mean(0), np.inf)  # what needs no action has no effect of one
+    loss = [missed(y, prediction([j for j in every if j != k])) - best for k in every]
+    sure = [each.mean(0) > ERRORS * each.std(0) / np.sqrt(len(y)) for each in loss]
+    effect = np.where(sure, np.mean(loss, axis=1) / size, 0.0)
+    spread = y.var(0)
+    left = ((y - full) ** 2).mean(0) / np.where(spread > 0, spread, np.inf)  # even: predicted
+    return effect, (none - best).mean(0) / size, left
 
 
 def action(run: Evidence) -> str | None:
-    """Actions that do nothing, or whose effect comes later."""
+    """Actions that do nothing, or whose effect comes later, on some entries or on all."""
     found = None if run.made is None else effects(run)
     if found is None:
         return None
-    effect, error, left = found
-    effect = np.where(effect > ERRORS * error, effect, 0.0)
-    shown = ", ".join(f"{min(each, 1):.0%}" for each in effect)
+    each, together, left = found
+    most = int(np.argmax(together))
+    effect, late = each[:, most], int(np.argmax(each[:, most]))
+    shown = ", ".join(f"{min(part, 1):.0%}" for part in effect)
     shown = f"of what actions can explain, those 0, 1, ... decisions old explain {shown}"
-    late = int(np.argmax(effect))
-    if left[0 if effect.any() else 1] > UNSEEN:  # then an effect may hide in what is not predicted
+    old = (each[0] == 0) & (each.max(0) > HISTORY * together) & (together > HISTORY)
+    if old.any() and each[0].any():
+        return (
+            f"obs {_numbers(run.moving[old])} shows an action later than obs "
+            f"{_numbers(run.moving[each[0] > 0])}: that sensor is late, by about "
+            f"{each[:, old].argmax(0).max()} decisions; read all at the same time"
+        )
+    # an effect may hide in what is not predicted
+    if (left[most] if effect.any() else left.max()) > UNSEEN:
         return None
     if not effect.any():
+        if gains(run) or alternates(run):  # then they cancel out
+            return None
         return (
             "no action changed what is observed afterwards: is it applied, and is the motor on? "
             "render run=DIR shows it"
         )
-    if late and not effect[0]:
+    if late and not effect[0] and together[most] > HISTORY:
         return (
             f"an action acts {late} decision{'s' * (late > 1)} later ({shown}): a delay; shorten "
             "it, or show the learner its last actions (env.past_actions of task=robot)"

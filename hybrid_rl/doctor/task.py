@@ -4,7 +4,7 @@ from collections import Counter
 
 import numpy as np
 
-from hybrid_rl.doctor.evidence import LONGER, Evidence, explained, of_each
+from hybrid_rl.doctor.evidence import LONGER, Evidence, of_each
 from hybrid_rl.doctor.limits import (
     BOTH,
     ENOUGH,
@@ -17,6 +17,7 @@ from hybrid_rl.doctor.limits import (
     SOME,
     START,
 )
+from hybrid_rl.doctor.regression import explained, features, halved, missed, predicted
 from hybrid_rl.types import Transition
 
 
@@ -131,7 +132,29 @@ def reward(run: Evidence) -> str | None:
             f"the reward is {mean:.4g} and varies by {std:.2g} only: the critic learns the offset "
             "first; subtract it"
         )
-    return None
+    return _late(run, run.made)
+
+
+def _late(run: Evidence, made: Transition) -> str | None:
+    """A reward that the decision before explains better than its own.
+
+    Of both it is given observation, action and next observation.
+    """
+    k, t = where = run.at(1)
+    if len(k) < ENOUGH:
+        return None
+    paid, after = made.reward[where][:, None], made.next_obs[where][:, run.moving]
+    own = np.concatenate((run.known(where, actions=1), after), axis=1)
+    before = np.concatenate(
+        (run.known((k, t - 1), actions=1), made.obs[where][:, run.moving]), axis=1
+    )
+    now, late = (missed(paid, sum(predicted([features(z)], paid))) for z in (own, before))
+    if not halved(late, now).any():
+        return None
+    return (
+        f"a decision leaves {now.mean():.1%} of its reward open, the one before it "
+        f"{late.mean():.1%}: the reward is paid one decision late; return it with its own step"
+    )
 
 
 def sign(run: Evidence) -> str | None:

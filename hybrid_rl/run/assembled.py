@@ -13,7 +13,7 @@ from typing import Any
 from omegaconf import OmegaConf
 
 from hybrid_rl.checks import SECTIONS, whole
-from hybrid_rl.composition import CONF
+from hybrid_rl.conf_files import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.envs.adapters.external import check_world
 from hybrid_rl.errors import UsageError

@@ -14,7 +14,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl import overrides
-from hybrid_rl.composition import file, options
+from hybrid_rl.conf_files import file, options
 from hybrid_rl.errors import UsageError
 from hybrid_rl.overrides import parse, raw_values
 from hybrid_rl.run import folder

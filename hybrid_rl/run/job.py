@@ -53,7 +53,8 @@ class Job:
     def loop(self) -> Loop:
         """The loop that trains all learners."""
         run = self.runs[0]
-        stride = -(-run.config.log_every // run.config.num_envs)
+        most = min(run.config.log_every, run.config.total_steps)  # decisions of a call
+        stride = -(-most // run.config.num_envs)
         seeds = run.seeds * len(self.runs)
         return loop_of(run.agent, seeds, stride, self.folders[0], self.axis)
 

@@ -12,7 +12,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, one_of, whole
-from hybrid_rl.composition import CONF
+from hybrid_rl.conf_files import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError

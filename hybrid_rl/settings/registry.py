@@ -8,10 +8,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-from hydra.core.config_store import ConfigStore
-
-from hybrid_rl.parts import PACKAGE, TARGET
-
+PACKAGE = Path(__file__).parents[1]
 ROLES = {  # group of conf/ -> folder of hybrid_rl
     **{"belief": "beliefs", "controller": "controllers", "critic": "critics"},
     **{"features": "features", "learner": "learners", "map": "beliefs/maps", "model": "models"},
@@ -49,7 +46,9 @@ def _of(folder: Path) -> dict[str, str]:
 @cache
 def register(conf: Path) -> None:
     """Let Hydra know the choices that `conf` has no file of."""
+    from hydra.core.config_store import ConfigStore  # not for a list of names
+
     store = ConfigStore.instance()
     for group, names in choices(conf).items():
         for name, target in names.items():
-            store.store(name, {TARGET: target}, group=group, provider="hybrid_rl")
+            store.store(name, {"_target_": target}, group=group, provider="hybrid_rl")

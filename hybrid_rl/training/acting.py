@@ -64,10 +64,14 @@ class TrainedPolicy:
         """
         if self._flat is not None and isinstance(obs, Mapping):
             obs = self._flat(obs)
-        obs = np.asarray(obs, np.float32)
         o = self.spec.obs
-        if obs.ndim not in (1, 2) or obs.shape[-1] != o:
-            raise ValueError(f"obs is {obs.shape}; it must be [{o}] or [N, {o}]")
+        try:
+            obs = np.asarray(obs, np.float32)
+            found = "" if obs.ndim in (1, 2) and obs.shape[-1] == o else str(obs.shape)
+        except (TypeError, ValueError):
+            found = "no array of numbers, as (obs, info) of env.reset() is none"
+        if found:
+            raise ValueError(f"obs is {found}; it must be [{o}] or [N, {o}]")
         rows = np.atleast_2d(obs)
         check_finite("obs", rows)
         if self._state is None:

@@ -59,7 +59,7 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     Raises:
         UsageError: for arguments that are unusable, or a world that cannot be drawn.
     """
-    from hybrid_rl.composition import options
+    from hybrid_rl.conf_files import options
     from hybrid_rl.envs.adapters.external import External
     from hybrid_rl.trained import load_named
     from hybrid_rl.view.following import Follower

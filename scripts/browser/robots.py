@@ -26,7 +26,7 @@ from jax import Array
 
 from hybrid_rl import trained
 from hybrid_rl.envs.mujoco import mjcf
-from hybrid_rl.export import layers
+from hybrid_rl.exported import layers
 from hybrid_rl.networks import Perceptron
 from hybrid_rl.training.episode import Episode
 from hybrid_rl.types import EnvState

@@ -4,7 +4,7 @@ from scripts.pages.values import read
 
 
 def table(kind: str) -> str:
-    """A row for each run of a kind, `broken` or `sound`, with the checks that found something."""
+    """A row for each run of a kind in the JSON, with the checks that found something."""
     rows = ["| run | check | line |", "|---|---|---|"]
     for name, found in read("doctor")[kind].items():
         for check, line in found.items() or [("", "nothing")]:

@@ -22,7 +22,7 @@ it has no header.
 Before a table that is written whole: <!-- machines --> for machines.yaml, and for the claims of
 atlas.yaml <!-- claims Chapter 3 --> or <!-- claims Figure 3-3, Figure 3-5 -->; for printed.yaml
 <!-- rows Chapter 3 -->, <!-- printed Chapter 3 --> and <!-- ours Chapter 3 -->; for what
-the doctor prints <!-- doctor broken --> or <!-- doctor sound -->; for which_method.yaml
+the doctor prints <!-- doctor broken -->, audited or sound; for which_method.yaml
 <!-- leaves -->; for the files of the folder community <!-- community -->
 
 A text or a cell may show the first of the expression's numbers only. They are written with the

@@ -56,6 +56,8 @@ def test_labels_carry_units_and_thousands():
     )
     assert "200,000" in [text.get_text() for text in panel.get_xticklabels()]
     assert "\N{MINUS SIGN}1,600" in [text.get_text() for text in panel.get_yticklabels()]
+    (panel,) = plot([replace(curve(), x=np.linspace(1000, 30_000, 50))]).axes
+    assert panel.get_xticks()[-1] == 30_000  # the end of the run
     (panel,) = plot([curve(metric="sac/alpha")], x="wall_s").axes
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("Wall time [h]", "sac/alpha")
     assert panel.lines[0].get_xdata()[-1] == pytest.approx(200_000 / 3600)

@@ -93,8 +93,8 @@ def test_a_study_that_was_killed_finds_what_it_would_have_found(tmp_path):
     ]
     assert [(row["trial"], row["run"]) for row in again["trials"]][3:6] == [
         (3, "3"),
-        (5, "4"),
-        (6, "6"),
+        (4, "4"),
+        (5, "6"),
     ]
 
 

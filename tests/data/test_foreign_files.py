@@ -14,7 +14,7 @@ import pytest
 from foreign import no_plain_file
 from tiny import call, only_line
 
-from hybrid_rl import evaluate, export, trained
+from hybrid_rl import evaluate, export, exported, trained
 from hybrid_rl.beliefs.maps import learned
 from hybrid_rl.cli import command
 from hybrid_rl.data import archive, demonstrations, layers
@@ -219,7 +219,7 @@ def test_an_exported_program_holds_no_words_of_the_file_but_its_task(tmp_path, p
     """Its code is that of the same policy with another description, but for the name."""
     np.savez(tmp_path / "a.npz", **described(policy, command='"""\nopen("ran", "w")'))
     run = trained.read(str(tmp_path / "a.npz"))
-    spec, net = run.episode.spec, export.layers(run.episode.spec, *run.learner())
+    spec, net = run.episode.spec, exported.layers(run.episode.spec, *run.learner())
     script = layers.save_numpy(tmp_path / "b.npz", "x.y-z_1", spec, net)
     tree = ast.parse(script.read_text())
     assert (ast.get_docstring(tree) or "").startswith("The policy of 'x.y-z_1': obs [")

@@ -25,7 +25,7 @@ from worlds import (
     task_of,
 )
 
-from hybrid_rl.composition import options
+from hybrid_rl.conf_files import options
 from hybrid_rl.envs.mujoco import mjcf, scenery
 
 pytestmark = pytest.mark.xdist_group("worlds")  # both read `rollout`

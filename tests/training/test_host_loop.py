@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from hosted import Count, counting
 from tiny import call
 
-from hybrid_rl import config, export
+from hybrid_rl import config, export, exported
 from hybrid_rl.cli import command
 from hybrid_rl.controllers.constant import ConstantController
 from hybrid_rl.data.replay import unpack
@@ -160,7 +160,7 @@ def test_a_trained_policy_acts_in_the_units_of_its_environment():
     trained = Trained("count", episode, modes, Params(), (0,), 0, ())
     policy, copies = trained.policy(), episode.env.copies([0], STEPS)
     copies.reset()
-    made = export.program(episode.spec, modes["full"], Params(), span=trained.span)
+    made = exported.program(episode.spec, modes["full"], Params(), span=trained.span)
     state, key = np.zeros(made.in_avals[1].shape, np.uint32), np.zeros(2, np.uint32)
     for u, physical in ((0.5, 2.5), (1.5, 4.0)):
         assert policy(np.ones(2)) == physical

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hybrid_rl.composition import options
+from hybrid_rl.conf_files import options
 from hybrid_rl.list import FIRST
 from scripts import docs
 
@@ -64,6 +64,11 @@ def test_the_same_eight_methods_come_first_everywhere():
         rows = table.split("\n\n")[0].splitlines()[2:]
         names = [found for row in rows for found in re.findall(r"`(\w+)`", row.split("|")[1])]
         assert names[: len(FIRST)] == list(FIRST), name
+
+
+def test_every_method_in_the_tables_leads_to_its_section():
+    page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8").partition("\n## Settings")[0]
+    assert sorted({*re.findall(r"\[`(\w+)[^`]*`\]\(#", page)}) == options("algo")
 
 
 def test_a_workflow_on_github_links_the_notebooks_to_binder(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config
 from hybrid_rl import list as listed
-from hybrid_rl.composition import THESIS, file, options
+from hybrid_rl.conf_files import THESIS, file, options
 from hybrid_rl.fields import Must
 
 OF_TASK = {  # methods that need another task
@@ -78,7 +78,7 @@ def needs(composed: DictConfig) -> str:
 @pytest.mark.parametrize("algo", options("algo"))
 def test_a_comment_says_which_tasks_the_parts_of_a_method_need(algo: str) -> None:
     composed = config.load([f"task={of_task(algo)}", f"algo={algo}"])
-    assert listed.needs(file("algo", algo)) == needs(composed)
+    assert listed.mark(file("algo", algo)) == needs(composed)
 
 
 @pytest.mark.parametrize("algo", sorted({*RUN, *listed.listing(THESIS)["algo"]}))
