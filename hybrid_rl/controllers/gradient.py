@@ -238,7 +238,7 @@ class GradientController:
         """Numbers [K] in the order of the candidates: the largest is that of the best."""
         if self.constraint is None or self.constraint.chance is None:
             return found.score
-        safe = found.risk <= self.constraint.chance
+        safe = (found.risk <= self.constraint.chance) & jnp.isfinite(found.score)
         order = jnp.lexsort((found.score, jnp.where(safe, 0.0, -found.beyond), safe))
         return jnp.argsort(order)
 

@@ -6,7 +6,10 @@ from hybrid_rl.protocols import Schedule
 
 
 def of_run(rate: float, decisions: Array | None) -> Array | float:
-    """rate^k [] after k `decisions` [] of the run; 0 after training, where they are not counted."""
+    """rate^k [] after k `decisions` [] of the run.
+
+    Where they are not counted, after training, it is 0; or 1 if the rate is 1.
+    """
     if rate == 1:
         return 1.0
     return 0.0 if decisions is None else rate**decisions

@@ -102,8 +102,8 @@ def test_an_effort_is_a_limit_of_the_actions() -> None:
 
 
 def test_the_order_of_candidates() -> None:
-    """By score among the safe, by distance among the others, which are all below them."""
-    risk = jnp.array([0.0, 0.3, 0.9, 0.05, 0.8])
+    """By score among the safe, by distance among the others; what is not finite is the last."""
+    risk = jnp.array([0.0, 0.3, 0.9, 0.05, 0.0])
     score = jnp.array([1.0, 50.0, 90.0, 2.0, -jnp.inf])
     beyond = jnp.array([0.1, 4.0, 3.0, 9.0, jnp.inf])
     found = Scored(score, score, 0 * score, risk, beyond, score[:, None])
