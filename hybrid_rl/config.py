@@ -137,6 +137,9 @@ def read(config: DictConfig) -> tuple[DictConfig, dict[str, str]]:
     if new:
         check_keys(hydra, raw)
     lost = {path: text for path, text in typed.items() if select(raw, path) is LACKING}
+    sources = (each.path for each in hydra.runtime.config_sources if each.schema == "file")
+    mine = [path for path in sources if Path(path) != CONF]
+    raw["config_dir"] = mine[0] if mine else None  # of the user's files
     return OmegaConf.create(raw, flags={"struct": True}), lost
 
 
@@ -150,6 +153,8 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     """
     values = resolved(config)
     values.pop("sweep", None)
+    words = (text for text in overrides if not re.match(r"\+*(sweep|hydra)\.|-", text))
+    values["recipe"] = [re.sub(r"\$\{([^}]*)\}", r"$(\1)", text) for text in words]  # no references
     values["random_steps"] = checks.random_decisions(values, overriding.typed_values(overrides))
     if values["task"] in ("gymnasium", "playground", "robot"):  # of many environments
         names = (values["env"].get(key) for key in ("make", "id", "name"))

@@ -126,9 +126,9 @@ def aimed(
         if dot and not named & {group, *goal}:
             raise UsageError(f"{text}: is a key of {group}=NAME; give that with it")
     config: Any = OmegaConf.to_container(trained.config, resolve=True)
-    composed = _composed(overrides, config_dir)
+    composed = raw_values(_composed(overrides, config_dir))
     typed = [text.partition("=")[0] for text in overrides if "." in text.partition("=")[0]]
-    raw = complete({**UNLEARNED, **config, **raw_values(composed)}, [*composed], typed)
+    raw = complete({**UNLEARNED, **config, **composed}, [*composed], typed)
     for key in typed:
         if select(raw, key) is LACKING:
             raise UsageError(refusal(key, [{**raw, "algo": config.get("algo")}]))

@@ -1,17 +1,19 @@
 """The configuration: every choice composes, and every file lists the fields of its part."""
 
 import dataclasses
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 import pytest
 import small
 from hydra.utils import get_class, instantiate
-from omegaconf import OmegaConf
+from omegaconf import DictConfig, OmegaConf
 from tiny import SMALL
 
-from hybrid_rl import config
+from hybrid_rl import config, parts
 from hybrid_rl.conf_files import file, options
 from hybrid_rl.controllers.gradient import GradientController
 
@@ -51,12 +53,39 @@ RUN = {  # methods that run here, one of a kind; test_learning.py runs four, the
 }
 
 
+def composed_parts(composed: DictConfig) -> set[str]:
+    """The classes that a configuration names, without the expert, which `demonstrate` asks."""
+    values = OmegaConf.to_container(composed)
+    return {name for _, name in parts.targets({**values, "expert": None, "recipe": None})}
+
+
+def held(node: Any) -> set[str]:
+    """The classes of the parts in what was built."""
+    found = set()
+    if dataclasses.is_dataclass(node) and not isinstance(node, type):
+        found = {f"{type(node).__module__}.{type(node).__name__}"}
+        node = {field.name: getattr(node, field.name) for field in dataclasses.fields(node)}
+    if isinstance(node, dict):
+        node = node.values()
+    return (
+        found.union(*map(held, node))
+        if isinstance(node, Iterable) and not isinstance(node, str)
+        else found
+    )
+
+
+# what holds the parts; models=world plans on an Episode, too
+EVERYWHERE = {"hybrid_rl.training.agent.Agent", "hybrid_rl.training.episode.Episode"}
+
+
 @pytest.mark.turns(3)
 @pytest.mark.parametrize(("task", "algo"), EACH, ids=["-".join(pair) for pair in EACH])
 def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path) -> None:
     """Eight decisions of two learners, with learning, all finite; of some only shapes of one."""
     composed = small.with_demonstrations(small.load(algo, f"task={task}"), tmp_path)
     run = config.build(composed)
+    built = held([run.agent, run.controllers]) - EVERYWHERE
+    assert composed_parts(composed) - EVERYWHERE == built
     if algo in RUN:
         small.learn(run)
     else:

@@ -88,7 +88,7 @@ USAGE = [  # overrides of train, words of the line
     ),
     (
         "policy.target=1",
-        "policy.target: hybrid_stochastic has no such key; policy has normalise, hi",
+        "policy.target: hybrid_stochastic has no such key; policy has hidden, acti",
     ),
     ("planner.horizn=3", "has no such key; did you mean planner.horizon?"),
     ("planner.policy.hidden=[3]", "planner.policy={'hidden': [3]}: must be a part, or null"),
@@ -102,7 +102,7 @@ USAGE = [  # overrides of train, words of the line
     ),
     (
         "policy_learner.rl=1",
-        "hybrid_stochastic has no such key; policy_learner has reward, schedule, ",
+        "hybrid_stochastic has no such key; policy_learner has policy, critic, ",
     ),
     ("policy_learner.lr=1", "has no such key; did you mean policy_learner.policy_learning_rate?"),
     (

@@ -11,6 +11,7 @@ from types import ModuleType
 import pytest
 
 import hybrid_rl as hr
+from hybrid_rl.settings.registry import choices
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/*.md"))]
@@ -61,6 +62,7 @@ def test_what_a_page_imports_is_public(page):
     public |= {f"hybrid_rl.{module}.{name}" for module in MODULES for name in MODULES[module]}
     files = (path.read_text(encoding="utf-8") for path in (ROOT / "conf").rglob("*.yaml"))
     public |= {name for text in files for name in re.findall(r"_target_: (hybrid_rl\S+)", text)}
+    public |= {name for names in choices(ROOT / "conf").values() for name in names.values()}
     blocks = re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
     assert {name for block in blocks for name in used(block)} <= public
 

@@ -79,6 +79,8 @@ class RunFolder:
         values = yaml_file(file, lambda text: yaml.load(text, Loader))
         if not isinstance(values, dict):
             raise UsageError(f"{file}: is empty, or no group of keys")
+        for key in ("recipe", "config_dir"):  # the words; the values follow
+            values.pop(key, None)
         return flatten_keys(values)
 
     @cached_property

@@ -73,8 +73,9 @@ def hydra_main(job: Callable[..., Any]) -> None:
         command.reported(lambda: checked(config))  # ends here, before Hydra adds lines of its own
 
     def composed() -> None:
-        line = inherited.add_choices(_ordered(sys.argv[1:]))
+        line = _ordered(sys.argv[1:])
         mine = [text.partition("=")[2] for text in line if text.startswith("--config-dir=")]
+        line = inherited.add_recipe(line, *mine)
         if (shown := _shown(line, mine)) is not None:
             print(shown, end="")
             return

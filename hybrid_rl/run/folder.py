@@ -288,7 +288,8 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
     if not config:
         raise UsageError(f"{path}: is empty")
     try:
-        parts.check(OmegaConf.to_container(config), folder)
+        values: Any = OmegaConf.to_container(config)
+        parts.check({**values, "recipe": str(values.get("recipe"))}, folder)
     except ValueError as error:
         _check_version(folder, key, config)  # another one may have had such a part
         raise UsageError(f"{path}: {error}{of_another_commit(folder)}") from error

@@ -125,5 +125,5 @@ def _summary(config: DictConfig, session: Session, run_dir: Path, share: slice) 
 def written(config: DictConfig) -> dict[str, Any]:
     """What config.yaml holds, by full keys."""
     values: Any = OmegaConf.to_container(config)
-    own = {key: value for key, value in values.items() if key not in ("expert", "version")}
-    return flatten_keys(own)
+    others = ("expert", "version", "recipe", "config_dir")
+    return flatten_keys({key: value for key, value in values.items() if key not in others})

@@ -36,7 +36,7 @@ from hybrid_rl.run.together import Member
 NOTHING: Mapping[str, str] = MappingProxyType({})
 UNKNOWN = object()  # the value of a key that a configuration does not have
 OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "logger")
-OF_A_SESSION += ("compile_cache", "precision")
+OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
 
 ONLY = "with resume only total_steps and precision can be changed"
 SLOWER = "precision=bf16: slower than float32 on a CPU (0.5 to 0.7 of its speed); it is for GPUs"

@@ -51,8 +51,8 @@ def load(texts: Sequence[str] | DictConfig, config_dir: str | Path | None = None
     if isinstance(texts, DictConfig):
         return [Member(texts, {})]
     refused = isinstance(texts, str | Mapping)
-    words = texts if refused else inherited.add_choices(texts)
-    return expand_sweep(configuration.compose_raw(words, config_dir), texts)
+    words = texts if refused else inherited.add_recipe(texts, config_dir)
+    return expand_sweep(configuration.compose_raw(words, config_dir), words)
 
 
 def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
@@ -80,7 +80,7 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
         own = config.copy()
         for key, value in chosen.items():
             OmegaConf.update(own, source(raw, key), value)
-        members.append(Member(inherited.resolve_config(own, [*texts, *typed]), chosen))
+        members.append(Member(configuration.resolve(own, [*texts, *typed]), chosen))
     if len(members) > 1 and config.get("resume") is not None:
         before = [*folder.members(Path(str(config.resume))).values()]
         if before != [each.values for each in members]:

@@ -213,5 +213,5 @@ def nearest(word: str, known: Iterable[str]) -> str:
     if same := [key for key in known if ends.search(key)]:
         return min(same, key=lambda key: (key.split(".")[-1] != word, key.count(".")))
     names = {key.rpartition(".")[2]: key for key in reversed(known)}
-    close = difflib.get_close_matches(word, names, 1, 0.7)
+    close = difflib.get_close_matches(word, names, 1)
     return names[close[0]] if close else ""

@@ -245,8 +245,8 @@ REFUSED = [  # overrides, words of the line
     ("freeze=[polcy]", "freeze=[polcy]: the method's learners are model, policy"),
     ("freeze=policy", "freeze=policy: must be a list"),
     ("pretrain=3", "pretrain=3: what run="),
-    ("policy.hiden=[8]", "policy.hiden: sac has no such key; did you mean policy.hidden?"),
-    ("~policy.hidden", "~policy.hidden: with run=DIR keys cannot be deleted"),
+    ("policy.hiden=[8]", "hybrid_stochastic has no such key; did you mean policy.hidden?"),
+    ("~policy.hidden", "policy.hidden was [16] and is [256, 256]: parameters of run="),
 ]
 
 
@@ -259,10 +259,22 @@ def test_what_does_not_fit_is_one_line(source, tmp_path, monkeypatch, capfd, giv
     assert contents(source) == before
 
 
-def test_a_reference_that_another_part_lacks_is_one_line(tmp_path):
-    folder.write(tmp_path, config.load(["task=pendulum", "algo=hybrid_stochastic"]))
-    with pytest.raises(UsageError, match=r"refers to policy_learner\.model"):
-        together.load([f"run={tmp_path}", "learner@policy_learner=ddpg"])
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["env.physics=$(oc.env:HOME)"], "is no KEY=VALUE of a run"),
+        (["hydra.run.dir=elsewhere"], "is no KEY=VALUE of a run"),
+        (3, "must be a list of KEY=VALUE"),
+        (["env._target_=subprocess.Popen"], "is no part of hybrid_rl"),
+        (None, "keeps no recipe; train it again"),
+    ],
+)
+def test_the_words_of_a_run_are_judged(tmp_path, words, line):
+    config_of = config.load(["task=pendulum", "algo=sac"])
+    config_of.recipe = words
+    folder.write(tmp_path, config_of)
+    with pytest.raises(UsageError, match=line):
+        together.load([f"run={tmp_path}"])
 
 
 def test_no_run_and_no_checkpoint_are_one_line(source, tmp_path, monkeypatch, capfd):
