@@ -85,7 +85,7 @@ def test_every_method_and_every_task_learn(task: str, algo: str, tmp_path: Path)
     composed = small.with_demonstrations(small.load(algo, f"task={task}"), tmp_path)
     run = config.build(composed)
     built = held([run.agent, run.controllers]) - EVERYWHERE
-    assert composed_parts(composed) - EVERYWHERE == built
+    assert composed_parts(composed) - EVERYWHERE <= built  # a file may describe more
     if algo in RUN:
         small.learn(run)
     else:
