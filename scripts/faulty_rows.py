@@ -1,4 +1,4 @@
-"""Decisions of faulty worlds that nobody learned in, and what the doctor's checks find in them.
+"""Decisions of faulty worlds, without learning, and what the doctor's checks find in them.
 
     python -m scripts.faulty_rows tasks=pendulum seeds=31,32,33 out=docs/results/doctor.json
 

@@ -101,21 +101,21 @@ def closure(start: str, graph: dict[str, set[str]]) -> set[str]:
 def circles(graph: dict[str, set[str]]) -> list[frozenset[str]]:
     """Groups of nodes that reach one another."""
     reach = {node: closure(node, graph) for node in graph}
-    alike = {frozenset(o for o in reach[node] if node in reach[o]) for node in graph}
-    return [group for group in alike if len(group) > 1]
+    groups = {frozenset(o for o in reach[node] if node in reach[o]) for node in graph}
+    return [group for group in groups if len(group) > 1]
 
 
 def floors(graph: dict[str, set[str]]) -> int:
     """Rooms on the longest way down; rooms of a circle are one."""
-    alike = {node: frozenset({node}) for node in graph}
-    alike |= {node: group for group in circles(graph) for node in group}
+    groups = {node: frozenset({node}) for node in graph}
+    groups |= {node: group for group in circles(graph) for node in group}
 
     @cache
     def depth(group: frozenset[str]) -> int:
-        below = {alike[other] for node in group for other in graph[node]} - {group}
+        below = {groups[other] for node in group for other in graph[node]} - {group}
         return 1 + max(map(depth, below), default=0)
 
-    return max(map(depth, alike.values()))
+    return max(map(depth, groups.values()))
 
 
 def tested() -> float:

@@ -86,7 +86,7 @@ def test_a_slow_motor_and_one_that_is_off_have_different_lines():
     assert "no action changed" in observed.action(evidence(np.dstack((x, clock)), action))
 
 
-def test_commands_that_are_lost_and_signs_that_an_episode_draws_are_told_apart():
+def test_commands_that_are_lost_and_signs_that_an_episode_draws_differ():
     arrived = np.random.default_rng(7).random((EPISODES, STEPS)) < 0.5
     share, line = regular.gains(evidence(*oscillator(gain=arrived))).split(" of the actions ")
     assert float(share[:-1]) == pytest.approx(50, abs=3)

@@ -1,6 +1,6 @@
 """The words of a run that begins with another one: those of run=DIR, and the new ones.
 
-config.yaml keeps the words that made it as `recipe`. They are composed anew with the new ones, so
+config.yaml keeps the words that made it as `recipe`. They are composed with the new ones, so
 that what refers to another key follows it.
 """
 
@@ -21,7 +21,7 @@ from hybrid_rl.run import folder
 CHOSEN = ("task", "algo", "learning")  # they make the parameters
 WIDE = ("settings", "experiment")  # they would set what DIR has set
 OWN = ("random_steps", "pretrain", "run_dir", "freeze", "distributed", "resume", "run")
-FRESH = ("random_steps=0", "pretrain=0")  # nothing is learned anew
+FRESH = ("random_steps=0", "pretrain=0")  # the learners have begun
 RESOLVER = re.compile(r"\$\{[^}]*:")  # ${oc.env:NAME}, which no recipe of a run needs
 
 

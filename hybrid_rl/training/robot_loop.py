@@ -150,7 +150,7 @@ class RobotProgram:
         self.memory_analysis = learn.memory_analysis
         env = loop.agent.episode.env
         assert isinstance(env, Robot)
-        self.env, self.published, self.said = env, 0.0, LATE_S / 2
+        self.env, self.published, self.reported = env, 0.0, LATE_S / 2
         self.in_order = any(each.data == "latest" for each in loop.agent.learners.values())
         self.process = RobotProcess(env, loop.folder)
         self.log = RowLog(loop.folder / "rows", env.spec)
@@ -249,8 +249,8 @@ class RobotProgram:
     def _say(self, behind: int) -> None:
         """Print that the learner is behind, and again when it is twice as much."""
         seconds = behind * self.env.spec.dt
-        if seconds >= 2 * self.said:
-            self.said = seconds
+        if seconds >= 2 * self.reported:
+            self.reported = seconds
             line = f"the learner is {behind:,} decisions ({seconds:.0f} s) behind the robot; "
             line += "settings=light, fewer updates or less load on this machine make it faster"
             print(f"hybrid_rl: {line}", file=sys.stderr, flush=True)
