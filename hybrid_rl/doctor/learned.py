@@ -117,12 +117,13 @@ def random(run: Evidence) -> str | None:
 
 def critic(run: Evidence) -> str | None:
     """A critic whose values are larger than any possible return, with entropy."""
-    rows = [row for row in run.rows if row.get("sac/q") is not None]
+    seen = ((row, row.get("sac/q"), row.get("sac/alpha", 0.0)) for row in run.rows)
+    rows = [row for row, value, alpha in seen if value is not None and alpha is not None]
     learner: Any = run.run.agent.learners.get("policy")
     if run.made is None or not rows or getattr(learner.critic, "scale", True):
         return None
     last = rows[-1]
-    entropy = (last.get("sac/alpha") or 0.0) * run.run.agent.spec.act * log(2)  # uniform on [-1, 1]
+    entropy = last.get("sac/alpha", 0.0) * run.run.agent.spec.act * log(2)  # uniform on [-1, 1]
     most = (max(float(run.made.reward.max()), 0.0) + entropy) / (1 - learner.discount)
     if last["sac/q"] <= most:
         return None
