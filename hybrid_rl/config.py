@@ -13,7 +13,7 @@ from hydra.core.global_hydra import GlobalHydra
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl import checks, renamed
+from hybrid_rl import checks
 from hybrid_rl import overrides as overriding
 from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
 from hybrid_rl.composition import (
@@ -85,7 +85,6 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
         pairs = {} if isinstance(overrides, str) else overrides
         words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
         raise UsageError(f'"{overrides}": give a list, {words}')
-    renamed.check(overrides)
     check_choices(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
     words = overriding.forced(overrides, groups(config_dir))

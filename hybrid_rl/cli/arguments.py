@@ -10,7 +10,6 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from hybrid_rl import renamed
 from hybrid_rl.conf_files import MODES
 from hybrid_rl.errors import UsageError
 
@@ -197,7 +196,6 @@ def _refusal(
 ) -> str:
     """The message for an invalid argument."""
     given = line[at]
-    renamed.check([given])
     name = given.partition("=")[0].lstrip("-")
     if name.replace("-", "_") in named:
         return f"{given}: write {as_pair(line, at)}"

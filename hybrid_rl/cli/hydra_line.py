@@ -14,7 +14,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
-from hybrid_rl import overrides, renamed
+from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, command
 from hybrid_rl.composition import check_choices
 from hybrid_rl.conf_files import CONF, groups, search_path
@@ -143,7 +143,6 @@ def _ordered(line: Sequence[str]) -> list[str]:
     for flag in ({"--config-dir", "-cd"} & {*line}) - {*line[-1:]}:  # two words
         at = line.index(flag)
         line[at : at + 2] = [f"--config-dir={line[at + 1]}"]
-    renamed.check(line)
     check_choices(line)
     follow, found, modes = 0, [], []  # words that belong to an option; places of all these; modes
     for at, text in enumerate(line):
