@@ -131,11 +131,7 @@ def usage(module: Any) -> str:
 
 
 def _ordered(line: Sequence[str]) -> list[str]:
-    """The options, then the overrides; Hydra's parser refuses options between these.
-
-    Raises:
-        UsageError: for what is neither key=value nor an option of Hydra's.
-    """
+    """The options, then the overrides; Hydra's parser refuses options between these."""
     for text in line:
         if text.startswith(("config_dir=", "--config-dir=")):
             search_path(text.partition("=")[2])  # refuses what is no folder

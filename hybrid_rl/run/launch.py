@@ -191,11 +191,7 @@ def _run(
 
 
 def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
-    """The configuration of the run that `config` resumes, with what the user may change.
-
-    Raises:
-        UsageError: if the user gave another key a new value, or lowered total_steps.
-    """
+    """The configuration of the run that `config` resumes, with what the user may change."""
     run_dir = Path(str(config.resume))
     old = folder.read(run_dir, "resume")
     if old.task == "online":

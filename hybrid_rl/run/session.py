@@ -102,11 +102,7 @@ class Session:
         self.progress.note(f"continuing from step {self.step:,}")
 
     def compile(self) -> None:
-        """Compile all programs that `run` calls.
-
-        Raises:
-            MemoryError: if a device has too little memory for the learners.
-        """
+        """Compile all programs that `run` calls."""
         if self.finished:
             return
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle_note}")
