@@ -46,11 +46,7 @@ def limits() -> dict[str, int]:
 
 
 def time_limit(env: Any) -> int:
-    """The time limit of `env` in its steps, if it belongs to a task of this package.
-
-    Raises:
-        ValueError: for an environment of another package.
-    """
+    """The time limit of `env` in its steps, if it belongs to a task of this package."""
     kind = type(env)
     try:
         return limits()[f"{kind.__module__}.{kind.__qualname__}"]

@@ -53,11 +53,7 @@ THREE = (  # a disc, a box and a bar, without symmetry
 
 @part
 class SawyerProbe:
-    """Sawyer among fixed objects; `physics` is native, mjx, warp or auto.
-
-    Raises:
-        ValueError: as `ContactPlane`, or for an unknown physics.
-    """
+    """Sawyer among fixed objects; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE

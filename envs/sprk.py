@@ -50,11 +50,7 @@ PLANE = (  # fields that contact_plane has, too
 
 @part
 class Sprk:
-    """A ball among objects; `physics` is native, mjx, warp or auto.
-
-    Raises:
-        ValueError: as `ContactPlane`, or for an unknown physics.
-    """
+    """A ball among objects; `physics` is native, mjx, warp or auto."""
 
     physics: str = "auto"
     objects: tuple[tuple[float, ...], ...] = THREE

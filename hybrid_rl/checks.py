@@ -110,11 +110,7 @@ def _check_planned(config: DictConfig) -> None:
 
 
 def time_limit(env: External | Robot, given: Mapping[str, Any]) -> dict[str, int]:
-    """The time limit of an environment on the host [decisions], if `given` has none.
-
-    Raises:
-        UsageError: if it has none, or for a disturbance, which only a wrapper can add there.
-    """
+    """The time limit of an environment on the host [decisions], if `given` has none."""
     for key in ("delay", "sensor_noise", "action_noise", "randomise", *PAID):
         value = given.get(key)
         if isinstance(value, dict):  # of names and ranges
@@ -228,22 +224,14 @@ def _kinds(node: DictConfig, where: str) -> dict[str, set[type]]:
 
 
 def whole(key: str, value: Any, least: int = 1) -> int:
-    """The value at `key`, a whole number, which may be one of NumPy's.
-
-    Raises:
-        UsageError: if it is anything else, or less than `least`.
-    """
+    """The value at `key`, a whole number, which may be one of NumPy's."""
     if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
         raise UsageError(f"{key}={as_yaml(value)}: must be a whole number, {least} or more")
     return int(value)
 
 
 def one_of(key: str, value: Any, known: Collection[str]) -> str:
-    """The value at `key`.
-
-    Raises:
-        UsageError: if it is none of the known ones.
-    """
+    """The value at `key`."""
     if value not in known:
         raise UsageError(f"{key}={value}: choose one of {', '.join(known)}")
     return value

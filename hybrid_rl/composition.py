@@ -52,11 +52,7 @@ def settings_keys(hydra: Any) -> dict[str, Any]:
 
 
 def check_choices(texts: Sequence[str]) -> None:
-    """Refuse an override that gives a group something else than a name, and two environments.
-
-    Raises:
-        UsageError: with the names that the group has.
-    """
+    """Refuse an override that gives a group something else than a name, and two environments."""
     typed = overrides.typed_values(texts)
     one, other = (typed.get(key, "") for key in ("env.id", "env.make"))
     if overrides.value_of(one) and overrides.value_of(other):

@@ -12,11 +12,7 @@ MODES = ("full", "policy", "planner")  # keys of `controllers`: who acts
 
 
 def search_path(config_dir: str | Path) -> str:
-    """The override by which Hydra finds the groups in a folder of the user.
-
-    Raises:
-        UsageError: if there is no such folder, or Hydra would take another file for one of it.
-    """
+    """The override by which Hydra finds the groups in a folder of the user."""
     folder = Path(config_dir).expanduser().resolve()
     if not folder.is_dir():
         raise UsageError(f"config_dir={config_dir}: no such folder")

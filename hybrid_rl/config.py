@@ -13,7 +13,7 @@ from hydra.core.global_hydra import GlobalHydra
 from omegaconf import DictConfig, ListConfig, OmegaConf, open_dict
 from omegaconf.errors import OmegaConfBaseException
 
-from hybrid_rl import checks, renamed
+from hybrid_rl import checks
 from hybrid_rl import overrides as overriding
 from hybrid_rl.checks import COUNTS, PAID, SECTIONS, check, check_fields, check_kinds
 from hybrid_rl.composition import (
@@ -85,7 +85,6 @@ def compose_raw(overrides: Sequence[str], config_dir: str | Path | None = None) 
         pairs = {} if isinstance(overrides, str) else overrides
         words = [f"{key}={value}" for key, value in pairs.items()] or str(overrides).split()
         raise UsageError(f'"{overrides}": give a list, {words}')
-    renamed.check(overrides)
     check_choices(overrides)
     more = [] if config_dir is None else [search_path(config_dir)]
     words = overriding.forced(overrides, groups(config_dir))
@@ -109,9 +108,6 @@ def read_only(configs: Sequence[DictConfig]) -> list[DictConfig]:
     """What the run of each job reads: its sections and all that they refer to, parts complete.
 
     configs: as Hydra composed them, one for each job of a sweep.
-
-    Raises:
-        UsageError: for a typed key that no job reads; for a task of the user that is incomplete.
     """
     made, lost = zip(*map(read, configs), strict=True)
     for path in lost[0]:
@@ -121,11 +117,7 @@ def read_only(configs: Sequence[DictConfig]) -> list[DictConfig]:
 
 
 def read(config: DictConfig) -> tuple[DictConfig, dict[str, str]]:
-    """What the run of a job reads, with its references, and what it does not: typed key -> words.
-
-    Raises:
-        UsageError: for a task of the user that is incomplete, or a part that cannot be.
-    """
+    """Keys that the run of a job reads, and those that it does not: typed key -> words."""
     config = config.copy()
     hydra = take_hydra(config)
     check_task(config, hydra)
@@ -147,9 +139,6 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
     """A copy with every reference replaced by its value, composed from the overrides.
 
     config: as `compose_raw` gives it.
-
-    Raises:
-        UsageError: for a reference to a key that neither the task nor the method sets.
     """
     values = resolved(config)
     values.pop("sweep", None)
@@ -164,7 +153,7 @@ def resolve(config: DictConfig, overrides: Sequence[str]) -> DictConfig:
 
 
 def resolved(config: DictConfig) -> Any:
-    """The values of a composed configuration as dicts and lists; errors as `resolve`."""
+    """The values of a composed configuration as dicts and lists."""
     try:
         return OmegaConf.to_container(config, resolve=True)
     except OmegaConfBaseException as error:
@@ -172,11 +161,7 @@ def resolved(config: DictConfig) -> Any:
 
 
 def build(config: DictConfig) -> Run:
-    """The parts that `config` names, with room in the memory for what another run gave (`begun`).
-
-    Raises:
-        UsageError: if a value is out of range.
-    """
+    """The parts that `config` names, with room in the memory for what another run gave."""
     check(config)
     rounds = -(-config.total_steps // config.num_envs)
     remembered = config.get("begun", {}).get("remembered", 0)  # decisions of each environment
@@ -207,11 +192,7 @@ def _acting(parts: DictConfig) -> tuple[Episode, tuple[str, ...], dict[str, Cont
 
 
 def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imagination | None]:
-    """The episodes of `config`, its controllers, and what learns before them.
-
-    Raises:
-        UsageError: for a value out of range.
-    """
+    """The episodes of `config`, its controllers, and what learns before them."""
     with _usage(config):
         check_kinds(config)
         parts = _on_this_machine(config)
@@ -221,11 +202,7 @@ def acting(config: DictConfig) -> tuple[Episode, dict[str, Controller], Imaginat
 
 
 def episodes(config: DictConfig) -> Episode:
-    """The episodes of `config`, without its method.
-
-    Raises:
-        UsageError: for a value out of range.
-    """
+    """The episodes of `config`, without its method."""
     with _usage(config):
         check_kinds(OmegaConf.create({"env": config.env}))
         return _episode(_on_this_machine(config))[0]
@@ -246,11 +223,7 @@ def _episode(parts: DictConfig) -> tuple[Episode, tuple[str, ...]]:
 
 
 def expert(config: DictConfig) -> Controller:
-    """The scripted expert of the task.
-
-    Raises:
-        UsageError: if it has none.
-    """
+    """The scripted expert of the task."""
     if config.get("expert") is None:
         line = "has no scripted expert; give expert=babble or run=DIR"
         raise UsageError(f"task={config.task}: {line}")

@@ -65,11 +65,7 @@ def installed() -> str:
 
 
 def windowed(asked: str) -> bool:
-    """Whether to open a window: as asked, else where there are a display and viser.
-
-    Raises:
-        UsageError: where one is asked for without viser.
-    """
+    """Whether to open a window: as asked, else where there are a display and viser."""
     if asked == "true":
         view.import_viser()
     has = sys.platform == "darwin" or any(map(os.environ.get, ("DISPLAY", "WAYLAND_DISPLAY")))

@@ -103,9 +103,6 @@ def scripted_expert(
     """A task, as `changes` make it, and its scripted expert, which has no parameters.
 
     given: task, expert and config_dir, of the command line.
-
-    Raises:
-        UsageError: if the task has none.
     """
     named = {key: given[key] for key in ("task", "expert") if given[key]}
     values = [f"{key}={value}" for key, value in {**named, **changes}.items()]
@@ -164,11 +161,7 @@ def _write_policy(given: dict[str, Any], changes: dict[str, str]) -> None:
 def _models(
     folder: Path, run: Trained, params: Params, about: dict[str, Any] | None
 ) -> dict[str, Any]:
-    """The parameters to plan with, whose parts are added to `about`.
-
-    Raises:
-        UsageError: for a run that learned none.
-    """
+    """The parameters to plan with, whose parts are added to `about`."""
     config: Any = run.config
     parts = {"model": params.model, "reward_model": params.reward}
     if about is None or any(value is None or not config.get(n) for n, value in parts.items()):

@@ -18,11 +18,7 @@ NO_WAIT, NO_LINK = getattr(os, "O_NONBLOCK", 0), getattr(os, "O_NOFOLLOW", 0)
 
 
 def own_file(file: Path, flags: int) -> int:
-    """A handle of a file of a run; flags: as of `os.open`.
-
-    Raises:
-        UsageError: for a link, a pipe or a device, behind which something else may be lost.
-    """
+    """A handle of a file of a run; flags: as of `os.open`."""
     try:
         handle = os.open(file, flags | NO_LINK | NO_WAIT, 0o666)
         if stat.S_ISREG(os.fstat(handle).st_mode):
@@ -35,7 +31,7 @@ def own_file(file: Path, flags: int) -> int:
 
 
 def open_own(file: Path, mode: str = "ab", **how: Any) -> Any:
-    """A file of a run, as `open`, but that no link is followed; errors as `own_file`."""
+    """A file of a run, as `open`, but that no link is followed."""
     return open(file, mode, opener=lambda path, flags: own_file(Path(path), flags), **how)
 
 
@@ -47,7 +43,7 @@ def refuse_link(folder: Path) -> Path:
 
 
 def own_folder(folder: Path) -> Path:
-    """A folder in that of a run, made if there is none, but not its parents; as `refuse_link`."""
+    """A folder in that of a run, made if there is none, but not its parents."""
     refuse_link(folder).mkdir(exist_ok=True)
     return folder
 

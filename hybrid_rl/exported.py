@@ -87,11 +87,7 @@ def _tree(words: Array, like: Any) -> Any:
 
 
 def layers(spec: Spec, controller: Controller, params: Params) -> Perceptron:
-    """The policy that acts as plain arrays.
-
-    Raises:
-        UsageError: if it plans, is no multilayer perceptron, or sees features of observations.
-    """
+    """The policy that acts as plain arrays."""
     other = "; choose out=FILE.stablehlo"
     if not isinstance(controller, PolicyController):
         raise UsageError(f"mode: the file holds a policy, {type(controller).__name__} plans{other}")
@@ -114,11 +110,7 @@ def check_script(out: Path) -> None:
 
 
 def saved(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
-    """Write the file of a policy; returns a line that says how it is used.
-
-    Raises:
-        UsageError: if the format needs a package that is not installed.
-    """
+    """Write the file of a policy; returns a line that says how it is used."""
     if out.suffix == ".h":
         return f'{out}: #include "{out.name}"; {save_c(out, task, spec, net)}(obs, action)'
     if out.suffix == ".npz":

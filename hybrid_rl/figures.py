@@ -97,11 +97,7 @@ def _sources() -> dict[str, Path]:
 
 
 def study_of(name: str) -> Study:
-    """The study of this name: one that is listed, or a module on Python's path.
-
-    Raises:
-        UsageError: if there is none, or the module cannot be imported or draws no figure.
-    """
+    """The study of this name: one that is listed, or a module on Python's path."""
     known = studies()
     if name in known:
         (module,) = (full for full in _sources() if full.rpartition(".")[2] == name)
@@ -167,11 +163,7 @@ def _content(file: Path) -> Any:
 
 
 def redrawn(study: Study, file: str) -> tuple["Figure", dict[str, Any]]:
-    """The picture of a JSON, and its content.
-
-    Raises:
-        UsageError: if it has no numbers that the study draws.
-    """
+    """The picture of a JSON, and its content."""
     try:
         content = json_file(Path(file))
         with _styled():

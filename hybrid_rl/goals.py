@@ -69,9 +69,6 @@ def load_changed(
     """The run or policy that a command names, as its other arguments change it, and these.
 
     given: run, policy and GOAL; changes: group.KEY=VALUE of CHANGES, of the command line.
-
-    Raises:
-        UsageError: for a run, a name, a key or a value that is unusable; for a run on a robot.
     """
     trained = load_named(given)
     if isinstance(trained.episode.env, Robot | Outside):
@@ -173,11 +170,7 @@ def _adjusted(trained: Trained, overrides: Sequence[str]) -> Trained:
 def _greedy(
     trained: Trained, episode: Episode, controllers: Mapping[str, Controller]
 ) -> dict[str, Controller]:
-    """The controllers without exploration.
-
-    Raises:
-        PartError: for one of the user's that cannot act.
-    """
+    """The controllers without exploration."""
     if any(users([*controllers.values()])):
         agent = Agent(episode, next(iter(controllers.values())), {}, Replay())
         one: Any = jax.tree.map(lambda leaf: leaf[0], trained.params)
@@ -264,11 +257,7 @@ def _as_given(line: str) -> str:
 
 
 def disturbed(config: DictConfig, changes: Mapping[str, str]) -> Episode:
-    """The episodes of `config` with other values of env.KEY and episode.KEY.
-
-    Raises:
-        UsageError: for a key that they do not have, or a value out of range.
-    """
+    """The episodes of `config` with other values of env.KEY and episode.KEY."""
     changed = config.copy()
     OmegaConf.set_readonly(changed, False)
     for key, value in changes.items():

@@ -38,11 +38,7 @@ DEEPEST, SHOWN = 40, 60  # names in a key; characters of a name in a message
 
 
 def leaves(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
-    """Every `_target_` and text in a tree of dicts and lists, with its full key; outer ones first.
-
-    Raises:
-        UsageError: for a tree that is nested too deeply.
-    """
+    """Every `_target_` and text in a tree of dicts and lists, with its full key; outer first."""
     if where.count(".") > DEEPEST:
         raise UsageError(f"{printable(where)[:SHOWN]}...: is nested too deeply")
     pairs = [*(node.items() if isinstance(node, dict) else enumerate(node))]
@@ -55,7 +51,7 @@ def leaves(node: Any, where: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def targets(node: Any) -> Iterator[tuple[str, Any]]:
-    """Every `_target_` in a tree; errors as `leaves`."""
+    """Every `_target_` in a tree."""
     return ((key, name) for key, name in leaves(node) if f".{key}".endswith(f".{TARGET}"))
 
 
@@ -76,9 +72,6 @@ def check(node: Any, near: Path | None = None) -> None:
 
     near: the run folder or the file that the tree comes from; None: from the user, who may write
     any MODULE:NAME.
-
-    Raises:
-        UsageError: for a name that is no part's; the line begins with KEY=NAME; or too deep a tree.
     """
     for key, name in leaves(node) if near else targets(node):
         try:
@@ -93,22 +86,14 @@ def check(node: Any, near: Path | None = None) -> None:
 
 
 def imported(text: str) -> tuple[Any, str]:
-    """The module of MODULE:NAME or MODULE:ID, and what follows the colon.
-
-    Raises:
-        ValueError: for another form, which `check` would not have judged.
-    """
+    """The module of MODULE:NAME or MODULE:ID, and what follows the colon."""
     if not (found := NAMED.fullmatch(text)):
         raise ValueError("give MODULE:NAME")
     return import_module(found[1]), found[2]
 
 
 def part_class(target: Any, near: Path | None = None) -> Any:
-    """The class of the part that a `_target_` names; near: as for `check`.
-
-    Raises:
-        ValueError: if it names none, or its module cannot be imported.
-    """
+    """The class of the part that a `_target_` names; near: as for `check`."""
     source = _source(target, near)
     module, _, name = str(target).rpartition(".")
     try:
@@ -129,9 +114,6 @@ def build(node: Any, near: Path | None = None, where: str = "") -> Any:
     """The part that `node` describes, with the parts in it; what is no part stays as it is.
 
     where: key of `node` in its configuration, which messages about a field begin with.
-
-    Raises:
-        ValueError: for a name that is no part's, or fields that a part does not have or accept.
     """
     if isinstance(node, (dict, list)):
         check(node, near)

@@ -57,9 +57,6 @@ def page(runs: Sequence[RunFolder], video: bool = True) -> str:
     """The report of runs as HTML.
 
     video: with videos.
-
-    Raises:
-        UsageError: if a file of a run is damaged.
     """
     names = [" on ".join(str(run.summary.get(k, "?")) for k in ("algo", "task")) for run in runs]
     title = ", ".join(dict.fromkeys(names))

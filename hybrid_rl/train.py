@@ -162,11 +162,7 @@ def _composed(
     config_dir: str | Path | None = None,
     **others: Any,
 ) -> tuple[list[together.Member], Mapping[str, str]]:
-    """The runs of a list or a configuration, and the user's overrides.
-
-    Raises:
-        UsageError: for keywords of an agent, or config_dir beside a configuration.
-    """
+    """The runs of a list or a configuration, and the user's overrides."""
     if others:
         texts = ", ".join(f'"{key}={value}"' for key, value in others.items())
         raise UsageError(f"train: keywords are for an agent; write train([{texts}, ...])")

@@ -137,11 +137,7 @@ def of(run: Run, folder: Path) -> Trained:
 
 
 def build_run(config: DictConfig, part: str = "learners") -> Run:
-    """The run of `config`, without files of demonstrations that `restore` of `part` does not need.
-
-    Raises:
-        UsageError: if a value is out of range.
-    """
+    """The run of `config`, without demonstrations that `restore` of `part` does not need."""
     config = config.copy()
     holders = list(config.learners.values())
     if part != "memory":
@@ -174,11 +170,7 @@ def names() -> list[str]:
 
 
 def load_named(given: Mapping[str, Any]) -> Trained:
-    """What the arguments run=DIR or policy=NAME name.
-
-    Raises:
-        UsageError: if both or none are given, or what they name is unusable.
-    """
+    """What the arguments run=DIR or policy=NAME name."""
     if bool(given["run"]) == bool(given["policy"]):
         raise UsageError(
             "run, policy: give one of them; run=DIR is a folder that training wrote, "
@@ -188,11 +180,7 @@ def load_named(given: Mapping[str, Any]) -> Trained:
 
 
 def read(name: str) -> Trained:
-    """The policy NAME of the package, or that in a file whose name ends in .npz.
-
-    Raises:
-        UsageError: if there is none, or it is unusable.
-    """
+    """The policy NAME of the package, or that in a file whose name ends in .npz."""
     file = Path(name) if name.endswith(".npz") else Path("policies", f"{name}.npz")
     prefix, known = f"policy={name}:", f"choose a file, or one of {', '.join(names())}"
     if not name.endswith(".npz") and Path(name).exists():

@@ -100,12 +100,7 @@ def learner(given: Mapping[str, Any], seed: int, writer: Connection) -> None:
 
 
 def side_by_side(given: Mapping[str, Any]) -> Iterator[tuple[int, Row]]:
-    """(seed, row) of all seeds as they come.
-
-    Raises:
-        UsageError: of a learner.
-        ChildProcessError: at the end, if a learner failed.
-    """
+    """(seed, row) of all seeds as they come."""
     context = multiprocessing.get_context("spawn")
     running, failed = {}, []
     try:
@@ -160,11 +155,7 @@ def clock(rows: Mapping[int, list[Row]]) -> dict[str, Any] | None:
 
 
 def check(given: Mapping[str, Any]) -> None:
-    """Check the arguments before a learner starts.
-
-    Raises:
-        UsageError: if the library is missing, or an argument cannot be.
-    """
+    """Check the arguments before a learner starts."""
     library, every, total = given["library"], given["eval_every"], given["total_steps"]
     if find_spec(library) is None:
         raise UsageError(f"library={library}: not installed; pip install {LIBRARIES[library]}")

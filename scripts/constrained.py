@@ -38,11 +38,7 @@ ARGUMENTS = (
 
 
 def acting(trained: Trained, penalised: Trained | None) -> dict[str, tuple[Trained, Any]]:
-    """Row -> the learners that act in it, and their controller.
-
-    Raises:
-        UsageError: without a constraint, or without a planner that knows it.
-    """
+    """Row -> the learners that act in it, and their controller."""
     limit: Any = trained.episode.constraint
     planner = trained.controllers["full"]
     if limit is None or not isinstance(planner, GradientController):

@@ -37,12 +37,12 @@ LAYER_FILES = {
     "config",
     "overrides",
 }
-LAYER_FILES |= {"modules", "overrides", "parts", "renamed", "trained"}
+LAYER_FILES |= {"modules", "overrides", "parts", "trained"}
 SHARED = {"types", "fields", "protocols", "core", "networks"}
 CONFIG = {
     *("types", "drafts", "fields", "protocols", "errors", "parts", "networks", "envs"),
     "training",
-    *("checks", "composition", "conf_files", "config", "overrides", "renamed", "settings"),
+    *("checks", "composition", "conf_files", "config", "overrides", "settings"),
 }
 ALLOWED = {
     "types": set(),
@@ -60,7 +60,6 @@ ALLOWED = {
     "data": {*SHARED, "drafts", "parts", "archive"},
     "beliefs": {*SHARED, "drafts", "archive"},
     "policies": {*SHARED, "archive"},
-    "renamed": {"errors"},
     "overrides": {"errors"},
     "settings": {"errors", "parts", "settings"},  # what a run reads, which parts there are
     "conf_files": {"errors", "settings"},

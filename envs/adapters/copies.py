@@ -95,11 +95,7 @@ class Copies:
         return Outcome(obs, reward, np.array(ended), cut, self._next(obs, done))
 
     def picture(self) -> np.ndarray:
-        """The first environment [height, width, 3] (uint8), with render_mode="rgb_array".
-
-        Raises:
-            WorldError: if it gives none.
-        """
+        """The first environment [height, width, 3] (uint8), with render_mode="rgb_array"."""
 
         def drawn() -> Any:
             try:

@@ -45,12 +45,7 @@ DRAWS = re.compile("GLContext|MUJOCO_GL")  # in errors of MuJoCo's Renderer and 
 
 @part
 class External(Made):
-    """An environment that Gymnasium makes; one copy is made to read its spaces and makes a step.
-
-    Raises:
-        UsageError: if it cannot be made, or its spaces are none that a method can use.
-        WorldError: if `reset` or `step` does not return what Gymnasium asks for.
-    """
+    """An environment that Gymnasium makes; one copy is made to read its spaces and makes a step."""
 
     id: str = ""  # in place of `make`
     dt: Positive | None = None  # [s] between decisions; None: what the environment says
@@ -98,11 +93,7 @@ class External(Made):
         return np.asarray(flatten(self.known.seen, obs))
 
     def step(self, state: EnvState, action: Array) -> NoReturn:
-        """No JAX function.
-
-        Raises:
-            UsageError: always.
-        """
+        """No JAX function."""
         raise UsageError(
             f"{self.name}: steps on the host, so no method can plan on it; choose one that learns "
             "its model, such as algo=hybrid_stochastic, nn_mppi or sac"
@@ -225,11 +216,7 @@ def _limit(env: gymnasium.Env) -> int | None:
 
 
 def check_world(env: Any) -> tuple[str, ...]:
-    """Notes about a world of the user's, before a run in it.
-
-    Raises:
-        UsageError: if no run can use it.
-    """
+    """Notes about a world of the user's, before a run in it."""
     if isinstance(env, External):
         return env.known.notes
     return () if type(env).__module__.startswith("hybrid_rl.") else check(env)

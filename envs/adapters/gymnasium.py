@@ -65,11 +65,7 @@ def _spaces(env: Env) -> tuple[Box, Box]:
 
 
 def _checked(action: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """`action` as float32.
-
-    Raises:
-        ValueError: for another shape, or numbers that are not finite.
-    """
+    """`action` as float32."""
     action = np.asarray(action, np.float32)
     if action.shape != shape:
         raise ValueError(f"action has the shape {action.shape}; {shape} is needed")

@@ -28,11 +28,7 @@ from hybrid_rl.types import EnvState, Spec
 
 @dataclass(frozen=True)
 class Playground:
-    """The environment `name` of Playground's registry.
-
-    Raises:
-        UsageError: if Playground is not installed, or has no such environment.
-    """
+    """The environment `name` of Playground's registry."""
 
     name: str
     config: Mapping[str, Any] | None = None  # its own settings; {"impl": "jax"} unless it says warp

@@ -46,11 +46,7 @@ class Outside(Unstepped):
 
 @part
 class Robot(Made):
-    """A robot that learns while it moves. Its sizes are read from its class, without making one.
-
-    Raises:
-        UsageError: if the class cannot be imported, or lacks something.
-    """
+    """A robot that learns while it moves. Its sizes are read from its class, without making one."""
 
     past_actions: Natural = 0  # that the observation ends with, where actions take a period to act
     rate: Positive | None = None  # greatest change of an action from one decision to the next, of 2
@@ -116,11 +112,7 @@ class Robot(Made):
         return numbers
 
     def made(self) -> Any:
-        """The robot.
-
-        Raises:
-            UsageError: if its class raises an error; the message names the user's line.
-        """
+        """The robot."""
         try:
             return self.kind(**(self.kwargs or {}))
         except FAULTS as error:

@@ -46,11 +46,7 @@ class StandIn:
         self._newest: tuple[int, int, float, np.ndarray] | None = None
 
     def reset(self) -> None:
-        """Begin an episode.
-
-        Raises:
-            ConnectionError: if the stand-in does not answer within two seconds.
-        """
+        """Begin an episode."""
         wanted, until = time.monotonic_ns(), time.monotonic() + 2
         while time.monotonic() < until:
             self._send(MOVED.pack(RESET, wanted))
@@ -61,11 +57,7 @@ class StandIn:
         raise ConnectionError("the stand-in does not answer")
 
     def observe(self) -> tuple[np.ndarray, float]:
-        """The newest observation [o], and its time.
-
-        Raises:
-            ConnectionError: if there has been none.
-        """
+        """The newest observation [o], and its time."""
         self._receive()
         if self._newest is None:
             raise ConnectionError("no observation from the stand-in")

@@ -27,11 +27,7 @@ class Unstepped:
         return EnvState((), jnp.zeros(self.spec.obs), zero, no, no)
 
     def step(self, state: EnvState, action: Array) -> NoReturn:
-        """No JAX function.
-
-        Raises:
-            UsageError: always.
-        """
+        """No JAX function."""
         raise UsageError(f"{type(self).__name__}: {ALONE}")
 
 
@@ -63,11 +59,7 @@ class Items(dict):
 
 
 def import_named(make: Any) -> Callable[..., Any]:
-    """The function or class that `MODULE:NAME` names; what is no text stays as it is.
-
-    Raises:
-        UsageError: if it cannot be imported.
-    """
+    """The function or class that `MODULE:NAME` names; what is no text stays as it is."""
     if not isinstance(make, str):
         return make
     try:

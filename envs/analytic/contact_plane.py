@@ -55,11 +55,7 @@ class Body(NamedTuple):
 
 @part
 class ContactPlane:
-    """A ball among objects, with a binary contact sensor.
-
-    Raises:
-        ValueError: for objects that are no rounded boxes, lie outside or leave no room to start.
-    """
+    """A ball among objects, with a binary contact sensor."""
 
     objects: tuple[tuple[float, ...], ...] = THREE
     acceleration: Positive = 1.0  # [m/s^2] a

@@ -24,11 +24,7 @@ from hybrid_rl.types import Params, Spec
 
 @part
 class ComputedTorque:
-    """Feedback linearisation of `sawyer_torque`.
-
-    Raises:
-        ValueError: for another environment.
-    """
+    """Feedback linearisation of `sawyer_torque`."""
 
     world: SawyerTorque
     frequency: Positive = 20.0  # [rad/s] w of the errors
@@ -59,11 +55,7 @@ class ComputedTorque:
 
 @part
 class JointPD:
-    """Proportional and derivative feedback at each joint of `sawyer_torque`.
-
-    Raises:
-        ValueError: for another environment, or gains that are not 7 numbers.
-    """
+    """Proportional and derivative feedback at each joint of `sawyer_torque`."""
 
     world: SawyerTorque
     stiffness: tuple[NotNegative, ...] = (400.0, 400.0, 200.0, 200.0, 40.0, 20.0, 10.0)  # [N m/rad]

@@ -35,11 +35,7 @@ class Bodies(NamedTuple):
 
 
 def torques(asset: str, q: Array, rate: Array, acceleration: Array) -> Array:
-    """Torques [n] that give `acceleration` [n] at angles q [n] and rates [n] of the model `asset`.
-
-    Raises:
-        ValueError: for a model that is not one chain of hinges, each at the origin of its body.
-    """
+    """Torques [n] for `acceleration` [n] at angles q [n] and rates [n] of the model `asset`."""
     model, arm = mjcf.load(asset), _bodies(asset)
     has_joint = arm.joint >= 0
     moved = [jnp.where(has_joint, x[arm.joint], 0.0) for x in (q, rate, acceleration)]

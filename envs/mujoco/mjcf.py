@@ -33,11 +33,7 @@ DYNAMIC = [
 
 
 def path(asset: str) -> Path:
-    """The file of `asset`: a name in `assets`, or an absolute path.
-
-    Raises:
-        ValueError: for a file that does not exist.
-    """
+    """The file of `asset`: a name in `assets`, or an absolute path."""
     file = FOLDER / asset
     if not file.is_file():
         if Path(asset).is_absolute():
@@ -84,11 +80,7 @@ def changed(asset: str, values: Mapping[str, float]) -> str:
 
 
 def spec(asset: str) -> mujoco.MjSpec:
-    """A new description of `asset`, which may be modified; without changes of the whole model.
-
-    Raises:
-        ValueError: that names the file, for one that is no model.
-    """
+    """A new description of `asset`, which may be modified; without changes of the whole model."""
     if asset.lstrip().startswith("<"):
         return mujoco.MjSpec.from_string(asset)
     file, values = _split(asset)
@@ -120,9 +112,6 @@ def load(asset: str) -> mujoco.MjModel:
     """The compiled model of `asset`, which is shared: do not modify it.
 
     A simulation that diverges is never reset silently, whatever the file says.
-
-    Raises:
-        ValueError: that names the file, for one that does not compile.
     """
     given = spec(asset)
     try:
@@ -138,11 +127,7 @@ def load(asset: str) -> mujoco.MjModel:
 
 @cache
 def shape(asset: str, name: str) -> tuple[int, ...]:
-    """The shape of the field `name` of MjData of `asset`.
-
-    Raises:
-        ValueError: for a field that MuJoCo computes only for sensors which `asset` lacks.
-    """
+    """The shape of the field `name` of MjData of `asset`."""
     model = load(asset)
     if name in FOR_SENSORS and not np.isin(model.sensor_type, DYNAMIC).any():
         raise ValueError(f"{asset}: MuJoCo computes {name} for a <framelinacc> sensor: add one")
@@ -150,11 +135,7 @@ def shape(asset: str, name: str) -> tuple[int, ...]:
 
 
 def fields(asset: str, values: Mapping[str, Array]) -> dict[str, Array]:
-    """`values` of fields of MjModel of `asset`, by name, in float32.
-
-    Raises:
-        ValueError: for a name that is not in FIELDS, or another shape than the model's.
-    """
+    """`values` of fields of MjModel of `asset`, by name, in float32."""
     given = {name: jnp.asarray(x, jnp.float32) for name, x in values.items()}
     for name, x in given.items():
         if name not in FIELDS:

@@ -58,11 +58,7 @@ def capacities(asset: str) -> tuple[int, int]:
 
 @cache
 def _model(asset: str, impl: str) -> tuple[mujoco.MjModel, Any]:
-    """The MuJoCo and the MJX model of `asset`, created outside of any trace.
-
-    Raises:
-        UsageError: for a model with something that MJX does not have.
-    """
+    """The MuJoCo and the MJX model of `asset`, created outside of any trace."""
     model = mjcf.load(asset)
     if impl == "warp":  # never resets, and rejects the flag for it
         model = copy.copy(model)

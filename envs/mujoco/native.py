@@ -73,11 +73,7 @@ def _idle(asset: str, worlds: int, threads: int, reads: Names, fields: Names) ->
 
 
 def _pool(asset: str, worlds: int, threads: int, reads: Names, fields: Names) -> _Pool:
-    """A new pool; with threads=0 the host's devices divide its processors among them.
-
-    Raises:
-        ValueError: for a model with delays.
-    """
+    """A new pool; with threads=0 the host's devices divide its processors among them."""
     if mujoco.get_mju_user_warning() is None:  # else MuJoCo writes each to MUJOCO_LOG.TXT, too
         mujoco.set_mju_user_warning(_warn)
     model = mjcf.load(asset)

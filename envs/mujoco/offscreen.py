@@ -161,11 +161,7 @@ class Canvas:
         atexit.register(self.close)
 
     def draw(self, qpos: np.ndarray) -> np.ndarray:
-        """The image [height, width, 3] (uint8) at joint positions qpos [nq].
-
-        Raises:
-            ValueError: for a qpos of another size.
-        """
+        """The image [height, width, 3] (uint8) at joint positions qpos [nq]."""
         if np.shape(qpos) != (self.model.nq,):
             raise ValueError(f"qpos is {np.shape(qpos)}; the scene takes [{self.model.nq}]")
         self._window.make_current()

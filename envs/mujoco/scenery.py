@@ -29,20 +29,12 @@ DRAWN = "write `scene(self)`, MJCF text or its file, and `pose(self, state)`, it
 
 
 def scene_of(env: Any) -> str:
-    """The name of the model that is drawn, for `mjcf.spec`: its MJCF text, or its file.
-
-    Raises:
-        ValueError: for an environment that has no `scene` and does not use `Physics`.
-    """
+    """The name of the model that is drawn, for `mjcf.spec`: its MJCF text, or its file."""
     return env.scene() if hasattr(env, "scene") else _first(env).asset
 
 
 def pose_of(env: Any) -> Callable[[EnvState], Array]:
-    """The function from a state to the positions [nq] that are drawn.
-
-    Raises:
-        ValueError: for an environment that has no `pose` and does not use `Physics`.
-    """
+    """The function from a state to the positions [nq] that are drawn."""
     if hasattr(env, "pose"):
         return env.pose
     _first(env)

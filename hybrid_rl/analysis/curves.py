@@ -49,11 +49,7 @@ class Curve:
         return np.isfinite(self.each).all(0)
 
     def frame(self) -> Any:
-        """A pandas.DataFrame: a row per value, columns task, label, seed, metric, x, value.
-
-        Raises:
-            ImportError: without pandas.
-        """
+        """A pandas.DataFrame: a row per value, columns task, label, seed, metric, x, value."""
         frame = pandas().DataFrame
         s, g = np.nonzero(np.isfinite(self.each))
         values = {"seed": np.array(self.seeds)[s], "metric": self.metric}

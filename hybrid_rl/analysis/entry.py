@@ -26,9 +26,6 @@ def entry(runs: Sequence[RunFolder]) -> str:
     """The text of an entry: a row for each task, at the last decision that all its seeds have.
 
     Its name is the method's, its link is empty: both are for the author to write.
-
-    Raises:
-        UsageError: unless the runs are of one method, on one machine, and were evaluated.
     """
     drawn = curves([run.path for run in runs], RETURN)
     _one("methods", [curve.label for curve in drawn])

@@ -76,11 +76,7 @@ def summary(numbers: dict[str, Any]) -> list[str]:
 
 
 def restored(folder: Path) -> Trained:
-    """The run in `folder`.
-
-    Raises:
-        UsageError: if it has no learned model.
-    """
+    """The run in `folder`."""
     run = load(folder, "runs")
     if run.params.model is None:
         raise UsageError(f"runs={folder}: has no learned model")

@@ -164,11 +164,7 @@ def from_numbers(numbers: dict[str, Any]) -> list[Curve]:
 
 
 def _read(file: str | Path) -> dict[str, Any]:
-    """The numbers of a learning-curve figure.
-
-    Raises:
-        UsageError: if the file cannot be read or has no curves.
-    """
+    """The numbers of a learning-curve figure."""
     try:
         numbers = json_file(Path(file))
         from_numbers(numbers)

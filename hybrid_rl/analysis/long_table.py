@@ -26,11 +26,7 @@ FLOAT32 = float(np.finfo(np.float32).max)  # greatest number that is drawn
 
 
 def text(drawn: Sequence[Curve], x: str) -> str:
-    """The text of the table; a missing value has no row.
-
-    Raises:
-        UsageError: if `x` is not the number of decisions.
-    """
+    """The text of the table; a missing value has no row."""
     if x != "step":
         raise UsageError(f"x={x}: a table is over decisions; give x=step, or a picture as out")
     out = io.StringIO()
@@ -49,9 +45,6 @@ def read(file: str | Path, metric: str, tasks: Iterable[str], smooth: float = 0.
     """The curves of `metric` in a table with these columns, labelled by exp_name and its file.
 
     tasks: of the runs that they are drawn beside.
-
-    Raises:
-        UsageError: if the file is no such table, or has nothing of the metric or another task.
     """
     found: dict = defaultdict(lambda: defaultdict(list))
     try:

@@ -31,12 +31,7 @@ class Recorded(NamedTuple):
 
 
 def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
-    """The run in `folder`, which the argument `key` named, and its memory.
-
-    Raises:
-        UsageError: unless it is a run of one of the tasks, or of any if none is given, with a
-            complete memory of one world.
-    """
+    """The run in `folder`, which the argument `key` named, and its memory."""
     config: Any = parse_config(folder, key)
     fits = config.task in tasks or not tasks
     if not fits or config.num_envs != 1 or not config.checkpoint_replay:
@@ -49,11 +44,7 @@ def read(folder: Path, *tasks: str, key: str = "runs") -> Recorded:
 
 
 def one_episode(recorded: Recorded) -> Any:
-    """The decisions of a run whose trials are one episode each.
-
-    Raises:
-        UsageError: if an episode ended before the run.
-    """
+    """The decisions of a run whose trials are one episode each."""
     made = recorded.made
     if (made.truncated + made.terminated)[:, :-1].any():
         raise UsageError(

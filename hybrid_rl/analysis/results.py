@@ -37,11 +37,7 @@ MOST_SUGGESTED = 4  # keys in one message
 
 @dataclass(frozen=True)
 class RunFolder:
-    """A folder that training wrote; its files are read when they are first needed.
-
-    Raises:
-        UsageError: if a file is damaged; the line names it.
-    """
+    """A folder that training wrote; its files are read when they are first needed."""
 
     path: Path
 
@@ -90,22 +86,14 @@ class RunFolder:
         return summary_of(file) if file.exists() else {}
 
     def word(self, key: str) -> str:
-        """The value at `key` as a word, of a part its class; "null" for null.
-
-        Raises:
-            UsageError: if there is no such setting, or several with different values.
-        """
+        """The value at `key` as a word, of a part its class; "null" for null."""
         word = self._word(key, "group")
         if word is None:
             raise UsageError(f"group={key}: not in {self.path}/config.yaml{self._near(key)}")
         return word
 
     def number(self, key: str) -> float:
-        """The number at `key`.
-
-        Raises:
-            UsageError: if there is none, or several that differ.
-        """
+        """The number at `key`."""
         word = self._word(key, "x")
         try:
             return float(word or "")
@@ -151,9 +139,6 @@ def find(runs: str | Path | Iterable[str | Path], key: str = "runs") -> list[Pat
     """Run folders with metrics that match a glob, or lie in a folder; what exists is no glob.
 
     runs: one, or several, also as "a/*,b/*" or "[a/*,b/*]". key: the argument that named them.
-
-    Raises:
-        UsageError: if there is none, or none at one of the names between commas.
     """
     if not runs:
         raise UsageError(f'{key}: not given; give {key}="PATTERN" of run folders')

@@ -10,7 +10,6 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any
 
-from hybrid_rl import renamed
 from hybrid_rl.conf_files import MODES
 from hybrid_rl.errors import UsageError
 
@@ -134,11 +133,7 @@ ROBOT_CHANGES = {**CHANGES, "expert": "with task=T: a key of its expert"}
 
 
 def robot(given: Mapping[str, Any], changes: Mapping[str, str]) -> str:
-    """The run, policy or task that values of ROBOT name.
-
-    Raises:
-        UsageError: unless it is one, with arguments that it can have.
-    """
+    """The run, policy or task that values of ROBOT name."""
     named = [given[name] for name in ("run", "policy", "task") if given[name]]
     if len(named) != 1:
         raise UsageError(
@@ -167,9 +162,6 @@ def read(
         doc: the docstring of its module.
         known: its arguments.
         groups: groups of the configuration whose keys it accepts -> their description in --help.
-
-    Raises:
-        UsageError: for an argument of another form, an unknown one, or a value out of range.
     """
     groups = groups or {}
     line = sys.argv[1:]
@@ -197,7 +189,6 @@ def _refusal(
 ) -> str:
     """The message for an invalid argument."""
     given = line[at]
-    renamed.check([given])
     name = given.partition("=")[0].lstrip("-")
     if name.replace("-", "_") in named:
         return f"{given}: write {as_pair(line, at)}"
@@ -248,10 +239,6 @@ def output(key: str, out: str | Path, suffixes: Sequence[str], *others: str) -> 
     """`out` as a path, after a check that it can be written to.
 
     key: of the argument. others: suffixes of further files with the same name.
-
-    Raises:
-        UsageError: if its suffix is none of `suffixes`, its folder does not exist, or it cannot be
-            written to.
     """
     out = Path(out)
     if out.suffix not in suffixes:

@@ -9,11 +9,7 @@ from hybrid_rl.errors import UsageError
 
 
 def jobs_of(parsed: Sequence[Override]) -> list[list[str]]:
-    """The overrides of each job: every combination of the values.
-
-    Raises:
-        UsageError: for a key without values, or a range, which only a search can sweep.
-    """
+    """The overrides of each job: every combination of the values."""
     for each in parsed:
         if each.is_interval_sweep():
             raise UsageError(f"{each.input_line}: a range needs hydra/sweeper=tuned; list values")
@@ -30,11 +26,7 @@ def labels(jobs: Sequence[Sequence[str]]) -> dict[int, str]:
 
 
 def listed(override: Override) -> list[str]:
-    """The values of an override that lists several, as they are typed, each one time.
-
-    Raises:
-        UsageError: if there are none.
-    """
+    """The values of an override that lists several, as they are typed, each one time."""
     try:
         values = [*dict.fromkeys(override.sweep_string_iterator())]
     except ValueError as error:  # range(0,2,0)

@@ -14,7 +14,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf, open_dict
 
 from hybrid_rl import config as configuration
-from hybrid_rl import overrides, renamed
+from hybrid_rl import overrides
 from hybrid_rl.cli import arguments, command
 from hybrid_rl.composition import check_choices
 from hybrid_rl.conf_files import CONF, groups, search_path
@@ -131,11 +131,7 @@ def usage(module: Any) -> str:
 
 
 def _ordered(line: Sequence[str]) -> list[str]:
-    """The options, then the overrides; Hydra's parser refuses options between these.
-
-    Raises:
-        UsageError: for what is neither key=value nor an option of Hydra's.
-    """
+    """The options, then the overrides; Hydra's parser refuses options between these."""
     for text in line:
         if text.startswith(("config_dir=", "--config-dir=")):
             search_path(text.partition("=")[2])  # refuses what is no folder
@@ -143,7 +139,6 @@ def _ordered(line: Sequence[str]) -> list[str]:
     for flag in ({"--config-dir", "-cd"} & {*line}) - {*line[-1:]}:  # two words
         at = line.index(flag)
         line[at : at + 2] = [f"--config-dir={line[at + 1]}"]
-    renamed.check(line)
     check_choices(line)
     follow, found, modes = 0, [], []  # words that belong to an option; places of all these; modes
     for at, text in enumerate(line):

@@ -48,9 +48,6 @@ def distribution(override: Override) -> "BaseDistribution":
     """The values of a swept override: those that are listed are names, as they are typed.
 
     interval(1,4) has all numbers between, int(interval(1,4)) the whole ones.
-
-    Raises:
-        UsageError: if there are none.
     """
     from optuna import distributions
 
@@ -218,9 +215,6 @@ def open_study(
     """The study in `folder`, a new one if there is none.
 
     typed: the overrides of all trials; every: decisions between evaluations.
-
-    Raises:
-        UsageError: if the study there is one of other overrides.
     """
     import optuna
     from sqlalchemy.exc import DatabaseError

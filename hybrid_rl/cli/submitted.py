@@ -33,9 +33,6 @@ def watch(results: dict[int, Result]) -> Iterator[None]:
     """Print a line when a job of Submitit is sent, begins and ends.
 
     A lost job, whose process was killed, for example, counts as failed.
-
-    Raises:
-        UsageError: if the jobs cannot be sent.
     """
     import submitit
     from submitit.core.utils import FailedJobError

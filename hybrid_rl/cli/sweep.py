@@ -103,11 +103,7 @@ class Sweeper:
         self.launcher = Plugins.instance().instantiate_launcher(hydra_context, self.task, config)
 
     def sweep(self, arguments: list[str]) -> Any:
-        """Run all jobs; end the process with the highest exit code if one failed.
-
-        Raises:
-            UsageError: if one of them, or the launcher, cannot run; then none runs.
-        """
+        """Run all jobs; end the process with the highest exit code if one failed."""
         arguments = typed(arguments)
         require_slurm(str(self.config.hydra.runtime.choices["hydra/launcher"]))
         jobs = jobs_of(self._parsed(arguments))
@@ -148,9 +144,6 @@ class Sweeper:
         """The jobs without overrides of what only other jobs have, and lines about these.
 
         Jobs that are the same then are one. With each its configuration and Hydra's own.
-
-        Raises:
-            UsageError: for an override of what no job has.
         """
         lost: dict[str, list[tuple[str, Any]]] = {}  # key and configuration, or key and error
 
@@ -242,9 +235,6 @@ def _folders(jobs: Sequence[Sequence[str]], configs: Sequence[DictConfig]) -> li
     Jobs with the same run_dir=X write into X/0, X/1, ...; jobs without one into
     runs/TASK/ALGO/TIME_0, ..., which are created here, so that no other sweep uses them. One whose
     run_dir holds a checkpoint goes on from it; `resume` refuses other settings.
-
-    Raises:
-        UsageError: if such a folder holds a run without a checkpoint.
     """
     given = [config.run_dir for config in configs]
     complete = []

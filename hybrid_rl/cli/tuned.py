@@ -57,11 +57,7 @@ class Tuner(sweep.Sweeper):
         self.task.called = "trial"
 
     def sweep(self, arguments: list[str]) -> Any:
-        """Run all trials; end the process with the highest exit code of those that failed.
-
-        Raises:
-            UsageError: if one of them cannot run, or the settings are wrong; then none runs.
-        """
+        """Run all trials; end the process with the highest exit code of those that failed."""
         arguments = overrides.typed(arguments)
         settings = self._settings()
         parsed = self._parsed(arguments)

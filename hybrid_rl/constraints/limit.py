@@ -16,12 +16,7 @@ Bound = tuple[float | None, ...] | float | None  # one for all entries, or each 
 
 @part
 class Limit:
-    """A quantity of `world` between `least` and `most`.
-
-    Raises:
-        ValueError: for an environment without quantities, or one that has no such quantity or
-            another number of entries; without a limit, or with limits that exclude everything.
-    """
+    """A quantity of `world` between `least` and `most`."""
 
     world: Measured
     quantity: str = "speed"

@@ -44,11 +44,7 @@ class AdjointState(NamedTuple):
 
 @part
 class AdjointController:
-    """A gradient-based planner around a policy, or around zero.
-
-    Raises:
-        ValueError: without a gain and without a policy, whose variance is the gain.
-    """
+    """A gradient-based planner around a policy, or around zero."""
 
     model: Model
     objective: Objective

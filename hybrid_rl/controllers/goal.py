@@ -38,11 +38,7 @@ class GoalState(NamedTuple):
 
 @part
 class GoalController:
-    """Drives to the maximum of a target.
-
-    Raises:
-        ValueError: for a target that values no ways where `ahead` asks for it.
-    """
+    """Drives to the maximum of a target."""
 
     target: Target  # with `ahead` a PathTarget
     domain: Box

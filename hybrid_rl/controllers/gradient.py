@@ -82,11 +82,7 @@ class Scored(NamedTuple):
 
 @part
 class GradientController:
-    """A planner over K candidates and T decisions.
-
-    Raises:
-        ValueError: for the world itself as the model, which has no gradients.
-    """
+    """A planner over K candidates and T decisions."""
 
     model: Model
     objective: Objective

@@ -37,11 +37,7 @@ class RefitsState(NamedTuple):
 
 @part
 class RefitsController:
-    """A planner over K candidates, T decisions and several refits.
-
-    Raises:
-        ValueError: for more elites than candidates.
-    """
+    """A planner over K candidates, T decisions and several refits."""
 
     model: Model
     objective: Objective

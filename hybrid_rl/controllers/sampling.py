@@ -39,11 +39,7 @@ class SamplingState(NamedTuple):
 
 @part
 class SamplingController:
-    """A planner over K candidates and T decisions.
-
-    Raises:
-        ValueError: for `log_density` of candidates without a density.
-    """
+    """A planner over K candidates and T decisions."""
 
     model: Model
     objective: Objective

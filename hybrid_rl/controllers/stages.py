@@ -26,9 +26,6 @@ class StagesController:
 
     A stage of 0 decisions is skipped. A stage that is not acting keeps its state. Metrics that the
     acting stage lacks are NaN.
-
-    Raises:
-        ValueError: unless every stage but the last has a number of decisions.
     """
 
     stages: Mapping[str, Controller]  # in order

@@ -32,11 +32,7 @@ class VisitController:
     samples: Count = 100  # candidates
 
     def init(self, spec: Spec) -> Any:
-        """The initial state of the inner controller.
-
-        Raises:
-            ValueError: for a number of radii that does not fit the observation.
-        """
+        """The initial state of the inner controller."""
         if len(self.radius) not in (1, spec.obs):
             raise ValueError(f"visit.radius={list(self.radius)}: must hold 1 number or {spec.obs}")
         return self.controller.init(spec)

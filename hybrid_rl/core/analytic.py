@@ -19,11 +19,7 @@ def linearise(step: Callable[[Array, Array], Array], e: Array, u: Array) -> tupl
 
 @cache
 def at_equilibrium(world: AnalyticEnv) -> tuple[np.ndarray, np.ndarray]:
-    """A [d, d] and B [d, m] of `world` at its equilibrium, in local coordinates, in float64.
-
-    Raises:
-        ValueError: if the world moves there, or has no derivatives.
-    """
+    """A [d, d] and B [d, m] of `world` at its equilibrium, in local coordinates, in float64."""
     with jax.enable_x64(True), jax.ensure_compile_time_eval():
         x, u = world.equilibrium()
 

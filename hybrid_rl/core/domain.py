@@ -18,9 +18,6 @@ class Box:
     A lattice, s_i = frac(shift + i a), a_j = g^-j with g^(v+1) = g + 1, covers the box more evenly
     than independent points; each of its points is uniform, since the shift is (Roberts 2018, The
     Unreasonable Effectiveness of Quasirandom Sequences).
-
-    Raises:
-        ValueError: for lists of different lengths, equal coordinates, or a box without volume.
     """
 
     coordinates: tuple[int, ...] = (0,)  # of x
@@ -62,11 +59,7 @@ class Box:
         return prod(b - a for a, b in zip(self.low, self.high, strict=True))
 
     def of(self, x: Array) -> Array:
-        """The coordinates s [..., v] of states x [..., n].
-
-        Raises:
-            ValueError: if x has fewer entries, where JAX would take the last one.
-        """
+        """The coordinates s [..., v] of states x [..., n]."""
         if not all(-x.shape[-1] <= i < x.shape[-1] for i in self.coordinates):
             line = f"must be entries of a state with {x.shape[-1]}"
             raise FieldError(self, "coordinates", line)

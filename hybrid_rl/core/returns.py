@@ -25,11 +25,7 @@ def to_go(rewards: Array, goes_on: Array, last: Array, unroll: bool = False) -> 
 
 
 def rewards(reward: Reward, path: Path) -> Array:
-    """r [T] along path, x [T+1, n] and u [T, m].
-
-    Raises:
-        ValueError: if `reward` returns more than one number.
-    """
+    """r [T] along path, x [T+1, n] and u [T, m]."""
     r = jax.vmap(reward)(path.x[:-1], path.u, path.x[1:])
     if r.ndim != 1:
         raise ValueError(f"reward returns {list(r.shape[1:])}; it must return one number, []")

@@ -27,11 +27,7 @@ def require(teacher: Controller | None) -> Controller:
 
 
 def begin(teacher: Controller, spec: Spec) -> Any:
-    """The state of `teacher` before an answer.
-
-    Raises:
-        ValueError: unless it maps observations of these sizes to actions.
-    """
+    """The state of `teacher` before an answer."""
     kind, sizes = type(teacher).__name__, f"{spec.obs} observed numbers to {spec.act}"
 
     def act() -> Array:

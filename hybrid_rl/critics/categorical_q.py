@@ -26,11 +26,7 @@ from hybrid_rl.types import Spec
 
 @part
 class CategoricalQ:
-    """`members` independent distributions over returns.
-
-    Raises:
-        ValueError: for several widths.
-    """
+    """`members` independent distributions over returns."""
 
     hidden: Widths = (256, 256)  # the width, once for each residual block
     members: Count = 2

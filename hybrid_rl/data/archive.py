@@ -36,11 +36,7 @@ HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.re
 
 
 def write(file: Path | str, task: str, spec: Spec, arrays: Mapping[str, np.ndarray]) -> None:
-    """Write `arrays` of `task`, whose sizes and time step are those of `spec`.
-
-    Raises:
-        ValueError: for a task whose name no file can have.
-    """
+    """Write `arrays` of `task`, whose sizes and time step are those of `spec`."""
     if not NAME.fullmatch(task):
         raise ValueError(f"task={task!r}: a file needs a name of letters, digits, _, . and -")
     header: dict[str, Any] = {
@@ -72,9 +68,6 @@ def read(
 
     prefix: the beginning of every message; needed: names that the file must have besides the
     header, which may be empty; others are then not read; hint: what to do if there is no such file.
-
-    Raises:
-        ValueError: for a file that is missing, damaged or too large, or lacks a name.
     """
     needed = tuple(needed)
     path = find(file)
@@ -157,11 +150,7 @@ def check_task(
 
 
 def part_arrays(prefix: str, params: PyTree, part: str = "policy") -> dict[str, np.ndarray]:
-    """The parameters of a part, of PARTS, by their names in a file.
-
-    Raises:
-        ValueError: for one that is not finite.
-    """
+    """The parameters of a part, of PARTS, by their names in a file."""
     leaves = jax.tree_util.tree_leaves_with_path(params)
     arrays = {_name(path, part): np.asarray(leaf) for path, leaf in leaves}
     _check_finite(prefix, arrays)
@@ -179,9 +168,6 @@ def policy(
     """The parameters in `file` of a policy for `task` in `world`.
 
     like: their structure and shapes. part: of PARTS; those of the others are not read.
-
-    Raises:
-        ValueError: for an unusable file, or one of another task or another policy.
     """
     prefix = f"policy.file={file}:"
     arrays = read(prefix, file, hint=WRITE)

@@ -36,11 +36,7 @@ def save(
 
 
 def load(file: Path | str) -> dict[str, np.ndarray]:
-    """The arrays of `file` by name; those of decisions in float32.
-
-    Raises:
-        ValueError: for a file that is missing, damaged or inconsistent.
-    """
+    """The arrays of `file` by name; those of decisions in float32."""
     prefix = f"demonstrations={file}:"
     arrays = archive.read(prefix, file, (*COLUMNS, "episode"), RECORD)
     _check_sizes(prefix, arrays)
@@ -79,11 +75,7 @@ def _check_sizes(prefix: str, arrays: dict[str, np.ndarray]) -> None:
 
 @dataclass(frozen=True)
 class Demonstrations:
-    """The first `episodes` of `file`, which must be of `task` in `world`.
-
-    Raises:
-        ValueError: for an unusable file, one of another task, or one with fewer episodes.
-    """
+    """The first `episodes` of `file`, which must be of `task` in `world`."""
 
     file: str
     task: str

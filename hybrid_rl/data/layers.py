@@ -156,11 +156,7 @@ def save_c(out: Path, task: str, spec: Spec, net: Perceptron) -> str:
 
 
 def save_onnx(out: Path, task: str, spec: Spec, net: Perceptron) -> None:
-    """Write OUT, a model of ONNX: obs [N, o] -> action [N, m], float32.
-
-    Raises:
-        ImportError: if onnx is not installed.
-    """
+    """Write OUT, a model of ONNX: obs [N, o] -> action [N, m], float32."""
     onnx: Any = import_module("onnx")
     helper, nodes = onnx.helper, []
 

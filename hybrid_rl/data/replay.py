@@ -27,11 +27,7 @@ class Memory:
 
 @part
 class Replay:
-    """A memory of `capacity` decisions, over all environments of one learner.
-
-    Raises:
-        ValueError: for a capacity that is too small for the demonstrations.
-    """
+    """A memory of `capacity` decisions, over all environments of one learner."""
 
     capacity: Count = 1_000_000
     demonstrations: Demonstrations | None = None  # the initial contents

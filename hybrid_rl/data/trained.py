@@ -36,9 +36,6 @@ def save(
 
     about: what JSON can hold about its origin. models: parameters of `model`, `reward_model` and
     perhaps `critic`, to plan with, which are written with 16 bits.
-
-    Raises:
-        ValueError: for parameters that are not finite.
     """
     arrays = archive.part_arrays(f"policy={file}:", params)
     for name, tree in (models or {}).items():
@@ -56,11 +53,7 @@ def _halved(leaf: Any) -> np.ndarray:
 
 
 def described(file: str) -> Any:
-    """The policy that `file` describes: its class and fields, without parameters.
-
-    Raises:
-        ValueError: if the file is unusable, or does not describe a policy of hybrid_rl.
-    """
+    """The policy that `file` describes: its class and fields, without parameters."""
     prefix = f"policy.file={file}:"
     text = archive.read(prefix, file, hint=archive.WRITE).get(archive.ABOUT)
     if text is None:
@@ -79,10 +72,6 @@ def part(prefix: str, file: str, node: Any) -> Any:
     """The part that `node` of the description in `file` names, with the parts in it.
 
     prefix: the beginning of every message.
-
-    Raises:
-        ValueError: for what is no part (hybrid_rl.parts), or fields that it does not have or
-            accept.
     """
     try:
         if any(name == ITSELF for _, name in parts.targets([node])):
@@ -99,9 +88,6 @@ class SavedPolicy:
     policy: None is the one that the file describes.
 
     Its methods ignore the parameters that they get, so it can act where another policy learns.
-
-    Raises:
-        ValueError: for an unusable file, or one of another task or another policy.
     """
 
     policy: Any  # Policy, or None

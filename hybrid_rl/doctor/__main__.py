@@ -57,11 +57,7 @@ CHECKS: dict[str, Callable[[Evidence], str | None]] = {  # in the order of that 
 
 
 def examine(folder: Path | str) -> dict[str, str]:
-    """Name of a check -> its line, for those of CHECKS that have found something.
-
-    Raises:
-        UsageError: if `folder` holds no run, or a damaged one.
-    """
+    """Name of a check -> its line, for those of CHECKS that have found something."""
     run = read(Path(folder))
     found = {name: check(run) for name, check in CHECKS.items()}
     return {name: line for name, line in found.items() if line}

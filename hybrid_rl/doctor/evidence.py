@@ -179,11 +179,7 @@ def of_each(check: Callable[[Evidence], str | None]) -> Callable[[Evidence], str
 
 
 def read(path: Path) -> Evidence:
-    """The run in `path`.
-
-    Raises:
-        UsageError: if it holds no run, or a file of it is damaged.
-    """
+    """The run in `path`."""
     config = run_folder.read(path, "run")
     if run_folder.rowless(path):
         raise UsageError(f"run={path}: {path / 'metrics.jsonl'}: no row of metrics yet")

@@ -17,11 +17,7 @@ from hybrid_rl.types import Spec
 
 @part
 class Monomials:
-    """Coordinates of the observation, a constant, and products of the coordinates.
-
-    Raises:
-        ValueError: for indices out of range, or lists of the wrong length.
-    """
+    """Coordinates of the observation, a constant, and products of the coordinates."""
 
     coordinates: tuple[int, ...] | None = None  # of the observation; None: all
     scale: tuple[float, ...] = (1.0,)  # one for all coordinates, or one each
@@ -51,11 +47,7 @@ class Monomials:
             )
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """No parameters.
-
-        Raises:
-            ValueError: if the observation lacks a coordinate.
-        """
+        """No parameters."""
         self._check(spec.obs if self.coordinates is None else len(self.coordinates))
         check_coordinates("features.coordinates", self.coordinates, spec.obs)
         return {}

@@ -26,11 +26,7 @@ class Network:
     include_state: bool = True  # false: z = net(y), whose trivial solution is z = 0
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Initial weights. The key is consumed.
-
-        Raises:
-            ValueError: if the observation lacks a coordinate.
-        """
+        """Initial weights. The key is consumed."""
         check_coordinates("features.coordinates", self.coordinates, spec.obs)
         y = select(jnp.zeros(spec.obs), self.coordinates)
         return {"weights": self._net.init(key, y)}

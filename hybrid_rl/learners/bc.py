@@ -42,9 +42,6 @@ class BehaviourCloning:
     """Gradient steps on the log-likelihood of demonstrated actions.
 
     Without `demonstrations` it only holds the parameters of a trained policy.
-
-    Raises:
-        ValueError: for a policy whose saturation is above the edge.
     """
 
     policy: LearnedPolicy

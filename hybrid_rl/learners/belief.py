@@ -13,11 +13,7 @@ from hybrid_rl.types import Batch, Params, Spec
 
 @part
 class BeliefLearner:
-    """Adds the reward of the latest decision, measured at the state s after it, to a belief.
-
-    Raises:
-        ValueError: for a belief about another number of coordinates than the domain has.
-    """
+    """Adds the reward of the latest decision, measured at the state s after it, to a belief."""
 
     belief: Belief
     domain: Box  # s: these coordinates of the observation

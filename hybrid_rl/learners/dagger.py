@@ -53,9 +53,6 @@ class DAgger:
     """Queries to a teacher, and gradient steps on its answers.
 
     Query i begins at row `first` + i `length` of the labels.
-
-    Raises:
-        ValueError: without a teacher, or for fields that contradict each other.
     """
 
     policy: LearnedPolicy
@@ -102,11 +99,7 @@ class DAgger:
             raise FieldError(self, "capacity", f"must be a multiple of length={self.length}")
 
     def init(self, key: Array, spec: Spec) -> DAggerState:
-        """An untrained clone without labels. The key is consumed.
-
-        Raises:
-            ValueError: for a teacher of other sizes.
-        """
+        """An untrained clone without labels. The key is consumed."""
         rest = teaching.begin(teaching.require(self.teacher), spec)
         policy = self.policy.init(key, spec)
         count, zero = self.most or self.capacity // self.length, jnp.zeros((), jnp.int32)

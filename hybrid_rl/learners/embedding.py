@@ -51,9 +51,6 @@ class EmbeddingLearner:
     """Features and K of a linear model and, with a regulator, its policy.
 
     Features without weights stay as they are, as do all with steps = 0.
-
-    Raises:
-        ValueError: for an interval below the window, or a capacity below the interval.
     """
 
     model: LinearModel

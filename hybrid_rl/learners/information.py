@@ -39,11 +39,7 @@ class InformationState:
 
 @part
 class InformationLearner:
-    """The diagonal of the information of all decisions.
-
-    Raises:
-        ValueError: for a model without weights.
-    """
+    """The diagonal of the information of all decisions."""
 
     model: Model
     sigma: Positive | None = 0.1  # of the change, in running deviations; None: the model's

@@ -48,11 +48,7 @@ class LeastSquares:
     every: ClassVar[int] = 1
 
     def init(self, key: Array, spec: Spec) -> RegressionState:
-        """K_0, then what the recorded decisions add. The key is consumed.
-
-        Raises:
-            ValueError: for fewer recorded decisions than regressors.
-        """
+        """K_0, then what the recorded decisions add. The key is consumed."""
         of_model, of_mean = jax.random.split(key)
         model = self.model.init(of_model, spec)
         n, r = model["K"].shape

@@ -47,12 +47,7 @@ class ModelBasedState:
 
 @part
 class ModelBased:
-    """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model.
-
-    Raises:
-        ValueError: for more value steps than steps, a memory that batches do not fill, or a margin
-            without kept branches.
-    """
+    """Soft actor-critic whose policy, and critic, learn from `steps` decisions in a model."""
 
     policy: LearnedPolicy
     critic: Critic

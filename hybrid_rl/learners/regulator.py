@@ -36,11 +36,7 @@ class SolutionState:
 
 @part
 class RegulatorLearner:
-    """A linear policy that regulates a model to the equilibrium of `world`.
-
-    Raises:
-        ValueError: for draws of a model that is not linear.
-    """
+    """A linear policy that regulates a model to the equilibrium of `world`."""
 
     model: Model
     policy: GoalPolicy
@@ -61,11 +57,7 @@ class RegulatorLearner:
             raise FieldError(self, "thompson", words)
 
     def init(self, key: Array, spec: Spec) -> SolutionState:
-        """No gain yet. The key is consumed.
-
-        Raises:
-            ValueError: for more weights than entries.
-        """
+        """No gain yet. The key is consumed."""
         lifted = lifted_spec(self.model, spec)
         self._weights(lifted.n, spec.act)
         return SolutionState(self.policy.init(key, lifted), jnp.zeros(()))

@@ -21,11 +21,7 @@ from hybrid_rl.types import Spec
 
 @part
 class Ensemble:
-    """`members` copies of `model`, each with its own "weights", with shared statistics.
-
-    Raises:
-        ValueError: for a number of elites that is not between 1 and that of the members.
-    """
+    """`members` copies of `model`, each with its own "weights", with shared statistics."""
 
     model: Trainable
     members: Count = 5
@@ -109,11 +105,7 @@ class Ensemble:
         return _permuted(drawn, member_of, share_of).reshape(-1, n)[: len(x)]
 
     def loss(self, params: dict[str, Any], obs: Array, action: Array, next_obs: Array) -> Array:
-        """Mean [] over the members of their losses, each on its own share of [members * B, ...].
-
-        Raises:
-            ValueError: if the transitions do not divide evenly among the members.
-        """
+        """Mean [] over the members of their losses, each on its own share of [members * B, ...]."""
         if len(obs) % self.members:
             raise ValueError(f"{len(obs)} transitions do not divide among {self.members} members")
 

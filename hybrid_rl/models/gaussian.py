@@ -50,11 +50,7 @@ class Gaussian:
         return MLP(self.hidden, out, self.activation, self.layer_norm)
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Initial weights and statistics. The key is consumed.
-
-        Raises:
-            ValueError: if the observation lacks one of the inputs.
-        """
+        """Initial weights and statistics. The key is consumed."""
         check_coordinates("model.inputs", self.inputs, spec.obs)
         net = self._net(spec.obs)
         size, log_std = len(self._inputs(jnp.zeros(spec.obs))), jnp.zeros(spec.obs)

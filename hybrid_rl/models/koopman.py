@@ -27,11 +27,7 @@ class Koopman:
     bound: Positive = 1e4  # of |x_i|: predictions of a poor K stay finite
 
     def init(self, key: Array, spec: Spec) -> dict[str, Any]:
-        """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed.
-
-        Raises:
-            ValueError: for features that are not [n], or a product with an entry that x lacks.
-        """
+        """Features, K [n, r] = [I 0] and its "spread" [r, r]. The key is consumed."""
         features = self.features.init(key, spec)
         z = jax.eval_shape(self.features, features, jnp.zeros(spec.obs))
         if getattr(z, "ndim", None) != 1:

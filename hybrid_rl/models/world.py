@@ -27,11 +27,7 @@ class World:
         return ()
 
     def start(self, params: Params) -> EnvState:
-        """The state of the world.
-
-        Raises:
-            ValueError: where only observations are known.
-        """
+        """The state of the world."""
         if params.world is None:
             raise ValueError("model=world: plans from the world's state, not from observations")
         return params.world
@@ -41,11 +37,7 @@ class World:
         return obs
 
     def step(self, params: Any, x: Any, u: Array) -> Any:
-        """The EnvState after action u [m] at the EnvState x; x itself once the episode is over.
-
-        Raises:
-            ValueError: for an observation instead of a state.
-        """
+        """The EnvState after action u [m] at the EnvState x; x itself once the episode is over."""
         if not isinstance(x, EnvState):
             line = "model=world: needs a planner that samples, such as algo=mppi has"
             raise ValueError(f"{line}; one of yours begins at lifting.start(model, params, obs)")

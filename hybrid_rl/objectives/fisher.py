@@ -27,9 +27,6 @@ class FisherInformation:
 
     T with `probes` = k > 0 estimates tr I = E|F v|^2 / sigma^2, v ~ N(0, 1), by k directions, which
     are drawn at every decision: networks with many weights need no derivative by each of them.
-
-    Raises:
-        ValueError: for probes with another criterion than T, or a model without weights.
     """
 
     model: Model

@@ -29,11 +29,7 @@ class FourierState(NamedTuple):
 
 @part
 class FourierErgodic:
-    """Minus the Fourier ergodic metric of a path in a domain.
-
-    Raises:
-        ValueError: for a target outside the domain.
-    """
+    """Minus the Fourier ergodic metric of a path in a domain."""
 
     target: Target
     domain: Box

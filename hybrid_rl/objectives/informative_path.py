@@ -24,11 +24,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @part
 class InformativePath:
-    """The information, by a target, that a path gathers in a domain.
-
-    Raises:
-        ValueError: for a target outside the domain.
-    """
+    """The information, by a target, that a path gathers in a domain."""
 
     target: Target
     domain: Box

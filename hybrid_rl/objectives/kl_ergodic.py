@@ -32,12 +32,7 @@ class KLState(NamedTuple):
 
 @part
 class KLErgodic:
-    """Minus the KL-ergodic measure of a path in a domain.
-
-    Raises:
-        ValueError: for a number of variances that is neither 1 nor v, or a target outside the
-            domain.
-    """
+    """Minus the KL-ergodic measure of a path in a domain."""
 
     target: Target
     domain: Box

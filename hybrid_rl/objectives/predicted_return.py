@@ -21,11 +21,7 @@ from hybrid_rl.types import Params, Path, Return, Spec
 
 @part
 class PredictedReturn:
-    """The discounted sum of `reward` along a path, plus the critic's value of the last state.
-
-    Raises:
-        ValueError: for a critic without a policy or the reverse.
-    """
+    """The discounted sum of `reward` along a path, plus the critic's value of the last state."""
 
     reward: Reward
     discount: Share = 1.0  # per decision

@@ -24,10 +24,6 @@ class WeightedSum:
     """Several objectives, each with a weight and the factor by which it decays per decision.
 
     Sampling planners need a sum over time: all terms must be one, and no weight may decay.
-
-    Raises:
-        ValueError: for weights or decays of unknown terms, a term without a weight, or a decay
-            outside (0, 1].
     """
 
     terms: Mapping[str, Objective]

@@ -24,11 +24,7 @@ from hybrid_rl.types import Room, Spec
 
 @part
 class Regulator:
-    """The regulator of `world` around its equilibrium, by the discrete Riccati equation.
-
-    Raises:
-        ValueError: for weights that are neither one nor one for each coordinate or action.
-    """
+    """The regulator of `world` around its equilibrium, by the discrete Riccati equation."""
 
     world: Analytic
     state_weights: tuple[Positive, ...] = (1.0,)  # diagonal of Q: one for all, or [d]
@@ -43,11 +39,7 @@ class Regulator:
             raise FieldError(self, "free", f"must be some of 0 to {size - 1}, not all")
 
     def solve(self) -> tuple[np.ndarray, np.ndarray]:
-        """K [m, d] and P [d, d].
-
-        Raises:
-            ValueError: if nothing stabilises the world at its equilibrium, or it has none there.
-        """
+        """K [m, d] and P [d, d]."""
         a, b = analytic.at_equilibrium(self.world)
         try:
             return riccati.regulator(a, b, *self._weights())

@@ -28,11 +28,7 @@ from hybrid_rl.types import Spec
 
 @part
 class TanhGaussian(Squashed):
-    """A stochastic policy on [-1, 1]^m.
-
-    Raises:
-        ValueError: for bounds out of order.
-    """
+    """A stochastic policy on [-1, 1]^m."""
 
     hidden: Widths = (256, 256)
     activation: Activation = "relu"
@@ -89,11 +85,7 @@ class TanhGaussian(Squashed):
 
 @part
 class StartedGaussian(TanhGaussian):
-    """A policy that learns and begins with the parameters in `file`, of `task` in `world`.
-
-    Raises:
-        ValueError: for an unusable file, or one of another task or another policy.
-    """
+    """A policy that learns and begins with the parameters in `file`, of `task` in `world`."""
 
     file: str = ""
     task: str = ""

@@ -21,11 +21,7 @@ from hybrid_rl.types import Spec
 
 @part
 class UnitGaussian(Squashed):
-    """A stochastic policy on [-1, 1]^m.
-
-    Raises:
-        ValueError: for several widths, or bounds out of order.
-    """
+    """A stochastic policy on [-1, 1]^m."""
 
     hidden: Widths = (128, 128)  # the width, once for each residual block
     log_std_min: float = -10.0

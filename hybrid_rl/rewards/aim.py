@@ -14,11 +14,7 @@ from hybrid_rl.protocols import Measured
 
 @part
 class Aim:
-    """A quantity of `world` at its target.
-
-    Raises:
-        ValueError: for an environment without the quantity, or a target of another size.
-    """
+    """A quantity of `world` at its target."""
 
     world: Measured
     quantity: str = "speed"

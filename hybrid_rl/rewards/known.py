@@ -16,12 +16,7 @@ from hybrid_rl.types import Params
 
 @part
 class KnownReward:
-    """The reward of `goal`, or that of `world`.
-
-    Raises:
-        ValueError: without a goal, for an environment whose reward is not a function of
-            observations and action.
-    """
+    """The reward of `goal`, or that of `world`."""
 
     world: Env
     goal: Goal | None = None  # None: the environment's own reward

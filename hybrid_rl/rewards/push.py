@@ -16,11 +16,7 @@ QUANTITIES = ("block", "reach")
 
 @part
 class Push:
-    """The quantities `block` and `reach` of `world`.
-
-    Raises:
-        ValueError: for an environment that lacks one of them.
-    """
+    """The quantities `block` and `reach` of `world`."""
 
     world: Measured
     target: tuple[float, ...] = (0.1, 0.0)  # q* [m]

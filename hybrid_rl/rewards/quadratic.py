@@ -16,11 +16,7 @@ from hybrid_rl.types import Params
 
 @part
 class QuadraticReward:
-    """Minus the squared distance to the equilibrium, for episodes that do not end.
-
-    Raises:
-        ValueError: for an environment that is not analytic, without a model.
-    """
+    """Minus the squared distance to the equilibrium, for episodes that do not end."""
 
     world: Balanced  # an AnalyticEnv, if there is no model
     state_weights: tuple[NotNegative, ...] = (1.0,)  # diagonal of Q: one for all, or the first of e

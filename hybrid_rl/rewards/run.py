@@ -19,12 +19,7 @@ WIDTH = 0.04  # [rad] of the sigmoid
 
 @part
 class Run:
-    """The speed of `world`.
-
-    Raises:
-        ValueError: for an environment without the quantity `speed`, or without `pitch` where a
-            level is asked for.
-    """
+    """The speed of `world`."""
 
     world: Measured
     direction: float = 1.0  # d; -1: backwards

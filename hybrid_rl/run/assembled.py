@@ -42,10 +42,6 @@ def run_of(
     run_dir: None is runs/ENV/NAME/TIME; a folder that holds checkpoints is continued. name: of the
     method, in figures; None is the classes of the learners. log_every: None is the default.
     eval_every: None evaluates nothing. checkpoint_every: None saves at the end alone.
-
-    Raises:
-        UsageError: for counts out of range, or a folder that holds another run.
-        ValueError: if a part refuses a run of this length.
     """
     if name is not None and not re.fullmatch(r"[^/\0]*[^/\0.][^/\0]*", name):
         raise UsageError(f"name={name}: must be a name that a folder can have")
@@ -97,11 +93,7 @@ def _described(agent: Agent, name: str | None) -> dict[str, Any]:
 
 
 def _check_same(run: Run, folder: Path) -> tuple[str, ...]:
-    """A note if the agent is not the one that config.yaml describes.
-
-    Raises:
-        UsageError: if the folder holds a run of a configuration, other seeds, more steps.
-    """
+    """A note if the agent is not the one that config.yaml describes."""
     path = folder / "config.yaml"
     config: Any = OmegaConf.load(path) if path.exists() else {}
     if "agent" not in config:

@@ -43,9 +43,6 @@ def claim_folder(config: DictConfig) -> Iterator[Path]:
 
     If the block raises before anything is trained, what it wrote there is deleted again, and the
     folder too, if it was made here.
-
-    Raises:
-        UsageError: if it holds a run, another process holds it, or it cannot be written to.
     """
     folder = new_folder(config) if config.run_dir is None else Path(str(config.run_dir))
     new = config.run_dir is None or not folder.exists()
@@ -87,11 +84,7 @@ def rowless(folder: Path) -> bool:
 
 
 def new_folder(config: DictConfig, suffix: str = "") -> Path:
-    """A new folder runs/TASK/ALGO/TIME[suffix].
-
-    Raises:
-        UsageError: if it cannot be written to.
-    """
+    """A new folder runs/TASK/ALGO/TIME[suffix]."""
     parent = Path("runs") / config.task / config.algo
     stem = f"{datetime.now():%Y-%m-%d_%H-%M-%S}{suffix}"
     for number in range(10_000):
@@ -122,12 +115,7 @@ def described(config: DictConfig) -> str:
 
 
 def read(folder: Path, key: str) -> DictConfig:
-    """The configuration of the run in `folder`, which the argument `key` named.
-
-    Raises:
-        UsageError: if there is no run, another version made it, or its config.yaml is not what
-            training wrote.
-    """
+    """The configuration of the run in `folder`, which the argument `key` named."""
     path = folder / "config.yaml"
     config: Any = parse_config(folder, key)
     _check_version(folder, key, config)
@@ -202,11 +190,7 @@ def _check_seeds(folder: Path, config: DictConfig) -> None:
 
 @contextmanager
 def blame_config(folder: Path, lacking: bool = False) -> Iterator[None]:
-    """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml.
-
-    Raises:
-        UsageError: that begins with the path of config.yaml.
-    """
+    """Errors about the configuration of a run, or just `lacking` keys, name its config.yaml."""
     path = folder / "config.yaml"
     try:
         yield
@@ -236,11 +220,7 @@ def other_commit(folder: Path) -> str:
 
 
 def members(folder: Path) -> dict[Path, dict[str, float]]:
-    """The runs of the sweep in `folder`, and the values of each by key; {} if it holds none.
-
-    Raises:
-        UsageError: if sweep.json is not what training writes.
-    """
+    """The runs of the sweep in `folder`, and the values of each by key; {} if it holds none."""
     if not (folder / SWEEP).exists():
         return {}
     columns = json_file(folder / SWEEP)
@@ -267,9 +247,6 @@ def parse_config(folder: Path, key: str = "runs") -> DictConfig:
 
     It may come from anybody: it has plain values only, names parts only (hybrid_rl.parts), and
     compiled programs are kept where this machine keeps them.
-
-    Raises:
-        UsageError: if there is none, or it is not what training writes.
     """
     path = folder / "config.yaml"
     if not path.exists():

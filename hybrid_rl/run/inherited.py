@@ -26,11 +26,7 @@ RESOLVER = re.compile(r"\$\{[^}]*:")  # ${oc.env:NAME}, which no recipe of a run
 
 
 def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> list[str]:
-    """The words of a command, with those of the run in run=DIR before them.
-
-    Raises:
-        UsageError: if there is no such run, for another task or method, or with resume=DIR.
-    """
+    """The words of a command, with those of the run in run=DIR before them."""
     named = [text for text in texts if text.startswith("run=") and text != "run=null"]
     if not named:
         return [*texts]
@@ -59,11 +55,7 @@ def add_recipe(texts: Sequence[str], config_dir: str | Path | None = None) -> li
 
 
 def _recipe(run_dir: Path, config_dir: str | Path | None) -> list[str]:
-    """The words that made the run in a folder, which may come from anybody.
-
-    Raises:
-        UsageError: if it keeps none, or they name what is no part.
-    """
+    """The words that made the run in a folder, which may come from anybody."""
     config: DictConfig = folder.read(run_dir, "run")
     values: Any = OmegaConf.to_container(config)
     words = values.get("recipe")

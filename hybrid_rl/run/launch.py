@@ -7,12 +7,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-import jax
 from omegaconf import DictConfig, OmegaConf
 
 from hybrid_rl import config as configuration
 from hybrid_rl.checks import check, countable, one_of, whole
-from hybrid_rl.conf_files import CONF
 from hybrid_rl.config import Run
 from hybrid_rl.drafts import refuse_link
 from hybrid_rl.errors import FAULTS, DivergenceError, UsageError
@@ -39,7 +37,6 @@ OF_A_SESSION = ("resume", "total_steps", "run_dir", "version", "distributed", "l
 OF_A_SESSION += ("compile_cache", "precision", "recipe", "config_dir")
 
 ONLY = "with resume only total_steps and precision can be changed"
-SLOWER = "precision=bf16: slower than float32 on a CPU (0.5 to 0.7 of its speed); it is for GPUs"
 NOT_MUJOCO = "has no effect; task={} is not simulated by hybrid_rl.envs.mujoco"
 
 Handler = Callable[[Callable[[int], None]], AbstractContextManager]
@@ -159,16 +156,13 @@ def _run(
         progress = stack.enter_context(_progress(run, label, output.progress))
         each = zip(job.folders, job.axis.names, strict=True)
         notes = [f"{label}{name and ' '}{name}: run folder {run_dir}" for run_dir, name in each]
-        notes += [size, *run.notes, *_idle(run)]
-        if precision.current() == "bf16" and jax.default_backend() == "cpu":
-            notes.append(SLOWER)
+        notes += [size, *run.notes]
         if config.physics != "auto" and configuration.physics(config) is None:
             notes.append(f"physics={config.physics}: {NOT_MUJOCO.format(config.task)}")
         progress.note("\n".join(notes))
         loop = job.loop()
         shelf = job.shelf(loop, logs)
-        shorter = shorter_by(config) if jax.default_backend() == "cpu" else ""
-        session = Session(loop, run.controllers, _schedule(config), shelf, progress, shorter)
+        session = Session(loop, run.controllers, _schedule(config), shelf, progress)
         if config.resume is None:
             session.begin(start)
         else:
@@ -196,22 +190,8 @@ def _run(
             return job.summaries(session)
 
 
-def _idle(run: Run) -> list[str]:
-    """A line for each learner that begins after the last decision."""
-    agent, total = run.agent, run.config.total_steps
-    late = {
-        name: n for name, n in agent.starts().items() if n >= total and name not in agent.frozen
-    }
-    line = "{} learns nothing in total_steps={}: it begins after {:,} decisions"
-    return [line.format(name, total, n) for name, n in late.items() if not agent.pretrain]
-
-
 def _settings(config: DictConfig, given: Mapping[str, str]) -> DictConfig:
-    """The configuration of the run that `config` resumes, with what the user may change.
-
-    Raises:
-        UsageError: if the user gave another key a new value, or lowered total_steps.
-    """
+    """The configuration of the run that `config` resumes, with what the user may change."""
     run_dir = Path(str(config.resume))
     old = folder.read(run_dir, "resume")
     if old.task == "online":
@@ -281,16 +261,6 @@ def _progress(run: Run, label: str, visible: bool) -> Progress:
     steady = max(run.agent.changes())
     kind = Progress if visible else Silent
     return kind(rounds * config.num_envs, label=label, unit="decisions", steady=steady)
-
-
-def shorter_by(config: DictConfig) -> str:
-    """settings=light where it makes a network smaller; fewer decisions for other methods."""
-    light: Any = OmegaConf.load(CONF / "settings" / "light.yaml")
-    for name in ("reward_model", "critic"):
-        part = config.get(name) or {}
-        if {*light[name]} <= {*part} and part.hidden != light[name].hidden:
-            return "settings=light"
-    return "a smaller total_steps"
 
 
 def _schedule(config: DictConfig) -> Schedule:

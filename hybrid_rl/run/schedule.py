@@ -39,14 +39,6 @@ class Schedule:
         """Whether a row of means ends at `step`."""
         return any(self.due(every, step, worlds) for every in self._marks)
 
-    def mostly_random(self, random_steps: int) -> str | None:
-        """A note where half of the decisions or more are random: the first `random_steps`."""
-        words = f"{self.total_steps:,} decisions are random, random_steps={random_steps}"
-        if self.total_steps <= random_steps:
-            return f"all {words}: set it lower, or total_steps higher"
-        half = self.total_steps <= 2 * random_steps
-        return f"the first {random_steps:,} of {words}" if half else None
-
 
 @dataclass
 class Pace:

@@ -23,7 +23,7 @@ from hybrid_rl.run.checkpoints.store import Record
 from hybrid_rl.run.divergence import Diverged
 from hybrid_rl.run.evaluations import EVALUATED, Evaluations
 from hybrid_rl.run.logs import rows
-from hybrid_rl.run.logs.progress import DRAWN, Progress, clock
+from hybrid_rl.run.logs.progress import DRAWN, Progress
 from hybrid_rl.run.logs.records import Row
 from hybrid_rl.run.machine import memory, provenance
 from hybrid_rl.run.schedule import Pace, Schedule, Speed
@@ -32,7 +32,6 @@ from hybrid_rl.run.start import Start
 from hybrid_rl.training.loop import Loop
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
-LONG, SURE = 1800.0, 100  # [s] of a run; decisions after which its speed is known
 RETURNS = [f"{prefix}return" for prefix in EVALUATED.values()]  # the first of them is the result
 
 
@@ -45,7 +44,6 @@ class Session:
     schedule: Schedule
     shelf: Shelf  # its folders
     progress: Progress
-    shorter: str = ""  # an override that makes a long run shorter; empty: no note
     state: Any = None  # AgentState [S, ...], once begun
     began: float = field(default_factory=monotonic)
     stop: int | None = None  # the signal that asked for an end; 0: the program did
@@ -104,16 +102,9 @@ class Session:
         self.progress.note(f"continuing from step {self.step:,}")
 
     def compile(self) -> None:
-        """Compile all programs that `run` calls.
-
-        Raises:
-            MemoryError: if a device has too little memory for the learners.
-        """
+        """Compile all programs that `run` calls."""
         if self.finished:
             return
-        plan = self.schedule
-        if note := plan.mostly_random(self.loop.agent.random_steps):
-            self.progress.note(note)
         self.progress.note(f"compiling on {provenance.device()} ...{self.loop.idle_note}")
         with self.progress.doing("compiling"):
             import orbax.checkpoint  # noqa: F401  # 1 s, too long for a checkpoint at a signal
@@ -121,9 +112,9 @@ class Session:
             self.program = self.loop.compile(self.state)
             memory.check(self.loop, self.program)
             began = perf_counter()
-            modes = {mode: self.controllers[mode] for mode in plan.eval_modes}
+            modes = {mode: self.controllers[mode] for mode in self.schedule.eval_modes}
             params = self.loop.params(self.state)
-            self.evaluations = Evaluations(self.loop, modes, plan.eval_episodes, params)
+            self.evaluations = Evaluations(self.loop, modes, self.schedule.eval_episodes, params)
             self.loop.compile_s += perf_counter() - began
         self.progress.note(f"compiled in {self.loop.compile_s:.1f} s")
 
@@ -171,22 +162,12 @@ class Session:
         if any(start < change <= self.step for change in changes):
             self.pace = Pace()
         if start >= max(changes):
-            self._count(rounds * worlds * self.diverged.left, took)
+            for speed in (self.recent, self.record.learning):
+                speed.add(rounds * worlds * self.diverged.left, took)
         self._record(metrics, start)
         due = plan.due(plan.eval_every, self.step, worlds)
         self.record.unevaluated = bool(plan.eval_modes) and due
         self._show(say=False if self.record.unevaluated else None)
-
-    def _count(self, decisions: int, seconds: float) -> None:
-        """Measure the speed of learning; once it is known, say what makes a long run shorter."""
-        self.recent.add(decisions, seconds)
-        self.record.learning.add(decisions, seconds)
-        known, learners = self.record.learning, self.diverged.left
-        if self.shorter and known.rate and known.decisions >= SURE * learners:
-            left = (self.schedule.total_steps - self.step) * learners / known.rate
-            if left > LONG:
-                self.progress.note(f"about {clock(left)} left; {self.shorter} takes less")
-            self.shorter = ""
 
     def _record(self, metrics: rows.Metrics, start: int) -> None:
         """Write the rows that follow from the rounds after `start`."""

@@ -61,7 +61,7 @@ def concatenated(states: Sequence[Any]) -> Any:
 
 
 def build_new_run(config: DictConfig) -> tuple[Run, Start | None]:
-    """The new run of `config`, and what it begins with; errors as `config.build` and `begun`."""
+    """The new run of `config`, and what it begins with."""
     if config.get("run") is None:
         return configuration.build(config), None
     with folder.blame_config(Path(str(config.run)), lacking=True):
@@ -109,11 +109,7 @@ def begun(config: DictConfig) -> tuple[Run, Start]:
 
 
 def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
-    """[S] for each learner the number of that in `source` whose knowledge it gets.
-
-    Raises:
-        UsageError: if they are not as many, unless it is one; if one of them diverged.
-    """
+    """[S] for each learner the number of that in `source` whose knowledge it gets."""
     for end in checkpoint.meta(source / "checkpoints").get("record", {}).get("ends", ()):
         raise UsageError(f"run={source}: its learner of seed {end['seed']} diverged")
     if then.num_seeds not in (1, config.num_seeds):
@@ -127,11 +123,7 @@ def _numbers(config: DictConfig, then: DictConfig, source: Path) -> Any:
 def _learners(
     run: Run, config: DictConfig, then: DictConfig, source: Path
 ) -> tuple[int, Any, list[str]]:
-    """(step, learners [S', ...], notes) of the newest sound checkpoint in `source`.
-
-    Raises:
-        UsageError: if they have other shapes than those of `run`.
-    """
+    """(step, learners [S', ...], notes) of the newest sound checkpoint in `source`."""
     try:
         path, seeds = source / "checkpoints", _seeds(then)
         step, state, notes = read_part(path, run.agent, seeds, "learners")

@@ -59,9 +59,6 @@ def expand_sweep(config: DictConfig, texts: Sequence[str]) -> list[Member]:
     """A run for each combination of the values of the keys below `sweep`; one if there is none.
 
     config: composed from the overrides `texts`, with its interpolations.
-
-    Raises:
-        UsageError: for a key that does not exist or is not used, or values that are no numbers.
     """
     texts, raw = [text for text in texts if not overrides.is_swept(text)], raw_values(config)
     lists, config = flatten_keys(raw.pop("sweep") or {}), config.copy()
@@ -102,11 +99,7 @@ def _check_values(config: DictConfig, raw: dict[str, Any], key: str, values: Any
 
 
 def axis_of(members: Sequence[Member], runs: Sequence[Run]) -> Axis:
-    """The numbers in which the runs of a sweep differ.
-
-    Raises:
-        UsageError: if a program cannot hold several values of a key.
-    """
+    """The numbers in which the runs of a sweep differ."""
     trees = [{"agent": run.agent, "controllers": run.controllers} for run in runs]
     try:
         axis = Axis.of(trees, tuple(folder.words(each.values) for each in members))

@@ -16,11 +16,7 @@ from hybrid_rl.fields import Count, FieldError, Share, part
 
 @part
 class LinearDecay:
-    """Falls from 1 to 0 in a line over the last `share` of `decisions`.
-
-    Raises:
-        ValueError: without `decisions`, which a configuration sets to its `total_steps`.
-    """
+    """Falls from 1 to 0 in a line over the last `share` of `decisions`."""
 
     decisions: Count | None = None  # N, of the whole run
     share: Share = 0.3

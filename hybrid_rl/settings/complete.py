@@ -59,9 +59,6 @@ def complete(
 
     raw: what was composed, with its references. typed: keys of the user, which are left out where
     a part has no such field: `check_read` names them.
-
-    Raises:
-        UsageError: for a name that is no part's, or a field that a part does not have.
     """
     _drop(raw, typed)
     read: dict[str, Any] = {}
@@ -83,11 +80,7 @@ def _drop(raw: dict[str, Any], typed: Iterable[str]) -> None:
 
 
 def _fields(node: dict[str, Any], path: str) -> Mapping[str, inspect.Parameter] | None:
-    """The fields of the class of a part; None if it takes any.
-
-    Raises:
-        UsageError: for a name that is no part's.
-    """
+    """The fields of the class of a part; None if it takes any."""
     try:
         takes = inspect.signature(part_class(node[TARGET])).parameters
     except ValueError as error:

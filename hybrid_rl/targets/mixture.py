@@ -12,12 +12,7 @@ from hybrid_rl.types import Params
 
 @part
 class Mixture:
-    """A mixture of any number of Gaussians, of any dimension.
-
-    Raises:
-        ValueError: for lists that are empty or of different lengths, and at a point with fewer
-            entries than a mean.
-    """
+    """A mixture of any number of Gaussians, of any dimension."""
 
     means: tuple[tuple[float, ...], ...] = ((0.3,), (0.7,))  # [J, v]
     stds: tuple[Positive, ...] = (0.1, 0.1)  # [J]

@@ -41,9 +41,6 @@ class PolicyInformation:
 
     Without a domain s is a planning state; with one, the coordinates that it lacks have their
     equilibrium values.
-
-    Raises:
-        ValueError: for a domain in a world without equilibrium.
     """
 
     policy: Annotated[UnsquashedPolicy, has("unsquashed", "needs policy=deterministic")]

@@ -162,9 +162,6 @@ class RobotProgram:
 
         If the robot's class is wrong, or the robot does not answer for long, it ends early, and the
         loop has the `fault`.
-
-        Raises:
-            WorldError: of that kind, before the first decision of the run.
         """
         first, count, done, began = int(start), int(rounds), 0, time.monotonic()
         rows: Any = self.loop.empty()

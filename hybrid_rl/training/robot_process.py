@@ -38,11 +38,7 @@ class RobotProcess:
         return False
 
     def watch(self) -> None:
-        """Start the process if there is none; show why a robot is waited for.
-
-        Raises:
-            WorldError: if it ended for a mistake in the robot's class, or does not stay alive.
-        """
+        """Start the process if there is none; show why a robot is waited for."""
         if time.monotonic() - self.checked < 0.2:
             return
         self.checked = time.monotonic()

@@ -55,9 +55,6 @@ def open_session(given: Mapping[str, Any], changes: Mapping[str, str], server: A
     """The session that the arguments name.
 
     server: makes a viser.ViserServer, after all that can be wrong with the arguments.
-
-    Raises:
-        UsageError: for arguments that are unusable, or a world that cannot be drawn.
     """
     from hybrid_rl.conf_files import options
     from hybrid_rl.envs.adapters.external import External
@@ -98,11 +95,7 @@ def check_address(host: str, port: int) -> None:
 
 
 def serve(given: Mapping[str, Any]) -> tuple[Any, str]:
-    """A server at the address, and the link that lets a page in.
-
-    Raises:
-        UsageError: without viser.
-    """
+    """A server at the address, and the link that lets a page in."""
     viser: Any = import_viser()
     from hybrid_rl.view.door import Door
 
@@ -114,11 +107,7 @@ def serve(given: Mapping[str, Any]) -> tuple[Any, str]:
 
 
 def import_viser() -> Any:
-    """The module viser.
-
-    Raises:
-        UsageError: if it, or mjviser, is not installed.
-    """
+    """The module viser."""
     try:
         import_module("mjviser")
         return import_module("viser")

@@ -155,10 +155,6 @@ class Door:
             return False
 
     def _ours(self, host: str) -> bool:
-        """Whether a Host, with its port, is this machine's: no other name for it.
-
-        Raises:
-            ValueError: for such a name.
-        """
+        """Whether a Host, with its port, is this machine's: no other name for it."""
         name = urlsplit(f"//{host}").hostname or ""
         return name in self._names or bool(ip_address(name))

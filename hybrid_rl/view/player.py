@@ -49,11 +49,7 @@ class Player:
     """Plays `source`; `choose` changes who acts and where, `numbers` the goal."""
 
     def __init__(self, source: Source, params: Params, choice: Choice, seed: int) -> None:
-        """Compile the first programs. `params` may be exchanged for those of a newer checkpoint.
-
-        Raises:
-            UsageError: for a choice that does not fit, or a world that cannot be drawn.
-        """
+        """Compile the first programs. `params` may be exchanged for those of a newer checkpoint."""
         self.source, self.params, self.numbers = source, params, Numbers()
         self._made: dict[Any, Any] = {}  # programs that were compiled
         self._subjects: dict[Any, Subject] = {}

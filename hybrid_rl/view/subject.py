@@ -47,11 +47,7 @@ class Subject:
     scripted: bool = False
 
     def named(self, mode: str) -> str:
-        """The name of `mode` among the controllers; full is the only one where one acts.
-
-        Raises:
-            UsageError: for a mode that there is not.
-        """
+        """The name of `mode` among the controllers; full is the only one where one acts."""
         if mode not in (*self.controllers, "full"):
             raise UsageError(f"mode={mode}: choose one of {', '.join(self.controllers)}")
         return mode if mode in self.controllers else next(iter(self.controllers))
@@ -172,9 +168,6 @@ class Source:
         """Who acts, with a reward of conf/reward ("": that of the training) and other changes.
 
         quick: whether planners think less.
-
-        Raises:
-            UsageError: for a reward or a value that does not fit.
         """
         if self.trained is None:
             episode, controller, _ = scripted_expert(self.given, {**self.changes, **changes})
@@ -195,11 +188,7 @@ class Source:
 
 
 def learner(trained: Trained | None, seed: int | None) -> Params:
-    """The parameters of the learner of `seed`; None: the first. A scripted expert has none.
-
-    Raises:
-        UsageError: for a seed that the run does not have.
-    """
+    """The parameters of the learner of `seed`; None: the first. A scripted expert has none."""
     if trained is None:
         return Params()
     return trained.learner(seed, next(iter(trained.controllers)), world=True)[1]

@@ -71,9 +71,6 @@ class Program:
 
         names: JavaScript's arrays of the arguments; each is flat, with one entry per number.
         like: arrays with their shapes.
-
-        Raises:
-            ValueError: for an operation without an equivalent here; it is named.
         """
         traced, shape = jax.make_jaxpr(f, return_shape=True)(*like)
         inputs: list[np.ndarray] = []

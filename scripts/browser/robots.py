@@ -59,11 +59,7 @@ def write(out: Path) -> None:
 
 
 def robot(name: str) -> str:
-    """The policy `name` with its world, as an object of JavaScript.
-
-    Raises:
-        ValueError: if its episode or its world does what the page cannot do.
-    """
+    """The policy `name` with its world, as an object of JavaScript."""
     policy = read(name)
     episode = policy.episode
     env: Any = episode.env
@@ -157,11 +153,7 @@ def _start(first: EnvState, i: int) -> dict[str, list[float]]:
 
 
 def _plain(name: str, asset: str) -> str:
-    """The MJCF of a world's model, which must be the one that its file describes.
-
-    Raises:
-        ValueError: if it is a changed body.
-    """
+    """The MJCF of a world's model, which must be the one that its file describes."""
     if "?" in asset:
         raise ValueError(
             f"{name}: {asset} is changed after it is compiled; the page cannot do this"

@@ -22,11 +22,7 @@ def pages() -> list[Path]:
 
 
 def text(path: Path) -> str:
-    """The page with the numbers of the JSON.
-
-    Raises:
-        ValueError: if a mark is wrong; the message begins with the page.
-    """
+    """The page with the numbers of the JSON."""
     if path == ATLAS:
         return atlas.page()
     try:

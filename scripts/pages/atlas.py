@@ -65,11 +65,7 @@ def _items(data: Any) -> Iterator[tuple[str, Any]]:
 
 
 def section(page: str) -> str:
-    """The text of FILE.md#ANCHOR, to the next heading of its level.
-
-    Raises:
-        ValueError: if the page has no such heading.
-    """
+    """The text of FILE.md#ANCHOR, to the next heading of its level."""
     file, _, anchor = page.partition("#")
     parts = re.split(r"^(#+ .+)$", (DOCS / file).read_text(encoding="utf-8"), flags=re.MULTILINE)
     text, level = "", 0
@@ -86,11 +82,7 @@ def section(page: str) -> str:
 
 
 def command(page: str, words: str) -> str:
-    """The first line with these words among the commands of a section.
-
-    Raises:
-        ValueError: if there is none.
-    """
+    """The first line with these words among the commands of a section."""
     for line in section(page).splitlines():
         if re.match(r"\s*python ", line) and words in line:
             return line.strip()

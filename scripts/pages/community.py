@@ -20,11 +20,7 @@ HEAD = ("method", "seeds", "return", "decisions/s", "machine")
 
 
 def read(path: Path) -> dict[str, Any]:
-    """The entry in a file.
-
-    Raises:
-        ValueError: if a field is missing or wrong; the message names the file.
-    """
+    """The entry in a file."""
     try:
         entry = json.loads(path.read_text(encoding="utf-8"))
         for row in _checked(entry):

@@ -17,11 +17,7 @@ def entries() -> list[dict[str, Any]]:
 
 
 def machine(stem: str) -> str:
-    """The machine of most of docs/results/STEM.json: a file without words in brackets comes first.
-
-    Raises:
-        ValueError: if no machine is known.
-    """
+    """The machine of most of docs/results/STEM.json; a file without words in brackets is first."""
     files = [(file, entry["machine"]) for entry in entries() for file in entry["files"]]
     for file, found in sorted(files, key=lambda pair: "(" in pair[0]):
         if fnmatch(stem, file.split(" (")[0]):

@@ -55,11 +55,7 @@ CELL = re.compile(r"(?<=\|)[^|\n]+")
 
 
 def written(page: str) -> str:
-    """The page with the numbers of its marks.
-
-    Raises:
-        ValueError: if a mark is wrong.
-    """
+    """The page with the numbers of its marks."""
     if first := re.search(r"^[ \t]*(?:[*+-]|\d+\.)?[ \t]*<!-- [=/].{,60}", page, re.MULTILINE):
         raise ValueError(
             f"{first[0].strip()}: Markdown ends a line's text if it begins with a mark"

@@ -35,11 +35,7 @@ def read(name: str) -> Any:
 
 @cache
 def at(path: str) -> Any:
-    """What stands at a path: a number, an array of them, text, or a line of a figure.
-
-    Raises:
-        LookupError: if nothing stands there, or several things do.
-    """
+    """What stands at a path: a number, an array of them, text, or a line of a figure."""
     way, _, x = path.partition("@")
     name, *steps = way.split("/")
     found = _follow(read(name), steps)
@@ -178,11 +174,7 @@ OPERATORS: dict[type, Callable[..., Any]] = {
 
 
 def evaluated(expression: str) -> list[float]:
-    """The numbers of an expression, in order.
-
-    Raises:
-        ValueError: if it is none, or names what is not there.
-    """
+    """The numbers of an expression, in order."""
     try:
         found = _value(ast.parse(expression.strip(), mode="eval").body)
         return [float(one) for one in np.concatenate([np.ravel(part) for part in _parts(found)])]

@@ -44,16 +44,9 @@ def test_after_a_fault_of_the_world_it_says_how_to_go_on(
     assert [shlex.split(line)[1:] for line in lines] == [command] * saved
 
 
-def test_a_run_says_what_to_expect(tmp_path, capsys):
-    run(tmp_path / "a", "algo=sac", "total_steps=20", "random_steps=20", "replay.capacity=20")
-    line = "all 20 decisions are random, random_steps=20: set it lower, or total_steps higher"
-    assert line in capsys.readouterr().out
-    run(tmp_path / "c", "algo=sac", "total_steps=40", "replay.capacity=20")  # the same program
-    assert "the first 20 of 40 decisions are random, random_steps=20" in capsys.readouterr().out
+def test_the_last_round_of_a_run_may_end_beyond_total_steps(tmp_path, capsys):
     result = run(tmp_path / "b", "algo=sac", "total_steps=300", "num_envs=7", "eval_every=300")
     printed = capsys.readouterr().out
-    assert "random:" not in printed
-    assert "takes less" not in printed  # of half an hour and more
     assert "301/301 (100%)" in printed
     assert result["finished"]
 

@@ -40,12 +40,7 @@ class Trial(NamedTuple):
 
 
 def trial_of(recorded: Recorded, seed: int, key: str = "runs") -> Trial:
-    """The first episode of the learner of `seed`, in a run that the argument `key` named.
-
-    Raises:
-        UsageError: unless the run has this learner, a belief over two coordinates, and all
-            decisions of the episode.
-    """
+    """The first episode of the learner of `seed`, in a run that the argument `key` named."""
     run, prefix = recorded.run, f"{key}={recorded.folder.path}:"
     if seed not in run.seeds:
         raise UsageError(f"seed={seed}: the run has {', '.join(map(str, run.seeds))}")

@@ -37,9 +37,6 @@ def film(folder: Path, seed: int | None, steps: int, height: int, most: int) -> 
 
     seed: None is the first. steps: at most this many decisions; 0: all. height: [pixels], even.
     most: pictures at most, but for the last one; 1: the end alone.
-
-    Raises:
-        UsageError: for a run without a record of it, or without a belief that can be drawn.
     """
     prepare(run_folder.read(folder, "run"))
     recorded = read(folder, key="run")

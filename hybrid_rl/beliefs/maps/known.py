@@ -32,11 +32,7 @@ class ContactEnv(Env, Protocol):
 
 @part
 class KnownMap:
-    """The map of a world whose objects are known.
-
-    Raises:
-        ValueError: for a `low` that is not between 0 and `high`.
-    """
+    """The map of a world whose objects are known."""
 
     world: Annotated[ContactEnv, has("distance", "needs contacts")]
     width: Positive = 0.008  # w [m]

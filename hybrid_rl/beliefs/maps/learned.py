@@ -35,12 +35,7 @@ def save(file: Path | str, f: Any, low: Any, high: Any, slope: float) -> None:
 
 @part
 class LearnedMap:
-    """The map in `file`, which must cover the box.
-
-    Raises:
-        ValueError: for an unusable file, one of another box, one without contacts, or chances out
-            of range.
-    """
+    """The map in `file`, which must cover the box."""
 
     file: str
     box_low: tuple[float, ...] = (0.0, 0.0)  # [m] of the plane
@@ -103,11 +98,7 @@ class LearnedMap:
 
 @cache
 def _load(file: str) -> dict[str, np.ndarray]:
-    """The arrays of a map file.
-
-    Raises:
-        ValueError: for a file that is missing, damaged, not finite or of wrong sizes.
-    """
+    """The arrays of a map file."""
     prefix = f"map.file={file}:"
     arrays = archive.read(prefix, file, FIELDS, WRITE, header=())
     shapes = {"low": (2,), "high": (2,), "slope": ()}

@@ -61,9 +61,6 @@ class PoseParticles:
     """A belief about the pose of objects.
 
     A full memory takes no more measurements (`belief/full` is 1).
-
-    Raises:
-        ValueError: for a domain that is no plane.
     """
 
     map: ContactMap

@@ -71,11 +71,7 @@ class ModelState:
 
 @part
 class ModelLearner:
-    """Gradient steps on a model and, unless it is None, a reward.
-
-    Raises:
-        ValueError: for elites without held-out decisions, or a discounted reward that sees x'.
-    """
+    """Gradient steps on a model and, unless it is None, a reward."""
 
     model: Annotated[
         Trainable,

@@ -25,9 +25,6 @@ def lock(folder: Path, key: str) -> Iterator[Path]:
     """`folder`, made if it does not exist and locked by this process until the end of the block.
 
     key: the argument that named the folder.
-
-    Raises:
-        UsageError: if another process holds the lock, or the folder cannot be written to.
     """
     path = folder / LOCK
     handle = _open(path, key)

@@ -23,11 +23,7 @@ Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def open_file(file: Path) -> BinaryIO:
-    """A plain file, open for reading.
-
-    Raises:
-        UsageError: if it cannot be read, or is a folder, a pipe or a device.
-    """
+    """A plain file, open for reading."""
     try:
         handle = os.open(file, os.O_RDONLY | NO_WAIT)
         if stat.S_ISREG(os.fstat(handle).st_mode):
@@ -39,11 +35,7 @@ def open_file(file: Path) -> BinaryIO:
 
 
 def text(file: Path, most: int = TEXT) -> str:
-    """The text of a file of at most so many bytes.
-
-    Raises:
-        UsageError: if it is no plain file, too large, or no text.
-    """
+    """The text of a file of at most so many bytes."""
     with open_file(file) as data:
         content = data.read(most + 1)
     if len(content) > most:
@@ -55,11 +47,7 @@ def text(file: Path, most: int = TEXT) -> str:
 
 
 def lines(file: Path, most: int | None = None) -> Iterator[bytes]:
-    """The lines of a file with their ends, of its first `most` bytes.
-
-    Raises:
-        UsageError: if it is no plain file, or a line is too long.
-    """
+    """The lines of a file with their ends, of its first `most` bytes."""
     with open_file(file) as data:
         left, number = most, 0
         while left is None or left > 0:
@@ -86,11 +74,7 @@ def from_json(content: str | bytes) -> Any:
 
 
 def json_file(file: Path) -> dict[str, Any]:
-    """The group of keys in a file of JSON.
-
-    Raises:
-        UsageError: if it cannot be read, or is something else.
-    """
+    """The group of keys in a file of JSON."""
     content = text(file)
     try:
         values = from_json(content)
@@ -102,12 +86,7 @@ def json_file(file: Path) -> dict[str, Any]:
 
 
 def yaml_file(file: Path, load: Callable[[str], Any]) -> Any:
-    """What `load` makes of the text of a YAML file.
-
-    Raises:
-        UsageError: if it is no YAML, has tags, merged keys or interpolations, which training does
-            not write, or is too large or nested too deeply.
-    """
+    """What `load` makes of the text of a YAML file."""
     content = text(file, YAML)
     try:
         _measure(content)

@@ -90,7 +90,7 @@ class Lines(Logger):
             )
 
     def flush(self) -> None:
-        """Force all lines to the disk; raise as `check`."""
+        """Force all lines to the disk."""
         self.check()
         os.fsync(self._file.fileno())
 
@@ -277,11 +277,7 @@ KINDS: dict[str, Callable[[Path, Sequence[int], dict[str, Any]], Logger]] = {
 
 
 def check(given: Any) -> tuple[str, ...]:
-    """The loggers that the key `logger` of a configuration names; null: none.
-
-    Raises:
-        UsageError: for an unknown name, or one whose package is not installed.
-    """
+    """The loggers that the key `logger` of a configuration names; null: none."""
     names = () if given is None else (given,) if isinstance(given, str) else tuple(given)
     if unknown := [name for name in names if name not in KINDS]:
         line = f"choose from {', '.join(KINDS)}, or null"

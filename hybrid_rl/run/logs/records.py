@@ -42,11 +42,7 @@ def row_of(line: bytes) -> Row | None:
 
 
 def summary_of(file: Path) -> dict[str, Any]:
-    """What summary.json holds.
-
-    Raises:
-        UsageError: if it is damaged.
-    """
+    """What summary.json holds."""
     values = json_file(file)
     if wrong := [key for key in SUMMARY if key in values and not SUMMARY[key](values[key])]:
         raise UsageError(f"{file}: {wrong[0]} is not what training writes")

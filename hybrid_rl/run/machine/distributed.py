@@ -26,11 +26,7 @@ HOW = (
 
 
 def share(config: DictConfig) -> DictConfig:
-    """The run of this process: its seeds, its folder.
-
-    Raises:
-        UsageError: if there are fewer learners than processes, or no common run folder.
-    """
+    """The run of this process: its seeds, its folder."""
     key = "run_dir" if config.resume is None else "resume"
     if config[key] is None:
         raise UsageError("run_dir=null: distributed=true needs one folder for all processes")
@@ -56,11 +52,7 @@ def share(config: DictConfig) -> DictConfig:
 
 @cache  # a process joins once, also in a sweep
 def processes() -> tuple[int, int]:
-    """The number of this process, from 0, and how many there are.
-
-    Raises:
-        UsageError: if there is no cluster.
-    """
+    """The number of this process, from 0, and how many there are."""
     import jax
     from jax._src.distributed import global_state  # its public counts create a backend of all hosts
 

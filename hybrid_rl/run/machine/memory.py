@@ -58,11 +58,7 @@ def episodes(
 
 
 def replay(run: Run, learners: int) -> str:
-    """A line about the size of the replay memories of so many learners of a run.
-
-    Raises:
-        UsageError: if the machine has too little, or the memory holds less than one batch.
-    """
+    """A line about the size of the replay memories of so many learners of a run."""
     replay, learned = run.agent.replay, run.agent.learners.items()
     batches = {name: one.batch_size for name, one in learned if one.data == "uniform"}
     largest = max(batches, key=batches.__getitem__, default="")
