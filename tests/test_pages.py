@@ -26,10 +26,12 @@ DATA = {
     "after": {"5": [3, 4], "9": [5, 7], "13": [6, 6]},
 }
 SENTENCE = 'it has <!-- = 100 * "made/rows/d/n" -->**40%**<!-- / --> of all'
-TABLE = """<!-- table
-rows: {hopping: hop, running: run}
-cells: {its mean: 'mean("made/{row}/a@{x}")'}
--->
+SPEC = {
+    "rows": {"hopping": "hop", "running": "run"},
+    "cells": {"its mean": 'mean("made/{row}/a@{x}")'},
+}
+SPECS = {"made/a": SPEC, "made/b": {**SPEC, "except": {"sitting": {"its mean": None}}}}
+TABLE = """<!-- table made/a -->
 | | its mean | published |
 |---|---|---|
 | hopping, after 5 | 1.5 | 7 |
@@ -42,6 +44,7 @@ def results(tmp_path, monkeypatch):
     """A folder of results with made.json."""
     (tmp_path / "made.json").write_text(json.dumps(DATA))
     monkeypatch.setattr(values, "RESULTS", tmp_path)
+    monkeypatch.setattr(marks, "tables", lambda: SPECS)
     for cached in (values.read, values.at):
         cached.cache_clear()
     yield tmp_path
@@ -103,12 +106,18 @@ def test_an_expression_is_evaluated(results, expression, expected):
         SENTENCE.removesuffix("<!-- / --> of all"),
         SENTENCE.removeprefix("it has "),  # Markdown would show no text of this line
         TABLE.replace("-->\n", "-->\nText.\n"),
-        TABLE.replace("cells:", "except: {sitting: {its mean: null}}\ncells:"),
+        TABLE.replace("made/a", "made/b"),  # whose exception is of no row
+        TABLE.replace("made/a", "made/c"),
     ],
 )
 def test_a_wrong_mark_is_an_error(results, wrong):
     with pytest.raises(ValueError, match=r"\w"):
         marks.written(wrong)
+
+
+def test_every_specification_is_of_a_table_of_a_page():
+    text = "".join(page.read_text(encoding="utf-8") for page in command.pages())
+    assert sorted(re.findall(r"<!-- table (\S+) -->", text)) == sorted(marks.tables())
 
 
 def test_no_command_of_a_page_replaces_our_numbers():

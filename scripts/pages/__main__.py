@@ -12,7 +12,7 @@ from scripts.pages import atlas, marks
 
 ROOT = Path(__file__).resolve().parents[2]
 ATLAS = ROOT / "docs" / "atlas.md"
-MARK = rf"<!-- (= |table\n|{'|'.join(marks.WRITERS)})"
+MARK = rf"<!-- (= |table |{'|'.join(marks.WRITERS)})"
 
 
 def pages() -> list[Path]:

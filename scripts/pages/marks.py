@@ -4,14 +4,14 @@ In a sentence, around a text with one or more numbers (`values.py` has the expre
 
     <!-- = band("hybrid_hopper/sac@50000") -->366 [313, 456]<!-- / -->
 
-Before a table, in YAML; everything but `cells` may be missing:
+Before a table its name, <!-- table PAGE/SECTION -->; docs/tables.yaml has what its cells hold.
+Everything but `cells` may be missing:
 
-    <!-- table
-    rows: {half-cheetah: hybrid_halfcheetah, hopper: hybrid_hopper}
-    columns: {with its planner: full, alone: policy}
-    cells: band("{row}/{col}@{x}")
-    except: {"hopper, 50,000": {alone: 'iqm("hybrid_first/policy@50000")'}}
-    -->
+    PAGE/SECTION:
+      rows: {half-cheetah: hybrid_halfcheetah, hopper: hybrid_hopper}
+      columns: {with its planner: full, alone: policy}
+      cells: band("{row}/{col}@{x}")
+      except: {"hopper, 50,000": {alone: 'iqm("hybrid_first/policy@50000")'}}
 
 A cell's expression is `cells`, or the one that `cells` has for its column; a column without one is
 prose. {row} is what `rows` has for the row's label or for its longest beginning, else the label;
@@ -31,7 +31,8 @@ decimals that stand there.
 
 import re
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -39,9 +40,10 @@ import yaml
 from scripts.pages import atlas, community, examined, leaves, machines, printed
 from scripts.pages.values import evaluated
 
+TABLES = Path(__file__).resolve().parents[2] / "docs" / "tables.yaml"
 NUMBER = re.compile(r"(?<![\w.])(?:(?<!\d )-)?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?![\w]|\.\d)")
 INLINE = re.compile(r"(<!-- = )(.+?)( -->)(.*?)(<!-- / -->)", re.DOTALL)
-TABLE = re.compile(r"(<!-- table\n)((?:.+\n)+?)(-->\n)((?:\|.*\n){3,})")
+TABLE = re.compile(r"(<!-- table (\S+) -->\n)((?:\|.*\n){3,})")
 WRITERS: dict[str, Callable[..., str]] = {  # word of a mark -> the table of the words after it
     "machines": machines.table,
     "claims": atlas.claims,
@@ -65,7 +67,24 @@ def written(page: str) -> str:
         raise ValueError("a mark without its end, <!-- / -->, or without its table below it")
     page = WHOLE.sub(lambda m: m[1] + WRITERS[m[2]](*filter(None, [m[3]])), page)
     page = INLINE.sub(lambda m: m[1] + m[2] + m[3] + filled(m[4], m[2]) + m[5], page)
-    return TABLE.sub(lambda m: m[1] + m[2] + m[3] + table(m[4], yaml.safe_load(m[2])), page)
+    return TABLE.sub(lambda m: m[1] + table(m[3], specification(m[2])), page)
+
+
+@cache
+def tables() -> dict[str, dict[str, Any]]:
+    """Name -> what the cells of a table hold."""
+    return yaml.safe_load(TABLES.read_text(encoding="utf-8"))
+
+
+def specification(name: str) -> dict[str, Any]:
+    """What the cells of a table hold.
+
+    Raises:
+        ValueError: if docs/tables.yaml has no such name.
+    """
+    if name not in tables():
+        raise ValueError(f"docs/tables.yaml has no {name}")
+    return tables()[name]
 
 
 def filled(text: str, expression: str) -> str:
