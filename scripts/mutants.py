@@ -59,15 +59,15 @@ MUTANTS = {
         "tests/test_browser.py",
     ),
     "discount counted twice": Mutant(
-        "hybrid_rl/core/soft_actor_critic.py",
-        "batch.reward + part.discount * (1",
-        "batch.reward + part.discount**2 * (1",
+        "hybrid_rl/core/soft_return.py",
+        "y = r + discount * continues * value",
+        "y = r + discount**2 * continues * value",
         "tests/core",
     ),
     "terminal states are bootstrapped": Mutant(
-        "hybrid_rl/core/soft_actor_critic.py",
-        "part.discount * (1 - batch.terminated) * after",
-        "part.discount * after",
+        "hybrid_rl/core/actor_critic.py",
+        "(1 - batch.terminated)[None]",
+        "jnp.ones_like(batch.terminated)[None]",
         "tests/core",
     ),
     "a time limit counts as an end": Mutant(
@@ -131,7 +131,7 @@ MUTANTS = {
         "tests/test_online.py",
     ),
     "the critic is its own target": Mutant(
-        "hybrid_rl/learners/model_based.py",
+        "hybrid_rl/core/actor_critic.py",
         "self.critic.value(state.target, paths.x[-1]",
         "self.critic.value(state.critic, paths.x[-1]",
         "tests/learners/test_model_based.py",
