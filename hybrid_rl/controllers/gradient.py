@@ -38,8 +38,7 @@ from jax import Array
 
 from hybrid_rl.core import agreement
 from hybrid_rl.core.batching import join, prepend
-from hybrid_rl.core.members import predict_members
-from hybrid_rl.core.rollout import priced
+from hybrid_rl.core.rollout import Priced, predict_members, priced
 from hybrid_rl.core.sampling import Kept
 from hybrid_rl.fields import (
     Count,
@@ -53,7 +52,7 @@ from hybrid_rl.fields import (
     part,
 )
 from hybrid_rl.protocols import Constraint, Model, Objective, Policy
-from hybrid_rl.types import Considered, Params, Path, Return, Spec
+from hybrid_rl.types import Considered, Params, Return, Spec
 
 
 class Candidate(NamedTuple):
@@ -63,15 +62,11 @@ class Candidate(NamedTuple):
     v: Array  # [T, m]
 
 
-class Scored(NamedTuple):
-    """A candidate in the model."""
+class Risk(NamedTuple):
+    """How likely decisions violate the constraint, and how far."""
 
-    score: Array  # [] S
-    value: Array  # [] J
-    disagreement: Array  # [] sum over time
-    risk: Array  # [] the largest probability of a violation before the tail
-    beyond: Array  # [] distance beyond the limit, until then [widths]; above 0, as it is smooth
-    path: Path  # x [T+tail+1, n], u [T+tail, m]
+    risk: Array  # [] the probability of a violation; of a plan the largest before the tail
+    beyond: Array  # [] distance beyond the limit [widths], the sum of a plan's; smooth: above 0
 
 
 @part
@@ -139,7 +134,7 @@ class GradientController:
         plan, chosen = self._surely(params, value, x, plan, chosen)
         u = chosen.path.u[0]
         gain = found.score[: len(starts.s)].max() - found.score[len(starts.s) :].max()
-        risk = {} if self.constraint is None else {"planner/risk": chosen.risk}
+        risk = {} if self.constraint is None else {"planner/risk": chosen.notes.risk}
         metrics = {
             "planner/planned_return": chosen.value,
             "planner/disagreement": chosen.disagreement / (self.horizon + self.tail),
@@ -174,8 +169,8 @@ class GradientController:
         return Candidate(each[number % count], self.noise * e * loud[:, None, None])
 
     def _surely(
-        self, params: Params, value: Return, x: Array, plan: Candidate, chosen: Scored
-    ) -> tuple[Candidate, Scored]:
+        self, params: Params, value: Return, x: Array, plan: Candidate, chosen: Priced
+    ) -> tuple[Candidate, Priced]:
         """The plan at x [n], or the policy's own where the members doubt that it gains."""
         if self.policy is None or self.doubt is None or self.constraint is not None:
             return plan, chosen
@@ -193,7 +188,7 @@ class GradientController:
 
     def _scored(
         self, params: Params, value: Return, x: Array, one: Candidate, member: Array | None = None
-    ) -> Scored:
+    ) -> Priced:
         """The candidate from x [n], by the mean of the ensemble or by one member."""
         v = jnp.concatenate([one.v, jnp.zeros((self.tail, one.v.shape[1]))])
 
@@ -205,31 +200,28 @@ class GradientController:
 
         model, price = self.model, self.disagreement_price
         found = priced(model, params.model, value, price, act, x, v, member, self._risk)
-        score, (risk, beyond) = found.score, found.notes
-        if self.constraint is not None and not self.priced:
-            score = score - self.constraint.price * risk.sum()
-        finite, T = jnp.isfinite(score), self.horizon
-        far = jnp.where(finite, beyond[:T].sum(), jnp.inf)
-        score = jnp.where(finite, score, -jnp.inf)
-        return Scored(score, found.value, found.disagreement, risk[:T].max(), far, found.path)
+        far, T = jnp.where(jnp.isfinite(found.score), found.notes.beyond, jnp.inf), self.horizon
+        return found._replace(notes=Risk(found.notes.risk[:T].max(), far[:T].sum()))
 
-    def _risk(self, x: Array, u: Array, each: Array) -> tuple[Array, Array]:
-        """The probability [] that u [m] at x [n] violates the constraint, and how far [] [widths].
+    def _risk(self, x: Array, u: Array, each: Array) -> tuple[Array, Risk]:
+        """The cost [] of violating the constraint by u [m] at x [n], and the risk of it.
 
         each: [members, n] the predicted next states.
         """
-        limit = self.constraint
+        limit, none = self.constraint, jnp.zeros(())
         if limit is None:
-            return jnp.zeros(()), jnp.zeros(())
+            return none, Risk(none, none)
         far = jax.vmap(lambda after: limit.excess(x, u, after) / limit.width)(each) + self.margin
-        return jax.nn.sigmoid(far).mean(), jax.nn.softplus(far).mean()
+        chance = jax.nn.sigmoid(far).mean()
+        cost = 0 * chance if self.priced else limit.price * chance
+        return cost, Risk(chance, jax.nn.softplus(far).mean())
 
-    def _rank(self, found: Scored) -> Array:
+    def _rank(self, found: Priced) -> Array:
         """Numbers [K] in the order of the candidates: the largest is that of the best."""
         if self.constraint is None or self.constraint.chance is None:
             return found.score
-        safe = found.risk <= self.constraint.chance
-        order = jnp.lexsort((found.score, jnp.where(safe, 0.0, -found.beyond), safe))
+        safe = found.notes.risk <= self.constraint.chance
+        order = jnp.lexsort((found.score, jnp.where(safe, 0.0, -found.notes.beyond), safe))
         return jnp.argsort(order)
 
     def _refined(self, params: Params, value: Return, x: Array, starts: Candidate) -> Candidate:

@@ -22,7 +22,7 @@ from hybrid_rl.core.rollout import priced
 from hybrid_rl.core.sampling import Candidates, Kept
 from hybrid_rl.fields import Count, FieldError, Fraction, NotNegative, Positive, part
 from hybrid_rl.protocols import Model, Objective, Proposal
-from hybrid_rl.types import Params, Return, Spec
+from hybrid_rl.types import Params, Spec
 
 
 @part
@@ -65,19 +65,20 @@ class RefitsController:
         x = lifting.start(self.model, params, obs)
         value, memory = self.objective.prepare(params, state.memory, x, state.u, preparing)
         own = self._proposed(params, state, x, rolling)
-        score = jax.vmap(lambda v: self._score(params, value, x, v))
+        price, follow = self.disagreement_price, lambda x, u: u
+        score = jax.vmap(lambda v: priced(self.model, params.model, value, price, follow, x, v))
 
         def refit(fit: tuple[Array, Array], key: Array) -> tuple[tuple[Array, Array], Array]:
             mu, sigma = fit
             e = jax.random.normal(key, (self.samples - len(own), *mu.shape))
             v = jnp.concatenate([own, jnp.clip(mu[None] + sigma[None] * e, -1, 1)])
-            S, J = score(v)
-            S, best = jax.lax.top_k(S, self.elites)
+            found = score(v)
+            S, best = jax.lax.top_k(found.score, self.elites)
             w = sampling.weights(S[:, None], self.temperature, normalise=True)[:, 0]
             v = sampling.kept(w[:, None, None], v[best])
             mu = jnp.einsum("k,ktm->tm", w, v)
             variance = jnp.einsum("k,ktm->tm", w, (v - mu[None]) ** 2)
-            return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), J[best[0]]
+            return (mu, jnp.clip(jnp.sqrt(variance), self.floor, self.spread)), found.value[best[0]]
 
         first = state.plan, jnp.full_like(state.plan, self.spread)
         (plan, sigma), J = jax.lax.scan(refit, first, jax.random.split(drawing, self.refits))
@@ -100,9 +101,3 @@ class RefitsController:
             return jnp.zeros((0, *state.plan.shape))
         step = partial(self.model.step, params.model)
         return own.imagine(params, step, state.more, x, state.plan, key).path.u
-
-    def _score(self, params: Params, value: Return, x: Array, v: Array) -> tuple[Array, Array]:
-        """S [] and J [] of a plan v [T, m] from x [n]."""
-        model, price = self.model, self.disagreement_price
-        found = priced(model, params.model, value, price, lambda x, u: u, x, v)
-        return jnp.where(jnp.isfinite(found.score), found.score, -jnp.inf), found.value

@@ -1,7 +1,7 @@
 """Roll-outs of a model, which all planners share, and the price of where its members disagree.
 
     u_t, c_{t+1} = act(c_t, x_t, a_t),   x_{t+1} = f(x_t, u_t)            a_t: what was planned
-    S = J(x, u) - price sum_t d_t
+    S = J(x, u) - sum_t (price d_t + cost_t)            -inf where that is not finite
 
 d_t is the mean over the entries of the state of the ensemble's disagreement, in running standard
 deviations of the change. Without this price plans lead to where the model is wrong.
@@ -14,8 +14,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
-from hybrid_rl.core.batching import prepend
-from hybrid_rl.core.members import predict_members
+from hybrid_rl.core.batching import prepend, repeat
 from hybrid_rl.protocols import Model
 from hybrid_rl.types import EnvState, Path, Return
 
@@ -76,6 +75,18 @@ def roll(
     return Rolled(Path(prepend(x, xs), us), steps, acts)
 
 
+def predict_members(model: Model, params: Any, x: Array, u: Array) -> tuple[Array, Array, Array]:
+    """The next state [n], the disagreement [n] or [], and every member's next state [members, n].
+
+    A model that is no ensemble counts as one member. params: of the model.
+    """
+    each: Any = getattr(model, "predictions", None)
+    if each is not None:
+        return each(params, x, u)
+    after = model.step(params, x, u)
+    return after, jnp.zeros(()), repeat(after, 1)
+
+
 def priced(
     model: Model,
     params: Any,
@@ -85,12 +96,12 @@ def priced(
     x: Any,
     plan: Array,
     member: Array | None = None,
-    note: Callable[[Any, Array, Any], Any] = lambda x, u, each: None,
+    note: Callable[[Any, Array, Any], tuple[Any, Any]] = lambda x, u, each: (0.0, None),
 ) -> Priced:
     """The path from x [n] of the actions u_t = policy(x_t, a_t) for the plan a [T, m].
 
-    By the mean of the ensemble, or by one `member`. params: of the model. value: J. note: of x, u
-    and the next states [members, n] by all members.
+    By the mean of the ensemble, or by one `member`. params: of the model. value: J. note: cost []
+    and a note of x, u and the next states [members, n] by all members.
     """
 
     def step(x: Any, u: Array) -> tuple[Any, tuple[Array, Any]]:
@@ -98,6 +109,10 @@ def priced(
         noted = jnp.mean(apart), note(x, u, each)
         return after if member is None else each[member], noted
 
-    path, (apart, notes), _ = roll(step, lambda _, x, a: (policy(x, a), None, None), x, plan)
+    def act(carry: None, x: Any, a: Array) -> tuple[Array, None, None]:
+        return policy(x, a), None, None
+
+    path, (apart, (costs, notes)), _ = roll(step, act, x, plan)
     J, disagreement = value(path), apart.sum()
-    return Priced(J - price * disagreement, J, disagreement, path, notes)
+    score = J - price * disagreement - costs.sum()
+    return Priced(jnp.where(jnp.isfinite(score), score, -jnp.inf), J, disagreement, path, notes)
