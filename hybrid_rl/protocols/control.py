@@ -12,7 +12,7 @@ class Objective(Protocol):
 
     One that is a sum over time may have `reward_to_go(params, path)`, which a planner that samples
     calls instead: S [T+1] from each time on, with J = S[0] and the value of the last state in S[T].
-    One with a memory may have `covered(params, memory, x, key)`: metrics of the episode up to x [n],
+    One with a memory may have `covered(params, memory, x, key)`: metrics of the episode up to x,
     which gradient planners log; its key is that of `prepare`.
     """
 
