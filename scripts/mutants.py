@@ -71,9 +71,9 @@ MUTANTS = {
         "tests/core",
     ),
     "a time limit counts as an end": Mutant(
-        "hybrid_rl/training/episode.py",
-        "truncated=(decision >= self.steps) & ~now.terminated,",
-        "terminated=now.terminated | (decision >= self.steps),",
+        "hybrid_rl/training/wrappers.py",
+        "now.replace(truncated=truncated, info",
+        "now.replace(terminated=truncated | now.terminated, info",
         "tests/training",
     ),
     "fisher information with a wrong exponent": Mutant(

@@ -110,8 +110,8 @@ class RobotLoop(Loop):
 
         def one(state: AgentState, action: Array, got: Outcome) -> tuple[AgentState, Any]:
             cut = self.agent.replay.interrupted(state.memory, self.agent.spec)
-            clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.info)
-            env = state.env.replace(obs=got.following, info=clock)
+            clock = jax.tree.map(lambda x: jnp.where(first, 0, x).astype(x.dtype), state.env.clock)
+            env = state.env.replace(obs=got.following, clock=clock)
             state = state.replace(env=env, memory=where(gap, cut, state.memory))
             return self._observed(state, action, got)
 

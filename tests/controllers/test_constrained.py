@@ -71,15 +71,15 @@ def test_the_plan_keeps_the_limit_that_it_breaks_without() -> None:
     """By a price that is higher than the gain, and by a chance at a price that is lower."""
     free = driven(None)
     assert float(free.obs[-1, 0]) > 3.5
-    assert float(free.info["violations"][-1]) >= 14
+    assert float(free.clock.violations[-1]) >= 14
     cheap = replace(LIMIT, price=0.01)
     for kept in (LIMIT, replace(cheap, chance=0.2)):
         states = driven(kept)
-        assert float(states.info["violations"][-1]) == 0
+        assert float(states.clock.violations[-1]) == 0
         assert float(states.obs[-1, 0]) > 0.75  # near the limit
-    assert float(driven(cheap).info["violations"][-1]) >= 14  # a price that is worth paying
+    assert float(driven(cheap).clock.violations[-1]) >= 14  # a price that is worth paying
     states = driven(LIMIT, planner=replace(PLANNER, priced=True))  # by a reward that has no price
-    assert float(states.info["violations"][-1]) >= 14
+    assert float(states.clock.violations[-1]) >= 14
 
 
 def test_from_beyond_the_limit_the_plan_returns() -> None:
@@ -97,7 +97,7 @@ def test_from_beyond_the_limit_the_plan_returns() -> None:
 def test_an_effort_is_a_limit_of_the_actions() -> None:
     effort = Effort(0.5, price=100.0)
     states = driven(effort, effort)
-    assert float(states.info["violations"][-1]) == 0
+    assert float(states.clock.violations[-1]) == 0
     assert float(states.obs[-1, 0]) > 0.2 * 0.3 * 20
 
 
