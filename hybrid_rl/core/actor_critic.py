@@ -67,22 +67,25 @@ class ActorCritic:
     owns: ClassVar[tuple[str, ...]] = ("policy", "critic")
 
     def begun(
-        self, key: Array, spec: Spec, learned: Callable[[Any], Any] = lambda params: params
+        self,
+        key: Array,
+        spec: Spec,
+        alpha: float | None = None,
+        learned: Callable[[Any], Any] = lambda params: params,
     ) -> ActorCriticState:
         """Initial parameters, optimisers and target. The key is consumed.
 
-        learned: those of the parameters that gradients change.
+        alpha: of the temperature; None: it has none. learned: those of the parameters that
+        gradients change.
         """
+        log_alpha = None if alpha is None else jnp.log(jnp.float32(alpha))
         for_policy, for_critic = jax.random.split(key)
         policy, critic = self.policy.init(for_policy, spec), self.critic.init(for_critic, spec)
         target = jax.tree.map(jnp.copy, critic)
-        of_policy, of_critic = (optax.adam(1.0).init(learned(each)) for each in (policy, critic))
-        return ActorCriticState(policy, critic, target, of_policy, of_critic)
-
-    def tempered(self, state: ActorCriticState, alpha: float) -> ActorCriticState:
-        """`state` with an initial temperature and its optimiser."""
-        log_alpha = jnp.log(jnp.float32(alpha))
-        return state.replace(log_alpha=log_alpha, alpha_optimiser=optax.adam(1.0).init(log_alpha))
+        each = learned(policy), learned(critic), log_alpha
+        of_policy, of_critic, of_alpha = map(optax.adam(1.0).init, each)
+        state = ActorCriticState(policy, critic, target, of_policy, of_critic)
+        return state.replace(log_alpha=log_alpha, alpha_optimiser=of_alpha)
 
     def params(self, state: Any) -> dict[str, Any]:
         """The policy and the critic."""
@@ -160,10 +163,6 @@ class SoftActorCritic(ActorCritic):
     max_grad_norm: Positive | None = None  # of the policy's gradient; None: no limit
 
     batches: ClassVar[int] = 1
-
-    def first(self, key: Array, spec: Spec) -> ActorCriticState:
-        """Initial parameters, optimisers, target and temperature. The key is consumed."""
-        return self.tempered(self.begun(key, spec), self.alpha)
 
     def recorded(self, state: ActorCriticState, batch: Batch, noise: Array) -> Imagined:
         """The decisions of `batch`, each followed by one of the policy, for noise [B, m]."""

@@ -82,8 +82,7 @@ class FlashSAC(ActorCritic):
 
     def init(self, key: Array, spec: Spec) -> ActorCriticState:
         """Initial parameters, optimisers of their "weights", and target. The key is consumed."""
-        state = self.begun(key, spec, lambda params: params["weights"])
-        return self.tempered(state, self.alpha)
+        return self.begun(key, spec, self.alpha, lambda params: params["weights"])
 
     def update(
         self, state: ActorCriticState, params: Params, batch: Batch, key: Array

@@ -81,7 +81,7 @@ class ModelBased(SoftActorCritic):
         if self.branch_steps and self.branch_memory:
             sizes = self.batch_size, self.branch_memory, spec.n, spec.act
             kept = branches.begin(*sizes, self.branch_steps, whole=not self._value_steps)
-        return ModelBasedState(self.first(key, spec), kept)
+        return ModelBasedState(self.begun(key, spec, self.alpha), kept)
 
     def having(self, state: ModelBasedState, policy: Any) -> ModelBasedState:
         """`state` with these parameters of its policy."""

@@ -25,7 +25,7 @@ class SAC(SoftActorCritic):
 
     def init(self, key: Array, spec: Spec) -> ActorCriticState:
         """Initial parameters, optimisers and target. The key is consumed."""
-        return self.first(key, spec)
+        return self.begun(key, spec, self.alpha)
 
     def update(
         self, state: ActorCriticState, params: Params, batch: Batch, key: Array
